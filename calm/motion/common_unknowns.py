@@ -79,6 +79,12 @@ class Common:
         logs = np.log(list(self.factors.values()))
         return np.concatenate([logs, [self.datum], self.offset, self.moved])
 
+    @property
+    def unmoved(self) -> tuple[Floats, Floats]:
+        """Return mean and covariance of all but the moves."""
+        fixed = len(self.value) - len(self.moved)
+        return self.value[:fixed], self.covariance[:fixed, :fixed]
+
     def at(self, value: Floats) -> Common:
         """Return the same with other values (q,) of its unknowns, or (q - s,) without moves."""
         count, sensors = len(self.factors), len(self.offset)
@@ -170,14 +176,12 @@ class LinearLaw:
 
     def pulls(self, seen: Floats, left: Floats) -> Floats:
         """Return (n, q) slopes of the logarithm of the likelihood of each time."""
-        pull: Floats = np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left)
-        return pull
+        return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
 
     def normal(self, seen: Floats) -> Floats:
         """Return (q, q) the information of all times."""
         heavy = self.weight[:, None, None] * self.inverse
-        matrix: Floats = np.einsum("nsq,nsr->qr", seen, heavy @ seen)
-        return matrix
+        return np.asarray(np.einsum("nsq,nsr->qr", seen, heavy @ seen))
 
 
 NEVER = -1
@@ -393,11 +397,3 @@ NOISE = 0.2
 """Of a depth by pressure at one time [m]."""
 SPIKE, SPIKES = 30.0, 1e-5
 """Of a depth that is a spike [m], and the probability that one is."""
-
-
-def by_flag(values: Mapping[int, float], flag: NDArray[np.int8]) -> Floats:
-    """Return a figure for every flag; one that is not known counts as bad, 4."""
-    table = np.full(256, values[4])
-    for number, value in values.items():
-        table[number] = value
-    return table[flag.astype(np.uint8)]

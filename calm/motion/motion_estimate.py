@@ -25,9 +25,9 @@ from calm.motion.diagnosis import FEWEST, Diagnosis, diagnosed, law_near
 from calm.motion.line_response import FACTORS
 from calm.motion.matching import CORRECTABLE, GAP, read_measured, without
 from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, read_currents
-from calm.motion.remarks import LIKELY, Agreement, Fault, SensorFit
+from calm.motion.remarks import LIKELY, NO_TIME, Agreement, Fault, SensorFit
 from calm.motion.study import HeldOut, Study, cross_validated, judged, prepare, several
-from calm.motion.suspects import NO_TIME, Suspect
+from calm.motion.suspects import Suspect
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -211,8 +211,7 @@ def fit_of(task: Task, measured: MooringMeasurements, label: str) -> SensorFit:
         measured, [one for one in measured.label if one not in (*task.measured.label, label)]
     )
     at, one, common = kept.label.index(label), task.measured, task.common
-    level = one.level_sensor + (one.level_sensor >= at)
-    with_it = replace(one, label=kept.label, point=kept.point, depth=kept.depth, level_sensor=level)
+    with_it = replace(one, label=kept.label, point=kept.point, depth=kept.depth)
     common = replace(
         common,
         offset=np.insert(common.offset, at, 0.0),

@@ -14,6 +14,7 @@ from calm.physics.line import Floats, Integers
 
 Times = NDArray[np.datetime64]
 
+NO_TIME = np.datetime64("NaT", "ns")
 FALSE = 0.5
 """Probability from which the current of a level is named as false."""
 ALL, LINE, CURRENTS = "all sensors", "the line", "all currents"
@@ -52,12 +53,12 @@ class Fault:
 
     label: str
     kind: str
-    value: float
-    low: float
-    high: float
-    odds: float
-    since: np.datetime64
-    until: np.datetime64
+    value: float = 0.0
+    low: float = 0.0
+    high: float = 0.0
+    odds: float = 0.0
+    since: np.datetime64 = NO_TIME
+    until: np.datetime64 = NO_TIME
     other: str = ""
     rival: str = ""
     corrected: bool = False

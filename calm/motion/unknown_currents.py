@@ -76,7 +76,12 @@ class SpeedLaw:
 
     mean: Floats
     covariance: Floats
-    kept: Linear
+    kept: Linear | None = None
+
+    def read(self, level: Floats) -> ReadCurrents:
+        """Return the currents at levels (n, k), whose direction is the same at all of them [m]."""
+        u = np.tile(np.exp(self.mean), (len(level), 1))
+        return ReadCurrents(level, u, np.zeros_like(u), np.tile(self.covariance, (len(u), 1, 1)))
 
 
 def with_knots(measured: MooringMeasurements, mooring: Mooring) -> MooringMeasurements:
@@ -95,7 +100,6 @@ def with_knots(measured: MooringMeasurements, mooring: Mooring) -> MooringMeasur
         measured,
         level_depth=np.broadcast_to(knots, shape).copy(),
         level_point=np.full(KNOTS, FREE, np.int64),
-        level_sensor=np.full(KNOTS, FREE, np.int64),
         u=np.full(shape, np.nan),
         v=np.full(shape, np.nan),
         flag=np.zeros(shape, np.int8),
@@ -191,7 +195,7 @@ def learn_currents(
     for turn in range(TURNS):
         tell(f"learning the currents from the pressures: {turn + 1} of {TURNS}")
         moments = LineResponse(part, *forwards_of(mooring, common))
-        fit = _Fit(moments, replace(common, covariance=nothing), mean, covariance)
+        fit = _Fit(moments, replace(common, covariance=nothing), SpeedLaw(mean, covariance))
         at = fit.linear(logs) if at is None else fit.moved(at, logs)
         found = fit.posterior(at)
         tried = logs + reach[:, None] * np.clip(found.logs - logs, -LONGEST, LONGEST)
@@ -224,13 +228,11 @@ class _Fit:
 
     moments: LineResponse
     common: Common
-    mean: Floats
-    covariance: Floats
+    law: SpeedLaw
 
     @property
     def way(self) -> ReadCurrents:
-        law = SpeedLaw(self.mean, self.covariance, _NOTHING)
-        return self.moments.way(self.moments.measured.level_depth, replace(self.common, law=law))
+        return self.law.read(self.moments.measured.level_depth)
 
     def linear(self, logs: Floats) -> Linear:
         """Return the line in these currents with its slopes there."""
@@ -250,18 +252,15 @@ class _Fit:
         one, point = self.moments.measured, self.moments.measured.point
         found = self.posterior(at)
         seen = at.slope[:, point]
-        rest = found.expected - seen @ self.covariance @ seen.transpose(0, 2, 1)
+        rest = found.expected - seen @ self.law.covariance @ seen.transpose(0, 2, 1)
         tide = 0.0 if one.tide is None else one.tide[:, None]
         there = at.depth[:, point] + self.common.datum + self.common.offset + tide
         left = np.where(np.isfinite(one.depth), one.depth - there, 0.0)
         size = np.linalg.slogdet(rest)[1]
         bent = np.einsum("ns,ns->n", left, np.linalg.solve(rest, left[:, :, None])[:, :, 0])
-        own = np.einsum("nk,kl,nl->n", at.logs, np.linalg.inv(self.covariance), at.logs)
+        own = np.einsum("nk,kl,nl->n", at.logs, np.linalg.inv(self.law.covariance), at.logs)
         sum_of_all: Floats = np.nan_to_num(bent + own + size, nan=np.inf)
         return sum_of_all
-
-
-_NOTHING = Linear(*(np.zeros((0,) * n) for n in (2, 2, 3, 3)))
 
 
 def _either(first: NDArray[np.bool_], one: Linear, other: Linear) -> Linear:
@@ -330,19 +329,18 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
     """Return the best state of each time, from the nearest of the fits that were kept."""
     law, one = common.law, moments.measured
-    assert law is not None
-    way = moments.way(one.level_depth, common)
-    kept, still = law.kept, moments.forward.still
+    assert law is not None and law.kept is not None
+    way, kept, still = law.read(one.level_depth), law.kept, moments.forward.still
     offset = common.offset + common.datum
     off = np.nan_to_num(one.depth[:, None, :] - offset - kept.depth[None, :, one.point])
     near = np.square(off).sum(axis=2).argmin(axis=1) if len(one.label) else 0
     near = np.where(np.isfinite(one.depth).any(axis=1), near, 0)
-    begin = at = Linear(*(part[near] for part in vars(kept).values()))
-    before = found = posterior(one, at, way.spread, common, still, furthest=np.inf)
+    at = Linear(*(part[near] for part in vars(kept).values()))
+    found = posterior(one, at, way.spread, common, still, furthest=np.inf)
     for _ in range(AGAIN):
         logs = at.logs + np.clip(found.logs - at.logs, -LONGEST, LONGEST)
         there = moments.depths(way, logs)
         lost = np.isnan(there).any(axis=1, keepdims=True)
         at = at.moved(np.where(lost, at.logs, logs), np.where(lost, at.depth, there))
         found = posterior(one, at, way.spread, common, still, furthest=np.inf)
-    return CurrentsState(way, begin, before, at, found)
+    return CurrentsState(way, at, found, at, found)

@@ -117,7 +117,7 @@ def estimate_common(
         expected = expected + (worst**2 - common.worst**2) * bent
         scale, likely = _scale(left, expected, currents, common.scale)
         beside, best = 0.0, 0.0
-        for moved, rest, odds in common_unknowns.fits(law, *_unmoved(begun)):
+        for moved, rest, odds in common_unknowns.fits(law, *begun.unmoved):
             other, gained = _scale(rest, expected, currents, common.scale)
             if not moved:
                 if gained + odds > likely:
@@ -204,12 +204,6 @@ def _widened(left: Floats, expected: Floats, known: NDArray[np.bool_]) -> float:
     return float(np.sqrt(max(large, 1.0))) if usual > MISSED else 1.0
 
 
-def _unmoved(known: Common) -> tuple[Floats, Floats]:
-    """Mean and covariance beforehand, where every sensor hangs as the file says."""
-    fixed = len(known.value) - len(known.moved)
-    return known.value[:fixed], known.covariance[:fixed, :fixed]
-
-
 def _memory(law: LinearLaw, left: Floats) -> float:
     """Return over how many times in a row the errors of a sensor are the same, at most."""
     sensors = left.shape[1]
@@ -225,7 +219,7 @@ def _placed(known: Common, law: LinearLaw, alike: float) -> Common:
     alike : so many times that follow each other have the same error, as far as factors go
     """
     sensors = law.fall.shape[1]
-    first = common_unknowns.first_time(law, *_unmoved(known))
+    first = common_unknowns.first_time(law, *known.unmoved)
     gone = common_unknowns.moves(first, law.fall, law.share)
     seen = np.concatenate([law.fixed, gone[:, :, None] * np.eye(sensors)], axis=2)
     normal, pull = law.normal(seen), law.pulls(seen, law.raw).sum(axis=0)

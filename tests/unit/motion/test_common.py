@@ -45,7 +45,7 @@ def record(seed, factor, datum, wrong, memory=0.0):
     depth[[20, 90], [0, 1]] = np.nan
     return MooringMeasurements(
         np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h"), ("a", "c"),
-        SENSORS, depth, np.tile([20.0, 60.0], (TIMES, 1)), np.full(2, -1), np.full(2, -1), u,
+        SENSORS, depth, np.tile([20.0, 60.0], (TIMES, 1)), np.full(2, -1), u,
         0.0 * u, np.ones(u.shape, np.int8),
     )  # fmt: skip
 

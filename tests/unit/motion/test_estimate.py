@@ -34,7 +34,7 @@ def at_times(depth, flag=None, u=None):
     return MooringMeasurements(
         np.datetime64("2026-03-01", "ns") + np.arange(n) * np.timedelta64(1, "h"), ("a", "c"),
         SENSORS, depth, np.tile([20.0, 60.0, np.nan], (n, 1)), np.array([-1, -1, 1]),
-        np.full(3, -1), u, 0.0 * u, np.ones(u.shape, np.int8) if flag is None else flag,
+        u, 0.0 * u, np.ones(u.shape, np.int8) if flag is None else flag,
     )  # fmt: skip
 
 

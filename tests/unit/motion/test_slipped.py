@@ -1,6 +1,6 @@
 """Where sensors hang, against normal densities written out over all readings at once."""
 
-from dataclasses import fields, replace
+from dataclasses import fields
 
 import numpy as np
 import pytest

@@ -38,7 +38,7 @@ def measured():
     return MooringMeasurements(
         np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h"),
         ("a", "b", "c"), np.arange(3), READ, np.full((TIMES, 1), 20.0), np.array([-1]),
-        np.array([-1]), u, 0.0 * u, np.ones(u.shape, np.int8),
+        u, 0.0 * u, np.ones(u.shape, np.int8),
     )  # fmt: skip
 
 
