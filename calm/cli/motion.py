@@ -184,7 +184,7 @@ def motion(
             return code
         with finished.open_result(output) as result, finished.readable(output):
             study = recovery.study(result, narrate, workers)
-            series = series_of(mooring, recovery.measured, study.task.measured.label, result)
+            series = series_of(study, recovery.measured)
             if onto is not None and instruments is not None:
                 inputs = [file, *files[:-1]]
                 write_copies(instruments, result, apart, copy, inputs, recovery.source)

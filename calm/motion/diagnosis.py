@@ -18,11 +18,11 @@ from calm.motion.common_unknowns import DATUM, ROBUST, LinearLaw
 from calm.motion.correction import Task
 from calm.motion.estimate import best_state, posterior
 from calm.motion.line_response import LineResponse
-from calm.motion.measurements import interpolated
+from calm.motion.measurements import chosen_times, interpolated
 from calm.motion.remarks import ALL, LIKELY, NO_TIME, Fault
 from calm.motion.suspects import Suspect, line_suspects
 from calm.motion.unknown_currents import SEABED, unknown_state
-from calm.motion.whole_record import chosen_times, common_beforehand, linear_law, repeated
+from calm.motion.whole_record import common_beforehand, linear_law, repeated
 from calm.physics.line import Floats
 
 LIKELY_ALONE = 1000.0

@@ -236,6 +236,15 @@ class Forward:
         return points(self.solve(depth, u, v))
 
 
+def forwards_of(mooring: Mooring, common: Common) -> tuple[Forward, dict[str, Forward]]:
+    """Return the mooring at the common factors, and a step from each."""
+    shifted = {
+        name: Forward(mooring, {**common.factors, name: value * float(np.exp(STEP))})
+        for name, value in common.factors.items()
+    }
+    return Forward(mooring, common.factors), shifted
+
+
 def points(profiles: Profiles) -> Floats:
     """Return (n, p) depths of all points [m]."""
     return np.hstack([profiles.clamp_depth, profiles.depth_top])

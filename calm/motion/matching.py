@@ -5,20 +5,17 @@ It is found by label, serial number, or order down the line.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
 from calm.case import Mooring
-from calm.dataset.discovery import hashed
-from calm.errors import UsageError, nearest, not_among
+from calm.errors import UsageError, nearest
 from calm.files.mooring_file import clamps_down
-from calm.motion import line_response, sensors
-from calm.motion.measurements import MooringMeasurements, joined, read_currents
-from calm.motion.remarks import ALL, Fault
+from calm.motion import line_response
+from calm.motion.measurements import MooringMeasurements
 from calm.motion.sensors import Sensor
 from calm.physics.line import Floats
-from calm.records.instrument_series import Identity, split_label
+from calm.records.instrument_series import Identity
 
 
 @dataclass(frozen=True)
@@ -56,116 +53,6 @@ def serials_of(mooring: Mooring) -> tuple[str, ...]:
     parts = [(one.label, one.serial) for one in clamps_down(file.pieces)]
     parts += [(one.label, one.serial) for one in file.pieces]
     return tuple(str(given.get(label) or serial or "") for label, serial in parts)
-
-
-_MATCHES = ("label", "height", "depth")
-GAP = np.timedelta64(2, "h")
-"""Longest time between two values that are interpolated, where nothing else is asked for."""
-
-
-def read_measured(
-    mooring: Mooring,
-    pressures: Sequence[str],
-    currents: Sequence[str] = (),
-    match: str = "label",
-    flags: str = "1,2",
-    gap: np.timedelta64 = GAP,
-    sea_level: Path | None = None,
-    declination: float | None = None,
-    faults: Sequence[Fault] = (),
-    absolute: bool = False,
-) -> tuple[MooringMeasurements, list[str], dict[str, str]]:
-    """Return what was measured, at common times, with notes on what was read and the source files.
-
-    Parameters
-    ----------
-    pressures, currents : files, as their paths or as ``LABEL=PATH``
-    match : by `label`, or by nominal `height` or `depth`
-    flags : of the pressures that count as measured, separated by commas
-    gap : longest time between two values that are interpolated
-    sea_level : the height of the sea surface, as a path
-    declination : added to the directions of the currents [degrees]
-    faults : of the sensors, that are taken off
-    absolute : whether all pressures hold that of the air, which is taken off
-
-    Raises
-    ------
-    InputError, UsageError
-        A file cannot be read, the mooring has no position, or no sensor is left.
-    """
-    if match not in _MATCHES:
-        raise UsageError(not_among("--match", match, _MATCHES))
-    position = mooring.file.position
-    if position is None:
-        raise UsageError(
-            f"{mooring.file.path} has no `position`, whose latitude turns pressures into depths"
-        )
-    place = position.latitude, position.longitude
-    seabed = float(mooring.water.depth)
-    wanted = sensors.parse_flags(flags)
-    given = sensors.read_sensors(pressures, wanted, position.latitude, seabed)
-    line = places_of(mooring)
-    labels, still = line.label, line.still
-    if match == "label":
-        points, notes = matched_by_label(given, line)
-    else:
-        points, notes = matched_by_place(given, line, line_response.instruments_of(mooring))
-    read = read_currents(
-        currents, seabed, place, declination, mooring.file.environment.maximum_speed
-    )
-    notes += dict.fromkeys(f"{one.source}: {one.note}" for one in given if one.note)
-    used = []
-    for i, at in points.items():
-        depth = given[i].depth - sensors.AIR * absolute
-        one = replace(given[i], label=labels[at], depth=depth)
-        one, said = sensors.plausible(corrected(one, faults), float(still[at]), seabed)
-        used.append(one)
-        notes += said
-        if one.dropped:
-            notes.append(f"{one.label}: {one.dropped} pressures left out for their flag")
-    if not any(np.isfinite(one.depth).any() for one in used):
-        raise UsageError("--pressures: no sensor has a good pressure: " + "; ".join(notes))
-    level = None if sea_level is None else sensors.read_sea_level(sea_level)
-    measured = joined(read, used, list(points.values()), labels, still, gap, level)
-    notes += [f"{one.source}: {note}" for one in read for note in one.notes]
-    places = still[measured.point]
-    notes += sensors.air_notes(measured.depth, places)
-    lost = sensors.unusable(measured.label, measured.depth, places)
-    notes += [f"{label} {reason}" for label, reason in lost.items()]
-    measured = without(measured, list(lost))
-    if not measured.label:
-        raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
-    source = {
-        "currents": ", ".join(hashed(split_label(one)[1]) for one in currents),
-        "pressures": ", ".join(hashed(split_label(one)[1]) for one in pressures),
-    }
-    off = [one.sentence() for one in faults]
-    off += ["all sensors: 10.13 dbar, the pressure of the air"] * absolute
-    if off:
-        source["corrected"] = "taken off: " + "; ".join(off)
-    return measured, notes, source
-
-
-CORRECTABLE = ("clock", "gain", "offset", "drift", "air")
-"""What can be taken off what a sensor reads: of `calm.motion.diagnosis.Fault`, and the air."""
-
-
-def corrected(sensor: Sensor, faults: Sequence[Fault]) -> Sensor:
-    """Return what a sensor would have read without its faults."""
-    time, depth = sensor.time, sensor.depth
-    for one in faults:
-        if one.label not in (ALL, sensor.label):
-            continue
-        if one.kind == "clock":
-            time = time - np.timedelta64(round(one.value * 3.6e12), "ns")
-        elif one.kind == "gain":
-            depth = depth / one.value
-        elif one.kind == "offset":
-            depth = depth - one.value
-        else:
-            share = (time - one.since) / (one.until - one.since)
-            depth = depth - one.value * np.clip(share, 0.0, 1.0)
-    return replace(sensor, time=time, depth=depth)
 
 
 def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeasurements:

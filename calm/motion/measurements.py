@@ -26,6 +26,9 @@ from calm.records.velocity import MISSING
 MOST_GROUPS = 8
 """So many levels have errors of their own; of more, neighbours share theirs."""
 
+MOST_TIMES = 500
+"""So many times, spread evenly over the record, are what is common to it estimated from."""
+
 FREE = -1
 """In place of a point or a sensor, where a level has none."""
 
@@ -86,6 +89,17 @@ class MooringMeasurements:
             tide=None if self.tide is None else self.tide[times],
             false=None if self.false is None else self.false[times],
         )
+
+
+def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
+    """Return times that have a current and a pressure, or a pressure alone, evenly spread where
+    they are many.
+    """
+    currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
+    used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
+    if len(used) <= MOST_TIMES:
+        return used
+    return used[np.linspace(0, len(used) - 1, MOST_TIMES).round().astype(np.int64)]
 
 
 def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[str, ...]:

@@ -87,6 +87,17 @@ class Fault:
         both = {self.label, other.label} <= {LINE, CURRENTS}
         return both or self.same(other)
 
+    def taken_off(self, time: Times, depth: Floats) -> tuple[Times, Floats]:
+        """Return what a sensor would have read without it, and when: (n,) each [m]."""
+        if self.kind == "clock":
+            return time - np.timedelta64(round(self.value * 3.6e12), "ns"), depth
+        if self.kind == "gain":
+            return time, depth / self.value
+        share: Floats = np.ones(1)
+        if self.kind != "offset":
+            share = np.clip((time - self.since) / (self.until - self.since), 0.0, 1.0)
+        return time, depth - self.value * share
+
     @property
     def certain(self) -> bool:
         """Whether it can be nothing else."""

@@ -21,11 +21,12 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.errors import UsageError
+from calm.motion import line_response
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import CurrentsState, Posterior, posterior
-from calm.motion.line_response import Forward, Linear, LineResponse, ReadCurrents, labels_of
+from calm.motion.line_response import Forward, Linear, LineResponse, ReadCurrents
 from calm.motion.measurements import FREE, CurrentMeasurements, MooringMeasurements
-from calm.motion.whole_record import common_beforehand, fixed_slopes, forwards_of, repeated
+from calm.motion.whole_record import common_beforehand, fixed_slopes, repeated
 from calm.physics.line import Floats, Integers
 
 KNOTS, FINER = 6, 2.2
@@ -178,8 +179,9 @@ def learn_currents(
     part = measured.at(_chosen(measured))
     mean, covariance = assumed_law(part)
     if prior:
-        labels = dict(zip(labels_of(mooring), Forward(mooring, {}).still.tolist(), strict=True))
-        mean, covariance = shaped_law(part, prior, labels)
+        labels, still = line_response.labels_of(mooring), Forward(mooring, {}).still
+        places = dict(zip(labels, still.tolist(), strict=True))
+        mean, covariance = shaped_law(part, prior, places)
     worth = SHAPED if prior else PRIOR
     begun = common_beforehand(
         dict.fromkeys(names, 1.0), SEABED * mooring.water.depth, part, np.zeros((KNOTS, KNOTS))
@@ -194,7 +196,7 @@ def learn_currents(
     used = np.flatnonzero(down >= np.quantile(down, 1.0 - STRONGER))
     for turn in range(TURNS):
         tell(f"learning the currents from the pressures: {turn + 1} of {TURNS}")
-        moments = LineResponse(part, *forwards_of(mooring, common))
+        moments = LineResponse(part, *line_response.forwards_of(mooring, common))
         fit = _Fit(moments, replace(common, covariance=nothing), SpeedLaw(mean, covariance))
         at = fit.linear(logs) if at is None else fit.moved(at, logs)
         found = fit.posterior(at)

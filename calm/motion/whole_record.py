@@ -10,13 +10,11 @@ from calm.case import Mooring
 from calm.motion import common_unknowns, line_response
 from calm.motion.common_unknowns import RAMPS, ROBUST, Common, LinearLaw
 from calm.motion.estimate import Posterior, best_state
-from calm.motion.line_response import STEP, Forward, Linear, LineResponse, gap_errors
-from calm.motion.measurements import MooringMeasurements
-from calm.physics.line import Floats, Integers
+from calm.motion.line_response import Linear, LineResponse
+from calm.motion.measurements import MooringMeasurements, chosen_times
+from calm.physics.line import Floats
 from calm.solve import expect_many
 
-MOST_TIMES = 500
-"""So many times, spread evenly over the record, are what it is estimated from."""
 TURNS, ENOUGH = 12, 0.02
 """Steps of Gauss and Newton at most; fewer where one moves no unknown by more than this share of
 its standard deviation."""
@@ -37,15 +35,6 @@ LONGEST_MEMORY = 25
 """Times over which errors that repeat are looked for."""
 
 
-def forwards_of(mooring: Mooring, common: Common) -> tuple[Forward, dict[str, Forward]]:
-    """Return the mooring at the common factors, and a step from each."""
-    shifted = {
-        name: Forward(mooring, {**common.factors, name: value * float(np.exp(STEP))})
-        for name, value in common.factors.items()
-    }
-    return Forward(mooring, common.factors), shifted
-
-
 def assumed(mooring: Mooring, measured: MooringMeasurements, names: Sequence[str]) -> Common:
     """Return what is common before any pressure is looked at.
 
@@ -56,9 +45,9 @@ def assumed(mooring: Mooring, measured: MooringMeasurements, names: Sequence[str
     names : of the factors that are estimated
     """
     factors = {name: float(np.exp(common_unknowns.FACTORS[name][0])) for name in names}
-    moments = LineResponse(measured, Forward(mooring, factors), {})
+    moments = LineResponse(measured, line_response.Forward(mooring, factors), {})
     level = moments.levels(np.tile(moments.forward.still, (len(measured.time), 1)))
-    gap = gap_errors(level, measured.u, measured.v, moments.group)
+    gap = line_response.gap_errors(level, measured.u, measured.v, moments.group)
     return common_beforehand(factors, common_unknowns.DATUM * mooring.water.depth, measured, gap)
 
 
@@ -101,7 +90,7 @@ def estimate_common(
     expect_many(SOLVES)
     common, sensors, span = known, len(part.label), measured.time[[0, -1]]
     for _ in range(TURNS):
-        moments = LineResponse(part, *forwards_of(mooring, common))
+        moments = LineResponse(part, *line_response.forwards_of(mooring, common))
         here = best_state(moments, replace(common, covariance=np.zeros_like(known.covariance)))
         law = linear_law(moments, common, here.begin, here.before, here.way.spread, span)
         if not len(law.time):
@@ -236,17 +225,6 @@ def _placed(known: Common, law: LinearLaw, alike: float) -> Common:
             until = np.where(first == code, since + part * whole, until)
     since = np.where(first > 0, law.time[first], since)
     return replace(known.at(mean), since=since, until=until, covariance=covariance)
-
-
-def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
-    """Return times that have a current and a pressure, or a pressure alone, evenly spread where
-    they are many.
-    """
-    currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
-    used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
-    if len(used) <= MOST_TIMES:
-        return used
-    return used[np.linspace(0, len(used) - 1, MOST_TIMES).round().astype(np.int64)]
 
 
 def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> tuple[float, float]:

@@ -6,8 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import calm.motion.whole_record as module
-from calm.motion import common_unknowns
+from calm.motion import common_unknowns, line_response
 from calm.motion.measurements import MooringMeasurements
 from calm.motion.whole_record import _scale, _widened, _worst, estimate_common, repeated
 
@@ -117,7 +116,7 @@ def best(one, start=None):
 def test_the_common_factor_is_that_of_the_law_written_out(
     monkeypatch, seed, factor, datum, wrong, memory
 ):
-    monkeypatch.setattr(module, "Forward", Line)
+    monkeypatch.setattr(line_response, "Forward", Line)
     one = record(seed, factor, datum, wrong, memory)
     found = estimate_common(MOORING, one, ("cable_drag",))
     state, covariance, scale, repeated = best(one)
@@ -143,7 +142,7 @@ def slipped(seed, size, memory=0.0, start=80):
 
 
 def test_a_sensor_that_slips_is_as_if_that_were_known(monkeypatch):
-    monkeypatch.setattr(module, "Forward", Line)
+    monkeypatch.setattr(line_response, "Forward", Line)
     one = slipped(4, 4.0)
     found = estimate_common(MOORING, one, ("cable_drag",))
     state, covariance, scale, _ = best(one, 80)
@@ -164,7 +163,7 @@ def test_a_sensor_that_slips_is_as_if_that_were_known(monkeypatch):
 )
 def test_errors_that_repeat_make_a_slip_less_sure(monkeypatch, seed, memory, low, high):
     """A small one, beside errors that are white, that cannot be told from it, and that can."""
-    monkeypatch.setattr(module, "Forward", Line)
+    monkeypatch.setattr(line_response, "Forward", Line)
     found = estimate_common(MOORING, slipped(seed, 1.5, memory), ("cable_drag",))
     assert low <= found.moved[1] <= high
     # as likely not moved as one in fifty would make it 0.35 m
@@ -172,7 +171,7 @@ def test_errors_that_repeat_make_a_slip_less_sure(monkeypatch, seed, memory, low
 
 
 def test_a_sensor_elsewhere_throughout_is_so_from_the_first_time_of_the_record(monkeypatch):
-    monkeypatch.setattr(module, "Forward", Line)
+    monkeypatch.setattr(line_response, "Forward", Line)
     one = slipped(4, 9.0, start=0)
     found = estimate_common(MOORING, one, ("cable_drag",))
     assert found.since[1] == one.time[0]

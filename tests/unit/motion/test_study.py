@@ -125,7 +125,7 @@ def test_used_sensors_are_judged_without_their_offsets_and_hidden_ones_too(line)
         there = np.isfinite(READ[:, column])
         rest = calmest(knockdown(used), there)
         for found, computed in (
-            (study.fit, estimated[:, column]),
+            (study.sensors, estimated[:, column]),
             (study.plain, plain[:, j]),
         ):
             mine = found[used.label[j]]
@@ -134,7 +134,7 @@ def test_used_sensors_are_judged_without_their_offsets_and_hidden_ones_too(line)
             assert mine.bias == pytest.approx(np.nanmean(off))
             assert mine.rms == pytest.approx(rms(off - off[rest].mean()))
     expected = judge_hidden(measured(), used, "b", estimated[:, 1], np.full(TIMES, 0.4), STILL)
-    assert study.held_out == (expected,)
+    assert study.held_out == {"b": expected}
     assert study.false == {"20.0 m": used.time[[3]]}
     assert len(study.remarks) == 1 and "20.0 m" in study.remarks[0]
     far = replace(task, common=replace(task.common, datum=10.0))

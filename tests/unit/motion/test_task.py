@@ -153,7 +153,7 @@ def test_the_digest_is_of_all_that_was_measured():
 def test_a_mooring_is_asked_at_its_factors_and_a_step_from_each(monkeypatch):
     asked = []
     record = SimpleNamespace(Forward=lambda mooring, factors: asked.append(factors) or len(asked))
-    monkeypatch.setattr("calm.motion.whole_record.Forward", record.Forward)
+    monkeypatch.setattr("calm.motion.line_response.Forward", record.Forward)
     here, shifted = module.forwards_of(None, replace(common(), factors={"a": 1.2, "b": 0.9}))
     assert (here, list(shifted)) == (3, ["a", "b"])
     step = np.exp(0.05)

@@ -7,8 +7,8 @@ import pytest
 from scipy.stats import multivariate_t, norm
 
 from calm.motion.line_response import with_factors
-from calm.motion.measurements import MooringMeasurements
-from calm.motion.whole_record import MOST_TIMES, SCALES, _scale, _worst, chosen_times, repeated
+from calm.motion.measurements import MOST_TIMES, MooringMeasurements, chosen_times
+from calm.motion.whole_record import SCALES, _scale, _worst, repeated
 from calm.physics.line import Line
 
 
