@@ -1,4 +1,4 @@
-"""What was found of a mooring's motion: tables, JSON, and a page and a PDF with its drawings."""
+"""Report of a mooring's motion: tables, JSON, and a page and a PDF with its drawings."""
 
 from __future__ import annotations
 
@@ -184,7 +184,7 @@ def health_table(study: MotionEstimate) -> Table:
 
 
 def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
-    """What is wrong with sensors: clocks in seconds, gains as factors, all else in metres."""
+    """Return what is wrong with sensors: clocks [s], gains as factors, all else [m]."""
     said = []
     for one in diagnosis:
         unit = 3600.0 if one.kind == "clock" else 1.0

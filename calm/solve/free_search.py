@@ -1,4 +1,4 @@
-"""How the velocity of a line that moves freely is found: Newton's method, Broyden's updates."""
+"""Search of the velocity of a line that moves freely: Newton's method, Broyden's updates."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

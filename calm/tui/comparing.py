@@ -1,4 +1,4 @@
-"""What is worked out beside the line: advice that is tried, comparisons, its papers."""
+"""Work beside the line: advice that is tried, comparisons, its papers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is put over the screen: one of some answers, some texts to enter, a text to read."""
+"""Dialogs over the screen: one of some answers, some texts to enter, a text to read."""
 
 from __future__ import annotations
 

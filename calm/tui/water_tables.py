@@ -52,7 +52,7 @@ _PRESETS: Mapping[str, Callable[[float], float]] = {
 
 
 class Currents:
-    """What puts a whole current into the environment that the screen of the water shows."""
+    """Put a whole current into the environment that the screen of the water shows."""
 
     def __init__(self, screen: water_screen.WaterScreen) -> None:
         self._screen, self._workspace = screen, screen.workspace
