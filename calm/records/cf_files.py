@@ -100,11 +100,17 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
         raise refused(path, "no such file")
     if not holds_arrays(path):
         raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
-    with reading(path), open_current(path) as dataset:
-        try:
-            yield dataset
-        except UnreadableError as error:
-            raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
+    with reading(path), open_current(path) as dataset, saying_what_it_holds(dataset):
+        yield dataset
+
+
+@contextmanager
+def saying_what_it_holds(dataset: xr.Dataset) -> Iterator[None]:
+    """Add what a dataset holds to what is wrong with it."""
+    try:
+        yield
+    except UnreadableError as error:
+        raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
 
 
 def open_current(path: Path) -> xr.Dataset:

@@ -157,13 +157,10 @@ class CellRow(NamedTuple):
 
 @dataclass(frozen=True)
 class TextTable:
-    """Hold a table of a file: its header, and the rows below it as they come.
-
-    `rows` is read once where a file is read as it is needed.
-    """
+    """Hold a table of a file: its header, and the rows below it."""
 
     header: CellRow
-    rows: Iterable[CellRow]
+    rows: Sequence[CellRow]
 
     def whole_rows(self, problems: list[Problem]) -> list[CellRow]:
         """Return the rows with as many cells as the header; mistakes are added for the others."""
