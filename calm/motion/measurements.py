@@ -78,17 +78,9 @@ class MooringMeasurements:
 
     def at(self, times: slice | Integers) -> MooringMeasurements:
         """Return what was measured at some of the times."""
-        return replace(
-            self,
-            time=self.time[times],
-            depth=self.depth[times],
-            level_depth=self.level_depth[times],
-            u=self.u[times],
-            v=self.v[times],
-            flag=self.flag[times],
-            tide=None if self.tide is None else self.tide[times],
-            false=None if self.false is None else self.false[times],
-        )
+        columns = ("time", "depth", "level_depth", "u", "v", "flag", "tide", "false")
+        known = {name: getattr(self, name) for name in columns}
+        return replace(self, **{name: one[times] for name, one in known.items() if one is not None})
 
 
 def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
