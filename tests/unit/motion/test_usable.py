@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from calm.errors import UsageError
-from calm.motion.sensors import Sensor, plausible, unusable
+from calm.motion.sensors import plausible, unusable
+from calm.records.instrument_series import InstrumentSeries
 
 SEABED = 300.0
 
@@ -12,14 +13,14 @@ SEABED = 300.0
 def sensor(*depth, again=()):
     time = np.datetime64("2026-03-01", "ns") + np.arange(len(depth)) * np.timedelta64(1, "h")
     time[list(again)] = time[[i - 1 for i in again]]
-    return Sensor("a", "", np.nan, "p.csv", time, np.array(depth))
+    return InstrumentSeries("a", "", np.nan, "p.csv", time, np.array(depth))
 
 
 @pytest.mark.parametrize(("place", "least"), [(60.0, 30.0), (30.0, 10.0), (10.0, -10.0)])
 def test_readings_far_above_the_place_or_below_the_seabed_are_left_out(place, least):
     good = [place + 5.0] * 7
     found, said = plausible(sensor(*good, least - 0.1, least, 330.0, 330.1), place, SEABED)
-    assert np.isnan(found.depth).tolist() == [False] * 7 + [True, False, False, True]
+    assert np.isnan(found.value).tolist() == [False] * 7 + [True, False, False, True]
     assert said == [
         f"a: 2 of its readings cannot be from its place, {place:.1f} m, and are left out: the "
         f"first is {least - 0.1:.1f} m, at 2026-03-01T07:00:00"
@@ -27,19 +28,19 @@ def test_readings_far_above_the_place_or_below_the_seabed_are_left_out(place, le
     shallow, _ = plausible(
         sensor(*[95.0] * 7, 119.9, 120.1), 90.0, 100.0
     )  # 20 m below, not a tenth
-    assert np.isnan(shallow.depth).tolist() == [False] * 8 + [True]
+    assert np.isnan(shallow.value).tolist() == [False] * 8 + [True]
 
 
 def test_where_half_are_wrong_the_sensor_is_and_nothing_is_left_out():
     for count, left_out in ((2, True), (3, False)):
         found, said = plausible(sensor(*[60.0] * 3, np.nan, *[-999.0] * count), 60.0, SEABED)
-        assert np.isnan(found.depth).sum() == 1 + count * left_out
+        assert np.isnan(found.value).sum() == 1 + count * left_out
         assert bool(said) == left_out
 
 
 def test_of_readings_at_one_time_the_first_counts():
     found, said = plausible(sensor(60.0, 61.0, 99.0, 62.0, again=(2,)), 60.0, SEABED)
-    assert found.depth.tolist() == [60.0, 61.0, 62.0] and len(found.time) == 3
+    assert found.value.tolist() == [60.0, 61.0, 62.0] and len(found.time) == 3
     assert said == [
         "a: 1 of its times stand twice, the first 2026-03-01T01:00:00: the first reading of each "
         "counts"
