@@ -138,7 +138,7 @@ def test_the_worse_flag_of_both_components_of_a_profile_counts(tmp_path):
     xarray.Dataset(variables, coordinates).to_netcdf(tmp_path / "c.nc", engine="h5netcdf")
     (found,) = read_currents([tmp_path / "c.nc"], 61.0, None, None, 5.0)
     assert found.flag.tolist() == np.maximum(u_flag, v_flag).tolist()
-    assert found.value[0] == pytest.approx([41.0, 39.0, 37.0])
+    assert found.depth[0] == pytest.approx([41.0, 39.0, 37.0])
 
 
 def two(**more):
