@@ -66,7 +66,7 @@ def holds_arrays(path: Path) -> bool:
     InputError: it is a folder of something else, or of a kind that is known, and not read.
     """
     if path.is_dir():
-        if not any((path / name).is_file() for name in _ZARR):
+        if not is_zarr(path):
             raise refused(path, "is a folder, and not a zarr store; join its files into one first")
         return True
     with path.open("rb") as file:
@@ -75,6 +75,11 @@ def holds_arrays(path: Path) -> bool:
         if signature.startswith(begin):
             raise refused(path, f"is {kind}; NetCDF, zarr or CSV is read")
     return bool(engine_of(path) or reader_of(path))
+
+
+def is_zarr(path: Path) -> bool:
+    """Return whether a folder is a zarr store."""
+    return any((path / name).is_file() for name in _ZARR)
 
 
 @contextmanager

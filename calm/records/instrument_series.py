@@ -131,7 +131,7 @@ def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
     for text in given:
         label, path = split_label(text)
         inside = [path]
-        if path.is_dir() and path.suffix != ".zarr":
+        if path.is_dir() and not cf_files.is_zarr(path):
             inside = sorted(one for one in path.iterdir() if one.suffix in _ENDINGS)
         if not path.exists():
             problems.append(Problem(str(path), 0, 0, "no such file"))
