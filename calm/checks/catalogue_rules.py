@@ -154,8 +154,7 @@ def impossible(component: Component) -> Iterator[str]:
         elif volume is not None and volume > ROUNDING * envelope:
             yield f"displaces {volume:.3g} m³; its size is {envelope:.3g} m³"
     solid = materials.density_of(component.material)
-    joins = component.role == "connector" and mass is not None
-    if joins and solid and volume is not None and mass < HOLLOW * solid * volume:
+    if component.role == "connector" and mass and solid and mass < HOLLOW * solid * (volume or 0.0):
         weight = (1.0 - CATALOGUE_DENSITY / solid) * mass * STANDARD_GRAVITY
         yield (
             f"weighs {mass:.4g} kg in air and {-net:.4g} N in water; its material weighs "
