@@ -1,7 +1,8 @@
 """Which part of a line an instrument is: by label, serial number, or order down the line."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -9,11 +10,15 @@ from calm.case import Mooring
 from calm.errors import UsageError, nearest
 from calm.files.mooring_file import clamps_down
 from calm.motion.line_response import Forward, labels_of
+from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats
 from calm.records.instrument_series import Identity
 
 CLEAR = 10.0
 """An order of instruments is the only one where any other is off by so much more [m]."""
+
+STRETCHED, AMISS = 1.25, 20.0
+"""How many times as long as it was cut a line is at most; how far off pressures may be [m]."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +56,48 @@ def serials_of(mooring: Mooring) -> tuple[str, ...]:
     parts = [(one.label, one.serial) for one in clamps_down(file.pieces)]
     parts += [(one.label, one.serial) for one in file.pieces]
     return tuple(str(given.get(label) or serial or "") for label, serial in parts)
+
+
+def distances_of(mooring: Mooring) -> Floats:
+    """Return how far each clamp and piece is from the top along the line as cut (p,) [m]."""
+    pieces = mooring.file.pieces
+    tops = np.cumsum([0.0, *mooring.line.length.tolist()])[: len(pieces)]
+    clamps = [
+        top + clamp.at
+        for top, piece in zip(tops, pieces, strict=True)
+        for clamp in clamps_down([piece])
+    ]
+    return np.array([*clamps, *tops])
+
+
+def torn(measured: MooringMeasurements, distance: Floats) -> tuple[MooringMeasurements, list[str]]:
+    """Return what was measured without depths farther apart than the line between two sensors is
+    long, and what is said of them.
+
+    Of the two the one is wrong that is farther from its median. Where most of a sensor's depths
+    are, they stay.
+
+    Parameters
+    ----------
+    distance : (p,) of the points along the line [m]
+    """
+    depth, place = measured.depth, distance[measured.point]
+    away = np.abs(depth - np.nanmedian(depth, axis=0))
+    wrong = np.zeros(depth.shape, bool)
+    for i, j in combinations(range(len(place)), 2):
+        reach = STRETCHED * abs(place[i] - place[j]) + AMISS
+        apart = np.abs(depth[:, i] - depth[:, j]) > reach
+        wrong[:, i] |= apart & (away[:, i] > away[:, j])
+        wrong[:, j] |= apart & (away[:, i] <= away[:, j])
+    wrong &= 2 * wrong.sum(axis=0) < np.isfinite(depth).sum(axis=0)
+    notes = [
+        f"{measured.label[j]}: {wrong[:, j].sum()} of its readings are farther from those of "
+        f"others than the line is long, and are left out: the first is {depth[at, j]:.1f} m, at "
+        f"{np.datetime_as_string(measured.time[at], 's')}"
+        for j, at in enumerate(wrong.argmax(axis=0).tolist())
+        if wrong[at, j]
+    ]
+    return replace(measured, depth=np.where(wrong, np.nan, depth)), notes
 
 
 def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, int], list[str]]:

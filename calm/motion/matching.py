@@ -12,7 +12,7 @@ from calm.dataset.discovery import hashed
 from calm.errors import UsageError, nearest, not_among
 from calm.files.mooring_file import clamps_down
 from calm.motion.common_unknowns import FEWEST
-from calm.motion.line_places import aligned
+from calm.motion.line_places import aligned, distances_of, torn
 from calm.motion.line_response import Forward, instruments_of, labels_of
 from calm.motion.measurements import FREE, MooringMeasurements, joined, read_currents
 from calm.motion.remarks import ALL, Fault
@@ -103,6 +103,8 @@ def read_measured(
     measured = without(measured, list(lost))
     if not measured.label:
         raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
+    measured, said = torn(measured, distances_of(mooring))
+    notes += said
     source = {
         "currents": ", ".join(hashed(split_label(one)[1]) for one in currents),
         "pressures": ", ".join(hashed(split_label(one)[1]) for one in pressures),

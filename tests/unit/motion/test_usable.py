@@ -5,7 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import calm
 from calm.errors import UsageError
+from calm.motion.line_places import distances_of
 from calm.motion.matching import plausible, unusable
 from calm.motion.sensors import Sensor
 
@@ -86,3 +88,15 @@ def test_a_sensor_far_from_its_place_at_its_least_is_refused(least, place, refus
             unusable(measured, np.array([place]))
     else:
         assert unusable(measured, np.array([place])) == {}
+
+
+def test_points_are_as_far_down_the_line_as_it_was_cut(tmp_path):
+    clamps = "[{use: sbe37, at: 60 m}, {use: sbe37, at: 5 m}]"
+    line = f"{{use: wire-jacketed-8, length: 100 m, clamps: {clamps}}}"
+    (tmp_path / "m.yaml").write_text(
+        "environment: {depth: 300 m}\ncomponents:\n"
+        "  ball: {kind: sphere, diameter: 2 m, buoyancy: 5 kN}\nline:\n"
+        f"  - {{use: ball}}\n  - {line}\n  - {{use: anchor-wheels-3}}\n"
+    )
+    mooring = calm.load(tmp_path / "m.yaml")
+    assert distances_of(mooring).tolist() == [7.0, 62.0, 0.0, 2.0, 102.0]
