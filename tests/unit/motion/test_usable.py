@@ -1,5 +1,6 @@
 """Which readings cannot be from where a sensor hangs, and which sensors cannot be used."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,7 +9,8 @@ import pytest
 import calm
 from calm.errors import UsageError
 from calm.motion.line_places import distances_of
-from calm.motion.matching import plausible, unusable
+from calm.motion.matching import corrected, plausible, unusable
+from calm.motion.remarks import ALL, Fault
 from calm.motion.sensors import Sensor
 
 SEABED = 300.0
@@ -100,3 +102,31 @@ def test_points_are_as_far_down_the_line_as_it_was_cut(tmp_path):
     )
     mooring = calm.load(tmp_path / "m.yaml")
     assert distances_of(mooring).tolist() == [7.0, 62.0, 0.0, 2.0, 102.0]
+
+
+NEVER = np.datetime64("NaT")
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "since", "until", "read"),
+    [
+        ("gain", 1.1, NEVER, NEVER, [66.0, 88.0, 110.0]),
+        ("offset", 3.0, NEVER, NEVER, [63.0, 83.0, 103.0]),
+        ("drift", 4.0, "2026-03-01T00", "2026-03-01T02", [60.0, 82.0, 104.0]),
+    ],
+)
+def test_what_a_fault_adds_is_taken_off(kind, value, since, until, read):
+    """Of 60, 80 and 100 m, read as the words of `Fault` say."""
+    fault = Fault("a", kind, value, value, value, 9.0, np.datetime64(since), np.datetime64(until))
+    one = corrected(sensor(*read), [fault, replace(fault, label="another", value=7.0)])
+    assert one.depth == pytest.approx([60.0, 80.0, 100.0])
+    assert (one.time == sensor(*read).time).all()
+    everywhere = replace(fault, label=ALL)
+    assert corrected(sensor(*read), [everywhere]).depth == pytest.approx([60.0, 80.0, 100.0])
+
+
+def test_times_that_are_late_are_set_back():
+    late = Fault("a", "clock", 0.5, 0.5, 0.5, 9.0, NEVER, NEVER)
+    one = corrected(sensor(60.0, 80.0), [late])
+    assert one.time[0] == np.datetime64("2026-02-28T23:30")
+    assert one.depth.tolist() == [60.0, 80.0]
