@@ -1,13 +1,10 @@
 """Which readings cannot be from where a sensor hangs, and which sensors cannot be used."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 from calm.errors import UsageError
-from calm.motion.matching import plausible, unusable
-from calm.motion.sensors import Sensor
+from calm.motion.sensors import Sensor, plausible, unusable
 
 SEABED = 300.0
 
@@ -15,7 +12,7 @@ SEABED = 300.0
 def sensor(*depth, again=()):
     time = np.datetime64("2026-03-01", "ns") + np.arange(len(depth)) * np.timedelta64(1, "h")
     time[list(again)] = time[[i - 1 for i in again]]
-    return Sensor("a", time, np.array(depth), "p.csv")
+    return Sensor("a", "", np.nan, "p.csv", time, np.array(depth))
 
 
 @pytest.mark.parametrize(("place", "least"), [(60.0, 30.0), (30.0, 10.0), (10.0, -10.0)])
@@ -59,8 +56,7 @@ def test_of_readings_at_one_time_the_first_counts():
     ],
 )
 def test_a_sensor_that_measures_nothing_is_named(depth, place, reason):
-    measured = SimpleNamespace(label=("a",), depth=np.array(depth)[:, None], point=np.array([1]))
-    found = unusable(measured, np.array([0.0, place]))
+    found = unusable(("a",), np.array(depth)[:, None], np.array([place]))
     assert list(found) == ["a"] * (reason is not None)
     assert reason is None or reason in found["a"]
 
@@ -78,11 +74,11 @@ def test_a_sensor_that_measures_nothing_is_named(depth, place, reason):
 )
 def test_a_sensor_far_from_its_place_at_its_least_is_refused(least, place, refused):
     depth = np.linspace(least, least + 40.0, 41) - 2.0  # a twentieth is less than the least
-    measured = SimpleNamespace(label=("a",), depth=depth[:, None], point=np.array([0]))
+    given = ("a",), depth[:, None], np.array([place])
     if refused:
         with pytest.raises(
             UsageError, match=rf"`a` is at {least:.1f} m at its least.* {place:.1f}"
         ):
-            unusable(measured, np.array([place]))
+            unusable(*given)
     else:
-        assert unusable(measured, np.array([place])) == {}
+        assert unusable(*given) == {}
