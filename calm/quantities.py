@@ -53,12 +53,12 @@ class Quantity:
 
     @property
     def usual_scale(self) -> float:
-        """How many of the usual unit make one `unit`."""
+        """Return how many of the usual unit make one `unit`."""
         return _USUAL.get(self.display, 1.0)
 
     @property
     def scale(self) -> float:
-        """How many of the unit displayed make one `unit`."""
+        """Return how many of the unit displayed make one `unit`."""
         if not self._chosen:
             return self.usual_scale
         return 1.0 / SHOWN_UNITS[_CHOICES[self.unit]][self._chosen]

@@ -343,7 +343,7 @@ TILTED_ROLES = ("instrument", "release")
 
 @dataclass(frozen=True)
 class MissingFigures:
-    """What a component does not give: `searched` was looked for and is printed nowhere."""
+    """Hold what a component does not give: `searched` was looked for and is printed nowhere."""
 
     id: str
     figures: tuple[str, ...]

@@ -149,7 +149,7 @@ def _loaded(
 def _load(
     task: tuple[Path, str | None, Sequence[Path]],
 ) -> Mooring | Net | Tow | tuple[Problem, ...]:
-    """What was read, or what is wrong with it."""
+    """Return what was read, or what is wrong with it."""
     from calm.case.net import load
 
     try:

@@ -19,7 +19,6 @@ from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
 
-NO_TIME = np.datetime64("NaT", "ns")
 CAUSES: Mapping[str, tuple[float, float]] = {
     "currents": (0.3, 0.02),
     "buoyancy": (0.3, 0.02),
@@ -93,7 +92,7 @@ def line_suspects(
         ahead: Callable[[float], Floats] | None = None, part: Floats | None = None,
     ) -> Suspect:  # fmt: skip
         wide, chance = CAUSES[kind]
-        fault = Fault(label, kind, 1.0, 1.0, 1.0, 0.0, NO_TIME, NO_TIME)
+        fault = Fault(label, kind, value=1.0)
         log, none = float(np.log(chance / among)), np.zeros_like(column)
         return Suspect(fault, column, wide, log, none, ahead, part)
 

@@ -323,7 +323,9 @@ def series_figure(summary: Summary) -> str:
 
 
 class _Panel(NamedTuple):
-    """What curves show, of which quantity; each with its stroke and label; and the limit on it."""
+    """Hold what curves show, of which quantity; each with its stroke and label; and the limit on
+    it.
+    """
 
     title: str
     name: str

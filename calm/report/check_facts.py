@@ -1,4 +1,4 @@
-"""What a design check concludes: the worst in each environment, and what an engineer signs.
+"""Conclusions of a design check: the worst in each environment, and what an engineer signs.
 
 The figures that decide are on page one of the report and in its JSON.
 """
@@ -228,7 +228,7 @@ def facts_part(facts: CheckFacts, title: str = "") -> ReportPart:
 
 
 def left_out(facts: CheckFacts) -> Iterator[Table]:
-    """What is accepted and what departs, where page one has not room for all of it."""
+    """Return what is accepted and what departs, where page one has not room for all of it."""
     shown = facts_part(facts).blocks
     return (table for table in settled_tables(facts) if table not in shown)
 
@@ -254,7 +254,7 @@ def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> f
 
 
 def settled_tables(facts: CheckFacts) -> Iterator[Table]:
-    """What the designer has decided: what is accepted, and limits of the design's own."""
+    """Return what the designer has decided: what is accepted, and limits of the design's own."""
     terms = attrgetter("accept.reason", "accept.by", "accept.date", "accept.until")
     groups = check_tables.grouped(facts.accepted, terms)
     rows = [(accept, found) for found in groups if (accept := found[0].accept) is not None]

@@ -215,7 +215,7 @@ def check_part(assessments: Sequence[Assessment]) -> blocks.ReportPart:
 
 
 def _decisive(facts: CheckFacts, *, several: bool) -> Iterator[blocks.Block]:
-    """What decides of a mooring, what is accepted, and what departs."""
+    """Return what decides of a mooring, what is accepted, and what departs."""
     if several:
         yield blocks.Heading(facts.mooring)
     yield check_facts.key_pairs(facts)
@@ -223,7 +223,7 @@ def _decisive(facts: CheckFacts, *, several: bool) -> Iterator[blocks.Block]:
 
 
 def _told(facts: CheckFacts) -> Iterator[blocks.Block]:
-    """What a mooring fails, lacks or is warned of, the gravest first, with its remedy."""
+    """Return what a mooring fails, lacks or is warned of, the gravest first, with its remedy."""
     listed = check_tables.to_mend(facts.findings)
     if not listed:
         return
@@ -239,7 +239,7 @@ def _told(facts: CheckFacts) -> Iterator[blocks.Block]:
 
 
 def _sentence(found: Sequence[Finding]) -> blocks.Line:
-    """What is found alike of some components, told of the worst of them."""
+    """Return what is found alike of some components, told of the worst of them."""
     worst = found[0]
     sign, quiet = Span(f"{worst.state.sign} ", worst.state), worst.state is not State.FAIL
     if worst.state is State.UNKNOWN and worst.component is not None and worst.limit is None:
@@ -348,7 +348,7 @@ _OF_RECOVERY = ("released", "rise_speed", "time_to_surface", "net_buoyancy", "or
 
 
 def _handled(way: Launch | Recovery | None, names: Sequence[str]) -> dict[str, Any] | None:
-    """What a launch or a recovery comes to; null where it is not known."""
+    """Return what a launch or a recovery comes to; null where it is not known."""
     return None if way is None else members(way, *names) | {"components": way.components()}
 
 

@@ -1,4 +1,4 @@
-"""Where a report comes from: title block, inputs, versions, date and a hash."""
+"""Provenance of a report: title block, inputs, versions, date and a hash."""
 
 import hashlib
 import json

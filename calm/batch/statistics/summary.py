@@ -1,4 +1,4 @@
-"""What a batch result says of a mooring: its distributions, its limits, its extremes."""
+"""Summary of a batch result: the distributions, the limits and the extremes of a mooring."""
 
 from __future__ import annotations
 

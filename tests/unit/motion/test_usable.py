@@ -1,17 +1,13 @@
 """Which readings cannot be from where a sensor hangs, and which sensors cannot be used."""
 
-from dataclasses import replace
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 import calm
 from calm.errors import UsageError
-from calm.motion.line_places import distances_of
-from calm.motion.matching import corrected, plausible, unusable
-from calm.motion.remarks import ALL, Fault
-from calm.motion.sensors import Sensor
+from calm.motion.matching import distances_of
+from calm.motion.remarks import Fault
+from calm.motion.sensors import Sensor, plausible, unusable
 
 SEABED = 300.0
 
@@ -19,7 +15,7 @@ SEABED = 300.0
 def sensor(*depth, again=()):
     time = np.datetime64("2026-03-01", "ns") + np.arange(len(depth)) * np.timedelta64(1, "h")
     time[list(again)] = time[[i - 1 for i in again]]
-    return Sensor("a", time, np.array(depth), "p.csv")
+    return Sensor("a", "", np.nan, "p.csv", time, np.array(depth))
 
 
 @pytest.mark.parametrize(("place", "least"), [(60.0, 30.0), (30.0, 10.0), (10.0, -10.0)])
@@ -63,8 +59,7 @@ def test_of_readings_at_one_time_the_first_counts():
     ],
 )
 def test_a_sensor_that_measures_nothing_is_named(depth, place, reason):
-    measured = SimpleNamespace(label=("a",), depth=np.array(depth)[:, None], point=np.array([1]))
-    found = unusable(measured, np.array([0.0, place]))
+    found = unusable(("a",), np.array(depth)[:, None], np.array([place]))
     assert list(found) == ["a"] * (reason is not None)
     assert reason is None or reason in found["a"]
 
@@ -82,14 +77,14 @@ def test_a_sensor_that_measures_nothing_is_named(depth, place, reason):
 )
 def test_a_sensor_far_from_its_place_at_its_least_is_refused(least, place, refused):
     depth = np.linspace(least, least + 40.0, 41) - 2.0  # a twentieth is less than the least
-    measured = SimpleNamespace(label=("a",), depth=depth[:, None], point=np.array([0]))
+    given = ("a",), depth[:, None], np.array([place])
     if refused:
         with pytest.raises(
             UsageError, match=rf"`a` is at {least:.1f} m at its least.* {place:.1f}"
         ):
-            unusable(measured, np.array([place]))
+            unusable(*given)
     else:
-        assert unusable(measured, np.array([place])) == {}
+        assert unusable(*given) == {}
 
 
 def test_points_are_as_far_down_the_line_as_it_was_cut(tmp_path):
@@ -118,15 +113,15 @@ NEVER = np.datetime64("NaT")
 def test_what_a_fault_adds_is_taken_off(kind, value, since, until, read):
     """Of 60, 80 and 100 m, read as the words of `Fault` say."""
     fault = Fault("a", kind, value, value, value, 9.0, np.datetime64(since), np.datetime64(until))
-    one = corrected(sensor(*read), [fault, replace(fault, label="another", value=7.0)])
-    assert one.depth == pytest.approx([60.0, 80.0, 100.0])
-    assert (one.time == sensor(*read).time).all()
-    everywhere = replace(fault, label=ALL)
-    assert corrected(sensor(*read), [everywhere]).depth == pytest.approx([60.0, 80.0, 100.0])
+    one = sensor(*read)
+    time, depth = fault.taken_off(one.time, one.depth)
+    assert depth == pytest.approx([60.0, 80.0, 100.0])
+    assert (time == one.time).all()
 
 
 def test_times_that_are_late_are_set_back():
     late = Fault("a", "clock", 0.5, 0.5, 0.5, 9.0, NEVER, NEVER)
-    one = corrected(sensor(60.0, 80.0), [late])
-    assert one.time[0] == np.datetime64("2026-02-28T23:30")
-    assert one.depth.tolist() == [60.0, 80.0]
+    one = sensor(60.0, 80.0)
+    time, depth = late.taken_off(one.time, one.depth)
+    assert time[0] == np.datetime64("2026-02-28T23:30")
+    assert depth.tolist() == [60.0, 80.0]
