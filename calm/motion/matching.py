@@ -5,7 +5,6 @@ It is found by label, serial number, or order down the line.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 
@@ -65,52 +64,6 @@ def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeas
         point=measured.point[kept],
         depth=measured.depth[:, kept],
     )
-
-
-STRETCHED, AMISS = 1.25, 20.0
-"""How many times as long as it was cut a line is at most; how far off pressures may be [m]."""
-
-
-def distances_of(mooring: Mooring) -> Floats:
-    """Return how far each clamp and piece is from the top along the line as cut (p,) [m]."""
-    pieces = mooring.file.pieces
-    tops = np.cumsum([0.0, *mooring.line.length.tolist()])[: len(pieces)]
-    clamps = [
-        top + clamp.at
-        for top, piece in zip(tops, pieces, strict=True)
-        for clamp in clamps_down([piece])
-    ]
-    return np.array([*clamps, *tops])
-
-
-def torn(measured: MooringMeasurements, distance: Floats) -> tuple[MooringMeasurements, list[str]]:
-    """Return what was measured without depths farther apart than the line between two sensors is
-    long, and what is said of them.
-
-    Of the two the one is wrong that is farther from its median. Where most of a sensor's depths
-    are, they stay.
-
-    Parameters
-    ----------
-    distance : (p,) of the points along the line [m]
-    """
-    depth, place = measured.depth, distance[measured.point]
-    away = np.abs(depth - np.nanmedian(depth, axis=0))
-    wrong = np.zeros(depth.shape, bool)
-    for i, j in combinations(range(len(place)), 2):
-        reach = STRETCHED * abs(place[i] - place[j]) + AMISS
-        apart = np.abs(depth[:, i] - depth[:, j]) > reach
-        wrong[:, i] |= apart & (away[:, i] > away[:, j])
-        wrong[:, j] |= apart & (away[:, i] <= away[:, j])
-    wrong &= 2 * wrong.sum(axis=0) < np.isfinite(depth).sum(axis=0)
-    notes = [
-        f"{measured.label[j]}: {wrong[:, j].sum()} of its readings are farther from those of "
-        f"others than the line is long, and are left out: the first is {depth[at, j]:.1f} m, at "
-        f"{np.datetime_as_string(measured.time[at], 's')}"
-        for j, at in enumerate(wrong.argmax(axis=0).tolist())
-        if wrong[at, j]
-    ]
-    return replace(measured, depth=np.where(wrong, np.nan, depth)), notes
 
 
 CERTAIN = 2.0

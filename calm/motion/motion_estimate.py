@@ -28,7 +28,7 @@ from calm.motion.matching import without
 from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, joined, read_currents
 from calm.motion.remarks import ALL, LIKELY, NO_TIME, Fault, SensorFit
 from calm.motion.study import MotionEstimate, cross_validated, judged, prepare, several
-from calm.motion.suspects import Suspect
+from calm.motion.suspects import Suspect, distances_of, torn
 from calm.records.instrument_series import split_label
 
 if TYPE_CHECKING:
@@ -172,7 +172,7 @@ class RecoveredMooring:
         measured = without(measured, list(lost))
         if not measured.label:
             raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
-        self.measured, said = matching.torn(measured, matching.distances_of(mooring))
+        self.measured, said = torn(measured, distances_of(mooring))
         self.notes = notes + said
         self.source = {
             "currents": ", ".join(hashed(split_label(one)[1]) for one in self.currents),

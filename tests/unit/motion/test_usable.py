@@ -5,9 +5,9 @@ import pytest
 
 import calm
 from calm.errors import UsageError
-from calm.motion.matching import distances_of
 from calm.motion.remarks import Fault
 from calm.motion.sensors import Sensor, plausible, unusable
+from calm.motion.suspects import distances_of
 
 SEABED = 300.0
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from calm.errors import UsageError
-from calm.motion.matching import torn
 from calm.motion.measurements import MooringMeasurements
 from calm.motion.sensors import unusable
+from calm.motion.suspects import torn
 from calm.motion.whole_record import _widened
 
 STILL = np.array([50.0, 120.0, 250.0])
