@@ -33,6 +33,14 @@ def test_readings_far_above_the_place_or_below_the_seabed_are_left_out(place, le
     assert np.isnan(shallow.depth).tolist() == [False] * 8 + [True]
 
 
+def test_several_depths_at_one_time_are_those_of_several_instruments():
+    with pytest.raises(UsageError, match="`a` has several depths at 2 of its times"):
+        plausible(sensor(60.0, 95.0, 60.0, 95.0, again=(1, 3)), 60.0, SEABED)
+    found, said = plausible(sensor(60.0, 60.5, 61.0, 61.5, again=(1, 3)), 60.0, SEABED)
+    assert found.depth.tolist() == [60.0, 61.0]
+    assert "2 of its times stand twice" in said[0]
+
+
 def test_where_half_are_wrong_the_sensor_is_and_nothing_is_left_out():
     for count, left_out in ((2, True), (3, False)):
         found, said = plausible(sensor(*[60.0] * 3, np.nan, *[-999.0] * count), 60.0, SEABED)
