@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 
+import calm
 from calm.errors import UsageError
+from calm.motion.remarks import Fault
 from calm.motion.sensors import Sensor, plausible, unusable
+from calm.motion.suspects import distances_of
 
 SEABED = 300.0
 
@@ -82,3 +85,43 @@ def test_a_sensor_far_from_its_place_at_its_least_is_refused(least, place, refus
             unusable(*given)
     else:
         assert unusable(*given) == {}
+
+
+def test_points_are_as_far_down_the_line_as_it_was_cut(tmp_path):
+    clamps = "[{use: sbe37, at: 60 m}, {use: sbe37, at: 5 m}]"
+    line = f"{{use: wire-jacketed-8, length: 100 m, clamps: {clamps}}}"
+    (tmp_path / "m.yaml").write_text(
+        "environment: {depth: 300 m}\ncomponents:\n"
+        "  ball: {kind: sphere, diameter: 2 m, buoyancy: 5 kN}\nline:\n"
+        f"  - {{use: ball}}\n  - {line}\n  - {{use: anchor-wheels-3}}\n"
+    )
+    mooring = calm.load(tmp_path / "m.yaml")
+    assert distances_of(mooring).tolist() == [7.0, 62.0, 0.0, 2.0, 102.0]
+
+
+NEVER = np.datetime64("NaT")
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "since", "until", "read"),
+    [
+        ("gain", 1.1, NEVER, NEVER, [66.0, 88.0, 110.0]),
+        ("offset", 3.0, NEVER, NEVER, [63.0, 83.0, 103.0]),
+        ("drift", 4.0, "2026-03-01T00", "2026-03-01T02", [60.0, 82.0, 104.0]),
+    ],
+)
+def test_what_a_fault_adds_is_taken_off(kind, value, since, until, read):
+    """Of 60, 80 and 100 m, read as the words of `Fault` say."""
+    fault = Fault("a", kind, value, value, value, 9.0, np.datetime64(since), np.datetime64(until))
+    one = sensor(*read)
+    time, depth = fault.taken_off(one.time, one.depth)
+    assert depth == pytest.approx([60.0, 80.0, 100.0])
+    assert (time == one.time).all()
+
+
+def test_times_that_are_late_are_set_back():
+    late = Fault("a", "clock", 0.5, 0.5, 0.5, 9.0, NEVER, NEVER)
+    one = sensor(60.0, 80.0)
+    time, depth = late.taken_off(one.time, one.depth)
+    assert time[0] == np.datetime64("2026-02-28T23:30")
+    assert depth.tolist() == [60.0, 80.0]
