@@ -28,7 +28,7 @@ from calm.motion.matching import without
 from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, joined, read_currents
 from calm.motion.remarks import ALL, LIKELY, NO_TIME, Fault, SensorFit
 from calm.motion.study import MotionEstimate, cross_validated, judged, prepare, several
-from calm.motion.suspects import Suspect
+from calm.motion.suspects import Suspect, distances_of, torn
 from calm.records.instrument_series import split_label
 
 if TYPE_CHECKING:
@@ -169,9 +169,11 @@ class RecoveredMooring:
         notes += sensors.air_notes(measured.depth, places)
         lost = sensors.unusable(measured.label, measured.depth, places)
         notes += [f"{label} {reason}" for label, reason in lost.items()]
-        self.measured, self.notes = without(measured, list(lost)), notes
-        if not self.measured.label:
+        measured = without(measured, list(lost))
+        if not measured.label:
             raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
+        self.measured, said = torn(measured, distances_of(mooring))
+        self.notes = notes + said
         self.source = {
             "currents": ", ".join(hashed(split_label(one)[1]) for one in self.currents),
             "pressures": ", ".join(hashed(split_label(one)[1]) for one in self.pressures),

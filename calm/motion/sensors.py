@@ -239,11 +239,22 @@ def plausible(
     ----------
     place : depth where it hangs in still water [m]
     seabed : depth of the water [m]
+
+    Raises
+    ------
+    UsageError
+        A third of its times or more stand twice with different depths.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)
     again[1:] = sensor.time[1:] == sensor.time[:-1]
     if again.any():
+        differ = np.abs(np.diff(sensor.value))[again[1:]] > 1.0
+        if 3 * again.sum() >= again.size and 2 * differ.sum() > differ.size:
+            raise UsageError(
+                f"--pressures: `{sensor.label}` has several depths at {again.sum()} of its times: "
+                "these are readings of several instruments; give the file of each"
+            )
         when = np.datetime_as_string(sensor.time[again][0], "s")
         notes.append(
             f"{sensor.label}: {again.sum()} of its times stand twice, the first {when}: the first "

@@ -25,12 +25,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-_BARE, _DEPTHS = "Instruments without a pressure", "Depths over time"
+_BARE = "Instruments without a pressure: depths estimated, with the 95 % band"
+_DEPTHS = "Depths measured (black), estimated (blue, 95 % band), by the currents alone (orange)"
 _FALSE = "Times when a current is probably wrong"
-_LEGEND = (
-    "Black: measured. Blue: estimated, with its 95 % band. Orange: from the currents "
-    "alone. Hidden sensors were not used."
-)
 _WHOLE = "Depths of all instruments, with 95 % bands; hidden ones and those without pressure dashed"
 _ASSUMED = (
     "Assumed beforehand: floats, weights, lengths and places as in the mooring file; the drag of "
@@ -79,7 +76,7 @@ def motion_report(
         ReportPart("Factors", (factors, Note((_ASSUMED,)))),
         ReportPart("Measured against computed", (*found, how, *marks)),
         ReportPart("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
-        ReportPart("Depths", (*depths, Note((_LEGEND,)))),
+        ReportPart("Depths", tuple(depths)),
         name=name,
     )
 
@@ -163,10 +160,14 @@ _HEALTH = {
 }  # fmt: skip
 
 
+_DOUBTED = "A question mark: another cause is nearly as likely; see above."
+
+
 def health_table(study: MotionEstimate) -> Table:
     """Return what is wrong with each sensor: a dash where nothing is."""
     found: dict[str, dict[str, str]] = {label: {} for label in study.sensors}
-    for one in study.faults(of_line=False):
+    faults = [*study.faults(of_line=False)]
+    for one in faults:
         text = one.other or format(one.value, ".3f" if one.kind == "gain" else "+.2f")
         found.setdefault(one.label, {})[one.kind] = text + ("" if one.certain else " ?")
 
@@ -179,7 +180,7 @@ def health_table(study: MotionEstimate) -> Table:
         words("sensor", 0),
         *(number(heading, of(kind), unit) for kind, (heading, unit) in _HEALTH.items()),
         words("exchanged with", of("exchanged")),
-        note="A question mark: another cause is nearly as likely; see above.",
+        note="" if all(one.certain for one in faults) else _DOUBTED,
     )
 
 
@@ -326,7 +327,8 @@ def depth_figure(series: Sequence[SensorSeries]) -> str:
             axes.plot(time, one.plain, "--", color="#d55e00", linewidth=0.7)
         axes.plot(time, one.estimated, color=_ESTIMATED, linewidth=0.9)
         axes.plot(time, one.measured, color="#111111", linewidth=0.8)
-        title = f"{one.label}{', hidden' if one.hidden else ''}"
+        hidden = one.hidden and np.isfinite(one.measured).any()
+        title = f"{one.label}{', hidden: not used' if hidden else ''}"
         axes.set_title(title, fontsize=_FONT_SIZE, loc="left", pad=2, parse_math=False)
         _frame(axes)
     return figure_svg(figure)

@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 
+import calm
 from calm.errors import UsageError
+from calm.motion.remarks import Fault
 from calm.motion.sensors import plausible, unusable
+from calm.motion.suspects import distances_of
 from calm.records.instrument_series import InstrumentSeries
 
 SEABED = 300.0
@@ -29,6 +32,14 @@ def test_readings_far_above_the_place_or_below_the_seabed_are_left_out(place, le
         sensor(*[95.0] * 7, 119.9, 120.1), 90.0, 100.0
     )  # 20 m below, not a tenth
     assert np.isnan(shallow.value).tolist() == [False] * 8 + [True]
+
+
+def test_several_depths_at_one_time_are_those_of_several_instruments():
+    with pytest.raises(UsageError, match="`a` has several depths at 2 of its times"):
+        plausible(sensor(60.0, 95.0, 60.0, 95.0, again=(1, 3)), 60.0, SEABED)
+    found, said = plausible(sensor(60.0, 60.5, 61.0, 61.5, again=(1, 3)), 60.0, SEABED)
+    assert found.value.tolist() == [60.0, 61.0]
+    assert "2 of its times stand twice" in said[0]
 
 
 def test_where_half_are_wrong_the_sensor_is_and_nothing_is_left_out():
@@ -83,3 +94,43 @@ def test_a_sensor_far_from_its_place_at_its_least_is_refused(least, place, refus
             unusable(*given)
     else:
         assert unusable(*given) == {}
+
+
+def test_points_are_as_far_down_the_line_as_it_was_cut(tmp_path):
+    clamps = "[{use: sbe37, at: 60 m}, {use: sbe37, at: 5 m}]"
+    line = f"{{use: wire-jacketed-8, length: 100 m, clamps: {clamps}}}"
+    (tmp_path / "m.yaml").write_text(
+        "environment: {depth: 300 m}\ncomponents:\n"
+        "  ball: {kind: sphere, diameter: 2 m, buoyancy: 5 kN}\nline:\n"
+        f"  - {{use: ball}}\n  - {line}\n  - {{use: anchor-wheels-3}}\n"
+    )
+    mooring = calm.load(tmp_path / "m.yaml")
+    assert distances_of(mooring).tolist() == [7.0, 62.0, 0.0, 2.0, 102.0]
+
+
+NEVER = np.datetime64("NaT")
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "since", "until", "read"),
+    [
+        ("gain", 1.1, NEVER, NEVER, [66.0, 88.0, 110.0]),
+        ("offset", 3.0, NEVER, NEVER, [63.0, 83.0, 103.0]),
+        ("drift", 4.0, "2026-03-01T00", "2026-03-01T02", [60.0, 82.0, 104.0]),
+    ],
+)
+def test_what_a_fault_adds_is_taken_off(kind, value, since, until, read):
+    """Of 60, 80 and 100 m, read as the words of `Fault` say."""
+    fault = Fault("a", kind, value, value, value, 9.0, np.datetime64(since), np.datetime64(until))
+    one = sensor(*read)
+    time, depth = fault.taken_off(one.time, one.value)
+    assert depth == pytest.approx([60.0, 80.0, 100.0])
+    assert (time == one.time).all()
+
+
+def test_times_that_are_late_are_set_back():
+    late = Fault("a", "clock", 0.5, 0.5, 0.5, 9.0, NEVER, NEVER)
+    one = sensor(60.0, 80.0)
+    time, depth = late.taken_off(one.time, one.value)
+    assert time[0] == np.datetime64("2026-02-28T23:30")
+    assert depth.tolist() == [60.0, 80.0]
