@@ -74,16 +74,9 @@ def read_designs(
     twice = [word for word, count in given.items() if count > 1]
     if twice:
         raise UsageError(f"given twice: {', '.join(twice)}")
-    names: Sequence[str | None] = environments or [None]
-    asked = [(file, name) for file in files for name in names]
-    read, tows = _loaded(asked, catalogs, workers, meanwhile)
-    moored = [file for file in files if file not in tows]
-    if not moored:
+    stands, tows = _loaded(files, environments, catalogs, workers, meanwhile)
+    if not stands:
         raise UsageError(f"{command} is for moorings; these are tows: {', '.join(map(str, tows))}")
-    if environments is None:
-        others = [(file, name) for file in moored for name in read[file, None].file.variants]
-        read |= _loaded(others, catalogs, workers)[0]
-    stands = {file: [one for (path, _), one in read.items() if path == file] for file in moored}
     for its in stands.values():
         _refuse_one_name(its)
     called = _told_apart({path: its[0].file.name for path, its in stands.items()})
@@ -121,39 +114,40 @@ def _cut_alike(moorings: Sequence[Mooring | Net]) -> tuple[Mooring | Net, ...]:
 
 
 def _loaded(
-    asked: Sequence[tuple[Path, str | None]],
+    files: Sequence[Path],
+    environments: Sequence[str] | None,
     catalogs: Sequence[Path],
     workers: int | None,
     meanwhile: Callable[[], object] | None = None,
-) -> tuple[dict[tuple[Path, str | None], Mooring | Net], list[Path]]:
-    """The moorings, and which of the files are tows."""
+) -> tuple[dict[Path, list[Mooring | Net]], list[Path]]:
+    """The moorings of each file, and which of the files are tows."""
     from calm.case import Tow
 
-    tasks = [(file, name, catalogs) for file, name in asked]
+    tasks = [(file, environments, catalogs) for file in files]
     problems: dict[Problem, None] = {}
-    moorings: dict[tuple[Path, str | None], Mooring | Net] = {}
-    tows: dict[Path, None] = {}
+    moorings: dict[Path, list[Mooring | Net]] = {}
+    tows: list[Path] = []
     loaded = mapped(_load, tasks, workers, "files read", meanwhile)
-    for (file, name), read in zip(asked, loaded, strict=True):
+    for file, read in zip(files, loaded, strict=True):
         if isinstance(read, tuple):
             problems |= dict.fromkeys(read)  # what files share has its mistakes told once
-        elif isinstance(read, Tow):
-            tows[file] = None
+        elif any(isinstance(one, Tow) for one in read):
+            tows.append(file)
         else:
-            moorings[file, name] = read
+            moorings[file] = [one for one in read if not isinstance(one, Tow)]
     if problems:
         raise InputError(list(problems))
-    return moorings, list(tows)
+    return moorings, tows
 
 
 def _load(
-    task: tuple[Path, str | None, Sequence[Path]],
-) -> Mooring | Net | Tow | tuple[Problem, ...]:
+    task: tuple[Path, Sequence[str] | None, Sequence[Path]],
+) -> list[Mooring | Net | Tow] | tuple[Problem, ...]:
     """What was read, or what is wrong with it."""
-    from calm.case.net import load
+    from calm.case.net import load_in
 
     try:
-        return load(*task)
+        return load_in(*task)
     except InputError as error:
         return error.problems
 
