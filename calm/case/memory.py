@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import pickle
-from collections import OrderedDict
+from collections import OrderedDict, deque
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from threading import Lock
@@ -15,6 +15,9 @@ from calm.errors import NoEquilibrium
 
 MOST = 256
 """How many outcomes are kept, the latest."""
+
+LATELY = 4
+"""How many other things made are kept, the latest."""
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -29,6 +32,7 @@ class Memory:
 
     def __init__(self) -> None:
         self._outcomes: OrderedDict[bytes, Any] = OrderedDict()
+        self._made: deque[tuple[object, Any]] = deque(maxlen=LATELY)
         self._lock = Lock()
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
@@ -59,6 +63,14 @@ class Memory:
         solved: T = outcome
         return solved
 
+    def alike(self, key: object, make: Callable[[], T]) -> T:
+        """Return what was made lately for a key that equals this one, or make it."""
+        found = next((made for known, made in [*self._made] if known == key), None)
+        if found is None:
+            found = make()
+            self._made.append((key, found))
+        return found
+
 
 class Forgetful(Memory):
     """Keeps nothing: every line is solved."""
@@ -70,6 +82,10 @@ class Forgetful(Memory):
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
         """Return what the solver returns."""
         return solver(*given, **named)
+
+    def alike(self, key: object, make: Callable[[], T]) -> T:
+        """Make it."""
+        return make()
 
 
 class _Describing(pickle.Pickler):

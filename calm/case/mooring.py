@@ -305,4 +305,10 @@ def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> Moor
     def stays(clamp: Clamp) -> Clamp:
         return replace(clamp, at=at if clamp.place == place else clamp.at, travel=None)
 
-    return replace(file, pieces=tuple(piece.with_clamps(stays) for piece in file.pieces))
+    return replace(
+        file,
+        pieces=tuple(
+            piece.with_clamps(stays) if any(clamp.travel for clamp in piece.clamps) else piece
+            for piece in file.pieces
+        ),
+    )

@@ -23,11 +23,11 @@ from calm.files.rule_texts import RULES
 _Part = TypeVar("_Part", Piece, Clamp)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Situation:
     """A mooring solved in an environment, as given or with something changed.
 
-    Either `result` or `failure` is None.
+    Either `result` or `failure` is None. Environments may have one in common.
     """
 
     name: str

@@ -61,8 +61,18 @@ def situations_of(mooring: Mooring) -> tuple[Situation, ...]:
 
 def solved(name: str, mooring: Mooring) -> Situation:
     """The situation of that name, with the result or the failure of a mooring."""
-    found = or_why_not(mooring.solve)
-    return Situation(name, *((None, found) if isinstance(found, NoEquilibrium) else (found, None)))
+
+    def solve() -> Situation:
+        found = or_why_not(mooring.solve)
+        failed = isinstance(found, NoEquilibrium)
+        return Situation(name, *((None, found) if failed else (found, None)))
+
+    if name not in (STILL, STILL_LOW):
+        return solve()
+    # all environments of a mooring that are as deep and dense have this one in common
+    environment = replace(mooring.file.environment, name=None)
+    nameless = replace(mooring.file, environment=environment)
+    return mooring.memory.alike((name, nameless, mooring.for_surface), solve)
 
 
 def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
