@@ -219,7 +219,7 @@ def _layout(unit: str, display: str, decimals: int) -> _Layout:
     dimension, usual = _CHOICES.get(unit, ""), _USUAL.get(display, 1.0)
     chosen = "" if display and dimension != "force" else _shown.get(dimension, "")
     if not chosen:
-        return _Layout(display or unit, usual, max(0, decimals - round(log10(0.95))))
+        return _Layout(display or unit, usual, decimals)
     scale = 1.0 / SHOWN_UNITS[dimension][chosen]
     return _Layout(chosen, scale, max(0, decimals - round(log10(0.95 * scale / usual))))
 
