@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from math import atan2, ceil, degrees, floor, log10
-from typing import NamedTuple
 
 from calm.errors import UsageError, unknown
 
@@ -46,7 +45,7 @@ class Quantity:
     @property
     def display_unit(self) -> str:
         """The unit people read: that chosen by `show_in`, else the usual one."""
-        return _layout(self.unit, self.display, self.decimals).unit
+        return _layout(self.unit, self.display, self.decimals)[0]
 
     @property
     def usual_unit(self) -> str:
@@ -61,7 +60,7 @@ class Quantity:
     @property
     def scale(self) -> float:
         """How many of the unit displayed make one `unit`."""
-        return _layout(self.unit, self.display, self.decimals).scale
+        return _layout(self.unit, self.display, self.decimals)[1]
 
     @property
     def header(self) -> str:
@@ -80,8 +79,8 @@ class Quantity:
         """
         if value is None or value != value:
             return "-"
-        layout = _layout(self.unit, self.display, self.decimals)
-        return f"{value * layout.scale:z.{layout.places}f}"
+        _, scale, places = _layout(self.unit, self.display, self.decimals)
+        return f"{value * scale:z.{places}f}"
 
     def say(self, value: float | None) -> str:
         """A value [`unit`] with the unit displayed, for a sentence, e.g. ``113.2 m``."""
@@ -201,17 +200,9 @@ _CHOICES = {next(iter(units)): dimension for dimension, units in SHOWN_UNITS.ite
 _shown: dict[str, str] = {}
 
 
-class _Layout(NamedTuple):
-    """The unit that people read, how many of it make one of results, and digits after the point."""
-
-    unit: str
-    scale: float
-    places: int
-
-
 @cache
-def _layout(unit: str, display: str, decimals: int) -> _Layout:
-    """How people read what has a unit in results, and usually these digits of another unit.
+def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
+    """Return the unit that people read, how many of it make one of results, and digits.
 
     What has a small unit of its own keeps it; a unit that is chosen has digits that mean as much as
     the usual ones, feet as many as metres.
@@ -219,9 +210,9 @@ def _layout(unit: str, display: str, decimals: int) -> _Layout:
     dimension, usual = _CHOICES.get(unit, ""), _USUAL.get(display, 1.0)
     chosen = "" if display and dimension != "force" else _shown.get(dimension, "")
     if not chosen:
-        return _Layout(display or unit, usual, decimals)
+        return display or unit, usual, decimals
     scale = 1.0 / SHOWN_UNITS[dimension][chosen]
-    return _Layout(chosen, scale, max(0, decimals - round(log10(0.95 * scale / usual))))
+    return chosen, scale, max(0, decimals - round(log10(0.95 * scale / usual)))
 
 
 def show_in(units: Mapping[str, str]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import pickle
-from collections import OrderedDict, deque
+from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from functools import cache
@@ -16,9 +16,6 @@ from calm.errors import NoEquilibrium
 
 MOST = 256
 """How many outcomes are kept, the latest."""
-
-LATELY = 4
-"""How many other things made are kept, the latest."""
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -33,7 +30,6 @@ class Memory:
 
     def __init__(self) -> None:
         self._outcomes: OrderedDict[bytes, Any] = OrderedDict()
-        self._made: deque[tuple[object, Any]] = deque(maxlen=LATELY)
         self._lock = Lock()
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
@@ -64,14 +60,6 @@ class Memory:
         solved: T = outcome
         return solved
 
-    def alike(self, key: object, make: Callable[[], T]) -> T:
-        """Return what was made lately for a key that equals this one, or make it."""
-        found = next((made for known, made in [*self._made] if known == key), None)
-        if found is None:
-            found = make()
-            self._made.append((key, found))
-        return found
-
 
 class Forgetful(Memory):
     """Keeps nothing: every line is solved."""
@@ -83,10 +71,6 @@ class Forgetful(Memory):
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
         """Return what the solver returns."""
         return solver(*given, **named)
-
-    def alike(self, key: object, make: Callable[[], T]) -> T:
-        """Make it."""
-        return make()
 
 
 class _Describing(pickle.Pickler):

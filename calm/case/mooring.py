@@ -302,14 +302,8 @@ def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> Moor
     at : distance from the top of its wire, without load [m]
     """
 
-    def rides(clamp: Clamp) -> bool:
-        return clamp.travel is not None or clamp.place == place
-
     def stays(clamp: Clamp) -> Clamp:
         return replace(clamp, at=at if clamp.place == place else clamp.at, travel=None)
 
-    pieces = (
-        piece.with_clamps(stays) if any(map(rides, piece.clamps)) else piece
-        for piece in file.pieces
-    )
+    pieces = (piece.with_clamps(stays) if piece.clamps else piece for piece in file.pieces)
     return replace(file, pieces=tuple(pieces))

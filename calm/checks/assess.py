@@ -14,6 +14,7 @@ from dataclasses import replace
 from datetime import date
 from functools import lru_cache, partial
 from itertools import chain
+from typing import Any
 
 import numpy as np
 
@@ -31,15 +32,7 @@ from calm.checks.assessment import (
     estimated_result,
 )
 from calm.checks.criterion import limits_used
-from calm.checks.finding import (
-    AS_GIVEN,
-    OWN,
-    Finding,
-    Rule,
-    State,
-    Verdict,
-    worst_of_each_rule,
-)
+from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, worst_of_each_rule
 from calm.checks.inventory import inventory_of
 from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of
@@ -180,7 +173,7 @@ def findings_of(
 
 
 @lru_cache(maxsize=16)
-def _verdicts_of(situation: Situation) -> list[tuple[Rule, list[Verdict]]]:
+def _verdicts_of(situation: Situation) -> list[tuple[Rule, list[Any]]]:
     """Return what each rule says of a situation, which several environments may have."""
     assert situation.result is not None
     file, result = situation.result.file, estimated_result(situation.result)
