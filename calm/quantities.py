@@ -54,12 +54,12 @@ class Quantity:
 
     @property
     def usual_scale(self) -> float:
-        """How many of the usual unit make one `unit`."""
+        """Return how many of the usual unit make one `unit`."""
         return _USUAL.get(self.display, 1.0)
 
     @property
     def scale(self) -> float:
-        """How many of the unit displayed make one `unit`."""
+        """Return how many of the unit displayed make one `unit`."""
         return _layout(self.unit, self.display, self.decimals)[1]
 
     @property

@@ -1,4 +1,4 @@
-"""What comes with CALM: the component catalogue, example lines, the manual, moorings to begin with.
+"""Files that come with CALM: component catalogue, example lines, manual, moorings to begin with.
 
 The first three stand inside the package once installed; in a checkout, beside it.
 """

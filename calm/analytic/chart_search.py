@@ -1,4 +1,4 @@
-"""Where on a branch of the curve a cable lies: every place that fits what is given.
+"""Search of a branch of the curve for every place where a cable fits what is given.
 
 A cable is a piece of a branch, λ_A to λ_B, enlarged H₀ times. With λ_B > |λ_A| its upper end is B;
 λ_A < 0 when it dips below its lower end. Two given sizes (tensions over w, height, distance,

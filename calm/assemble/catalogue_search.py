@@ -54,7 +54,7 @@ class Listed:
 
     @cached_property
     def own_words(self) -> str:
-        """What is written of it, hyphens as they are and as nothing."""
+        """Return what is written of it, hyphens as they are and as nothing."""
         every = (self.id, self.name, self.maker, self.kind, self.role, self.material)
         own = " ".join(every).casefold()
         return f"{own} {own.replace('-', '')}"

@@ -1,4 +1,4 @@
-"""What follows from the figures of a component: net force, mass, drags, and what they sum to."""
+"""Forces that follow from the figures of a component: net force, mass, drags, and their sums."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields

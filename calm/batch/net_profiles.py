@@ -48,7 +48,7 @@ Column = tuple[float, ...]
 
 
 class NetRows(NamedTuple):
-    """What is found of n profiles.
+    """Hold what is found of n profiles.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class NetRows(NamedTuple):
 
 
 class NetPaper(NamedTuple):
-    """What profiles are laid out on, and from where they are sought.
+    """Hold what profiles are laid out on, and from where they are sought.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ def solve_net_rows(
 
 
 def stands(net: NetProblem, paper: NetPaper) -> bool:
-    """Whether no leg is out of the water or in the seabed, and no anchor is lifted."""
+    """Return whether no leg is out of the water or in the seabed, and no anchor is lifted."""
     near = net.errors[net_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
     for i in range(len(net.legs)):
         leg, state, record = net.legs[i], net.state[i], net.lines.work.records[i][FINE]
@@ -200,7 +200,7 @@ class NetProfiles:
 
     @cached_property
     def at_rest(self) -> NetResult | None:
-        """What is measured of it there; None where a check of it fails."""
+        """Return what is measured of it there; None where a check of it fails."""
         with suppress(NoEquilibrium):
             if self.still is not None:
                 return net_result(self.net, self.still, self.still.legs)

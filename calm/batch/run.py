@@ -34,7 +34,7 @@ ATTEMPTS = 3
 
 @dataclass(frozen=True)
 class BatchOutcome:
-    """How a batch ended.
+    """Tell how a batch ended.
 
     Attributes
     ----------

@@ -40,7 +40,7 @@ class Results(NamedTuple):
 
 
 class ProfileLevels(NamedTuple):
-    """What a profile is laid out on.
+    """Hold what a profile is laid out on.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class ProfileLevels(NamedTuple):
 
 
 def levels_for(count: int, water: Water) -> ProfileLevels:
-    """What profiles of so many levels are laid out on, in the water of a mooring."""
+    """Return what profiles of so many levels are laid out on, in the water of a mooring."""
     most = count + len(water.level)
     intervals: Any = np.zeros(most + 2, record_type(Interval))
     fixed = np.column_stack([water.level, water.u, water.v, water.density])
@@ -67,7 +67,7 @@ def levels_for(count: int, water: Water) -> ProfileLevels:
 
 
 class ProfileArrays(NamedTuple):
-    """What a profile is laid out on, and its shape measured.
+    """Hold what a profile is laid out on, and its shape measured.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How the profiles of a batch end, and what that means for what is counted of them."""
+"""Endings of the profiles of a batch, and what each means for what is counted of them."""
 
 from collections.abc import Mapping
 from enum import Enum

@@ -38,7 +38,7 @@ SLICE = 0.5
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a batch is, in profiles.
+    """Count how far a batch is, in profiles.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Progress:
 
 
 class BatchWork:
-    """What is to be done in a store, which nobody else works on, and what has been done."""
+    """Hold what is to be done in a store, which nobody else works on, and what has been done."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""What may be changed to size a mooring: ``LABEL.buoyancy``, ``.length`` or ``.count``.
+"""Changes that may size a mooring: ``LABEL.buoyancy``, ``.length`` or ``.count``.
 
 A change is made in the models of the file, as if it had been written there; everything else follows
 from them.
@@ -131,7 +131,7 @@ def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
 
 
 def _count(text: str, file: MooringFile, parts: Parts) -> Adjustment:
-    """How many times a component stands in line, with its own clamps each time."""
+    """Return how many times a component stands in line, with its own clamps each time."""
     pieces = [part for part in parts if isinstance(part, Piece)]
     if len(pieces) < len(parts):
         raise LookupError("clamped instruments are not counted; only pieces in line are")

@@ -1,4 +1,4 @@
-"""How much of a mooring's shape each of its drags causes.
+"""Shares of each drag in a mooring's shape.
 
 Let y(λ₁ … λ_p) be what is to be explained, such as the knockdown, of the line whose drag i is λ_i
 times what it is. The share of drag i is that of Aumann and Shapley,
@@ -158,7 +158,7 @@ def _integral(
 
 
 def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
-    """What is seen of a point of a single line: the top of a piece, or a clamp."""
+    """Return what is seen of a point of a single line: the top of a piece, or a clamp."""
 
     def near(lines: Sequence[Line]) -> Varied:
         nearby = Nearby(lines[0], water, SETTINGS)

@@ -1,4 +1,4 @@
-"""Why a mooring stands as it does: what each drag causes, and what a change would do."""
+"""Explanation of how a mooring stands: what each drag causes, and what a change would do."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field, replace

@@ -1,4 +1,4 @@
-"""What was solved before, for a line that is edited or that stands in many environments."""
+"""Memory of what was solved before, for a line that is edited or stands in many environments."""
 
 from __future__ import annotations
 

@@ -167,8 +167,8 @@ class Net(ReadFromFile):
             raise self._why_not(water) or failure from None
 
     def _why_not(self, water: Water) -> NoEquilibrium | None:
-        """Why it sinks, held ends are out of reach, or a leg lies in a heap, if weights or lengths
-        say so.
+        """Return why it sinks, held ends are out of reach, or a leg lies in a heap, if weights or
+        lengths say so.
 
         Between every two ends the shortest way through the net counts (Floyd and Warshall).
         """
@@ -280,7 +280,7 @@ def net_result(net: Net, found: NetSolution, still: Sequence[Solution | None]) -
 
 
 def _upside_down(leg: Result) -> str:
-    """What is said of a leg with a free end that hangs or stands the other way round."""
+    """Return what is said of a leg with a free end that hangs or stands the other way round."""
     (keys,), rows = leg.file.legs, leg.components
     top, bottom = float(rows.depth_top[0]), float(rows.depth_bottom[len(rows) - 2])
     if not (keys.top.free or keys.bottom.free) or top <= bottom:
@@ -292,7 +292,7 @@ def _upside_down(leg: Result) -> str:
 
 
 def _end_loads(leg: Result, solution: Solution) -> Iterator[EndLoad]:
-    """What a leg does to where it is held, and to its anchor."""
+    """Return what a leg does to where it is held, and to its anchor."""
     (keys,), rows = leg.file.legs, leg.components
     if keys.top.held is not None:
         # what hangs down from its upper end is marched from its lower one

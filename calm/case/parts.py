@@ -212,7 +212,8 @@ class ReadFromFile:
 
 
 def below_the_seabed(file: MooringFile, solution: Solution, depth: float) -> Floats:
-    """How far below the seabed of its file every node of a line is (k+1,) [m]; NaN off its grid.
+    """Return how far below the seabed of its file every node of a line is (k+1,) [m]; NaN off its
+    grid.
 
     `depth`: of the water at the origin, or of a leg at its anchor [m].
     """

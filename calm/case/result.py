@@ -123,7 +123,8 @@ class AnchorLoad:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class ResultForms:
-    """How a solution was found, and the forms of a result in a notebook and for other libraries.
+    """Tell how a solution was found, and the forms of a result in a notebook and for other
+    libraries.
 
     `iterations` counts marches, `segments` the cuts of the final one, `miss` is how far the end of
     a line, the worst of a net's, is from where it is held: in height, of a single line [m];
@@ -246,7 +247,7 @@ class Result(Solved):
 
 @dataclass(frozen=True)
 class EndLoad:
-    """What a leg does to an end that is held, or to its anchor.
+    """Hold what a leg does to an end that is held, or to its anchor.
 
     The pull of the line and its parts up and sideways [N], its angle from the vertical [degrees];
     where the end is [m]. Of an anchor the weight in water that it needs, and has [N], and the
@@ -268,7 +269,7 @@ class EndLoad:
 
 @dataclass(frozen=True)
 class NodePlace:
-    """Where the legs of a node meet [m]; `imbalance` is what is left of their pulls there [N]."""
+    """Hold where the legs of a node meet [m]; `imbalance` is left of their pulls there [N]."""
 
     name: str
     depth: float
@@ -321,7 +322,7 @@ class NetResult(ResultForms):
 
     @cached_property
     def clamps(self) -> Clamps:
-        """What is clamped on them."""
+        """Return what is clamped on them."""
         tables = [
             leg.clamps.with_columns(index=leg.clamps.index + keys.first)
             for keys, leg in zip(self.file.legs, self.legs, strict=True)

@@ -1,4 +1,4 @@
-"""What a mooring is to reach, as a person writes it: ``knockdown(CTD) <= 20 m``."""
+"""Targets that a mooring is to reach, as a person writes them: ``knockdown(CTD) <= 20 m``."""
 
 import re
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""How sure the figures of a mooring are: it is solved for many draws of its uncertain inputs.
+"""Uncertainty of the figures of a mooring, which is solved for many draws of its inputs.
 
 Every sample is solved on the cuts of the mooring as given, or anew where that finds no equilibrium
 of the same kind, and passes every check of a solution.
@@ -146,6 +146,7 @@ def uncertain(
     mooring = result.mooring
     checked_samples(samples)
     expect_many(samples)
+    _figures(mooring, [Draw()])  # fetches what is compiled, once for the processes that are forked
     normal = normals_of(samples, seed) if normals is None else normals()
     draws = draws_of(mooring.file.uncertainty, normal)
     blocks = [draws[first : first + BLOCK] for first in range(0, samples, BLOCK)]

@@ -1,4 +1,4 @@
-"""What a person should know of a result before trusting it: a small function for each doubt."""
+"""Warnings that a person should know before trusting a result: a small function for each doubt."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a line is put together: its release, its swivels, its metals, and whether its clamps hold."""
+"""Rules of how a line is put together: release, swivels, metals, and the grip of its clamps."""
 
 import re
 from collections.abc import Iterator, Sequence

@@ -132,7 +132,7 @@ class Assessment:
 
 @dataclass(frozen=True)
 class Handling:
-    """What the rules of launch, recovery and breaks look at, or why it could not be solved."""
+    """Hold what the rules of launch, recovery and breaks look at, or why it could not be solved."""
 
     mooring: Mooring
     launch: Launch | NoEquilibrium
@@ -176,7 +176,7 @@ class Acceptance:
         environment: str,
         situation: str = AS_GIVEN,
     ) -> Iterator[Finding]:
-        """What a rule says of a mooring in an environment, accepted where it is."""
+        """Return what a rule says of a mooring in an environment, accepted where it is."""
         return (self.of(rule.find(one, mooring, environment, situation)) for one in verdicts)
 
     def _estimated(self, finding: Finding) -> Finding:

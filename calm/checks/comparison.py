@@ -1,4 +1,4 @@
-"""What a change of a design does: depth, knockdown, tension, margins, anchor and weights."""
+"""Comparison of two designs: depth, knockdown, tension, margins, anchor and weights."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -170,7 +170,7 @@ def _figures_of(design: _Design) -> _Figures:
 
 
 def _figures_of_net(result: NetResult) -> _Figures:
-    """Where its nodes and free ends are, and what its anchors bear."""
+    """Return where its nodes and free ends are, and what its anchors bear."""
     found: _Figures = {}
     for node in result.nodes:
         found[f"{node.name}.depth"] = (f"depth of node {node.name}", "depth", node.depth)

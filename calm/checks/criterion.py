@@ -62,7 +62,7 @@ def parts_of(mooring: Mooring) -> list[JudgedPart]:
 
 @dataclass(frozen=True)
 class Criterion:
-    """What a rule allows a part of the line, or the line as a whole.
+    """Hold what a rule allows a part of the line, or the line as a whole.
 
     Attributes
     ----------
@@ -220,8 +220,10 @@ def cited(file: MooringFile, *names: str) -> str:
 
 
 def said(key: LimitKey, value: float | None) -> str:
-    """A value or a default of a limit with its unit; a dash for none."""
+    """A value or a default of a limit with its unit, a time in days; a dash for none."""
     if value is None:
         return "-"
+    if key.dimension == "time":
+        return f"{value / 86_400.0:.10g} d"
     unit = DIMENSIONS[key.dimension].unit.replace("deg", "°")
     return f"{value:.10g} {unit}".strip().replace(" °", "°")

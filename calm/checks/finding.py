@@ -1,4 +1,4 @@
-"""What a rule of the design check finds."""
+"""Findings of the rules of the design check."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ON_THE_WAY = "launch, recovery, breaks"
 
 
 class State(StrEnum):
-    """How a rule judges, the least grave first.
+    """Tell how a rule judges, the least grave first.
 
     Unknown, where a figure that the rule needs is missing, is graver than a warning: it may be a
     failure. Accepted is a failure or an unknown that the design accepts with a reason; estimated
@@ -44,7 +44,7 @@ class State(StrEnum):
 
     @property
     def sign(self) -> str:
-        """What stands before a verdict or after a figure, legible without colour."""
+        """Return what stands before a verdict or after a figure, legible without colour."""
         return "✓◦≈~?!"[self.severity]
 
 
@@ -58,7 +58,7 @@ def worst_state(states: Iterable[State]) -> State:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a rule says of a mooring, or of one of its components.
+    """Hold what a rule says of a mooring, or of one of its components.
 
     Attributes
     ----------

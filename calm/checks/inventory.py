@@ -1,4 +1,4 @@
-"""What comes to the deck: every piece and every clamped instrument, with its mass and weight."""
+"""Inventory of the deck: every piece and every clamped instrument, with its mass and weight."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -44,7 +44,7 @@ class InventoryItem:
 
 @dataclass(frozen=True)
 class Total:
-    """What all items come to, of those whose figures are known.
+    """Hold what all items come to, of those whose figures are known.
 
     Attributes
     ----------

@@ -182,7 +182,8 @@ _SEABED, _HELD = object(), object()
 
 
 class NetGraph:
-    """What holds what in a net: pieces by their index in the file, nodes by name, what is fixed.
+    """Tell what holds what in a net: pieces by their index in the file, nodes by name, what is
+    fixed.
 
     Parameters
     ----------
@@ -286,8 +287,8 @@ class NetGraph:
         return float(lift.sum()), weight, required_margin(whole, weight)
 
     def _beyond_help(self, chain: Sequence[Hashable], at: int, part: list[int]) -> bool:
-        """Whether it parts the cluster of all floats that are left, or what leads from it to the
-        release: as of a single line.
+        """Return whether it parts the cluster of all floats that are left, or what leads from it to
+        the release: as of a single line.
         """
         floats = {one for one in part if self._floats(one)}
         if not floats:

@@ -1,4 +1,4 @@
-"""Where the line stands: tilt, depth, knockdown, excursion, and the reserve of a surface float."""
+"""Rules of where the line stands: tilt, depth, knockdown, excursion, reserve of a surface float."""
 
 from collections.abc import Callable, Iterator
 from functools import partial

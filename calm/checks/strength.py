@@ -1,4 +1,4 @@
-"""Whether every piece bears its tension, the line stays taut, and the anchor holds."""
+"""Rules of strength: every piece bears its tension, the line stays taut, and the anchor holds."""
 
 from collections.abc import Iterator, Sequence
 from functools import partial

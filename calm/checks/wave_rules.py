@@ -1,4 +1,4 @@
-"""What waves do to a mooring: its greatest tension, whether it falls slack, how long it lasts."""
+"""Rules of waves: the greatest tension, whether the line falls slack, how long it lasts."""
 
 from __future__ import annotations
 

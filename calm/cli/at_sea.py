@@ -160,7 +160,7 @@ def _plan(deck: Deck) -> dict[str, Any]:
 
 
 def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
-    """What the sheets cannot show of the names in a file, and where."""
+    """Return what the sheets cannot show of the names in a file, and where."""
     from calm.report.folder import lacking
 
     signs = lacking(text for text, _ in _texts(deck))
@@ -172,7 +172,7 @@ def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
 
 
 def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
-    """What a person wrote, and where it stands."""
+    """Return what a person wrote, and where it stands."""
     from calm.report.provenance import title_pairs
 
     for name, text in title_pairs(deck.file):
@@ -188,7 +188,7 @@ def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
 
 
 def _folders(designs: Sequence[reading.DesignFile], output: Path) -> list[Path]:
-    """Where each mooring's sheets go.
+    """Return where each mooring's sheets go.
 
     UsageError: two moorings would have the same folder, or a file that is read stands where one
     goes.

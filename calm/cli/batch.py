@@ -142,7 +142,7 @@ def _summarized(output: Path, mooring: Mooring | net.Net, stop: Event) -> bool:
 
 
 def _implausible(outcome: BatchOutcome, mooring: Mooring | net.Net, record: Record) -> str:
-    """How many profiles have a current that cannot be true, and the first of them."""
+    """Return how many profiles have a current that cannot be true, and the first of them."""
     from calm.batch.statuses import first_implausible
 
     greatest = mooring.file.environment.maximum_speed

@@ -120,7 +120,8 @@ def _read(
     against: Path | None,
     ready: Callable[[], None],
 ) -> tuple[list[DesignFile], list[Path], Mooring | Net | None]:
-    """What is judged, the tows among the files, and the earlier design; or all their mistakes.
+    """Return what is judged, the tows among the files, and the earlier design; or all their
+    mistakes.
 
     `ready` is called while other processes read.
     """
@@ -249,7 +250,7 @@ def _concluded(
     draws: tuple[int, int] | None,
     shared: uncertain.Mapped,
 ) -> CheckedMooring:
-    """What is judged of a mooring as a whole, and the `number`th section of the report.
+    """Return what is judged of a mooring as a whole, and the `number`th section of the report.
 
     `draws` are samples and seed of the probabilities, where they are asked for; `shared` has blocks
     of them solved.

@@ -131,7 +131,7 @@ def _is_folder(files: tuple[Path, ...], output: Path) -> bool:
 
 
 def _targets(files: tuple[Path, ...], output: Path) -> list[Path]:
-    """Where each mooring file will stand.
+    """Return where each mooring file will stand.
 
     UsageError: two would stand in one place, or one in the place of a file that is read.
     """

@@ -64,7 +64,7 @@ _ROUNDING = 1e-9  # of a step: what unit conversion may leave between the last s
 
 
 def option(name: str) -> str:
-    """How a parameter is written on the command line."""
+    """Return how a parameter is written on the command line."""
     return f"--{name.replace('_', '-')}"
 
 

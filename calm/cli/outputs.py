@@ -1,4 +1,4 @@
-"""What a command hands back: its results, where they were asked for; narration; its exit code."""
+"""Outputs of a command: its results, where they were asked for; narration; its exit code."""
 
 from __future__ import annotations
 

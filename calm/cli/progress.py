@@ -80,7 +80,9 @@ def bar(progress: Progress) -> str:
 
 
 def state(progress: Progress, seconds: float) -> str:
-    """How many are done, the rate, the time that the rest takes at it, and the failures so far."""
+    """Return how many are done, the rate, the time that the rest takes at it, and the failures so
+    far.
+    """
     from calm.batch.statuses import Ending
 
     text = f"{grouped(progress.done)} of {grouped(progress.total)} profiles"
@@ -126,7 +128,7 @@ def mapped(
     what: str,
     meanwhile: Callable[[], object] | None = None,
 ) -> list[_Done]:
-    """What a function makes of every task, in their order; how far it is is shown.
+    """Return what a function makes of every task, in their order; how far it is is shown.
 
     Parameters
     ----------

@@ -143,7 +143,7 @@ def _loaded(
 def _load(
     task: tuple[Path, Sequence[str] | None, Sequence[Path]],
 ) -> list[Mooring | Net | Tow] | tuple[Problem, ...]:
-    """What was read, or what is wrong with it."""
+    """Return what was read, or what is wrong with it."""
     from calm.case.net import load_in
 
     try:

@@ -1,4 +1,4 @@
-"""What archives want a file to say of itself: ACDD 1.3 and OceanSITES 1.4 beside CF.
+"""Attributes that archives want of a file: ACDD 1.3 and OceanSITES 1.4 beside CF.
 
 Names and tables are those of the OceanSITES Data Format Reference Manual 1.4 (2020) and of the
 Attribute Convention for Data Discovery 1.3.

@@ -1,4 +1,4 @@
-"""What goes to sea with a mooring: what hangs where, in which order, cut how, and how heavy.
+"""Lists of what goes to sea with a mooring: what hangs where, in which order, how heavy.
 
 The one model of the sheets and of their files.
 """

@@ -108,7 +108,7 @@ class DeckItem:
 
 @dataclass(frozen=True)
 class DeckRow:
-    """What shares a row on paper: glass on its chain, floats shackled to one another.
+    """Hold what shares a row on paper: glass on its chain, floats shackled to one another.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What is cut, and how exactly; what joins the pieces, with its spares; and what is shipped."""
+"""Lists of what is cut, and how exactly; of what joins the pieces, with spares; and of freight."""
 
 import re
 from collections import Counter

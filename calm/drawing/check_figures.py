@@ -163,7 +163,7 @@ def _widened(scale: graph.Scale, extent: float) -> graph.Scale:
 
 
 def _draw_breaks(page: graph.Graph, place: Place, backup: Sequence[Break]) -> None:
-    """What is left to lift after each break, and what is required; grey where it is not judged."""
+    """Draw what is left to lift after each break, and what is required; grey where not judged."""
     number = np.array([each.break_after for each in backup], dtype=np.float64)
     required = np.array([each.required for each in backup])
     margins = np.array([each.margin for each in backup])

@@ -57,7 +57,7 @@ class Ship:
 
 @dataclass(frozen=True)
 class Motion:
-    """What a chain went through: states by growing time, each a step of the mover."""
+    """Hold what a chain went through: states by growing time, each a step of the mover."""
 
     mover: Mover
     states: tuple[ChainState, ...]

@@ -1,4 +1,4 @@
-"""What the states of a chain tell of its pieces: depths, tensions, shapes."""
+"""Record of a fall: depths, tensions and shapes of the pieces, from the states of a chain."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ MOMENTS = 5
 
 @dataclass(frozen=True)
 class DepthReached:
-    """How deep a piece or clamp comes while the line falls and straightens.
+    """Tell how deep a piece or clamp comes while the line falls and straightens.
 
     Attributes
     ----------
@@ -70,7 +70,8 @@ class ShapeInTime:
 
 @dataclass(frozen=True)
 class FallPath:
-    """What happens over time, from the moment the anchor is let go to its touchdown; (t,) each.
+    """Hold what happens over time, from the moment the anchor is let go to its touchdown; (t,)
+    each.
 
     Attributes
     ----------

@@ -44,7 +44,7 @@ def _overturned(before: Floats, after: Floats) -> bool:
 
 @dataclass(frozen=True)
 class ChainState:
-    """Where a chain is.
+    """Hold where a chain is.
 
     Attributes
     ----------
@@ -302,7 +302,7 @@ def _solved(
 
 @lru_cache
 def _places(bars: int) -> Integers:
-    """Where the blocks stand in the band, one column after another."""
+    """Return where the blocks stand in the band, one column after another."""
     node = np.arange(3)[:, np.newaxis] + 4 * np.arange(bars + 1)
     pull = 4 * np.arange(bars) + 3
     above, below = node[:, :-1], node[:, 1:]

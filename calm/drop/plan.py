@@ -29,7 +29,7 @@ BRIEF = 60.0
 
 @dataclass(frozen=True)
 class RunStart:
-    """Where the first piece goes over the side, and how long the run is.
+    """Hold where the first piece goes over the side, and how long the run is.
 
     Attributes
     ----------

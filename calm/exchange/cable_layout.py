@@ -236,7 +236,7 @@ class CableLayout:
         self.design.lay([*last, *items, *first], upper, lower)
 
     def _end(self, at: _End) -> tuple[list[model.ImportedPiece], str, bool]:
-        """What stands at an end, what holds it, and whether it is a lower one."""
+        """Return what stands at an end, what holds it, and whether it is a lower one."""
         if isinstance(at, str):
             return [], model.joined_at(at), False
         values, token = at.values, at.token

@@ -170,7 +170,7 @@ def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
 
 
 def _lift(figures: dict[str, model.FigureOrWord]) -> float:
-    """What a point lifts, as a mass [kg]."""
+    """Return what a point lifts, as a mass [kg]."""
     return CATALOGUE_DENSITY * float(figures["volume"]) - float(figures["mass"])
 
 

@@ -181,7 +181,7 @@ class _Reading:
 
 @dataclass
 class _Parts:
-    """What names stand for: in the catalogue as asked, in the library, or in the catalogue."""
+    """Look names up: in the catalogue as asked, in the library, or in the catalogue."""
 
     reading: _Reading
     stands_for: Mapping[str, str]

@@ -1,4 +1,4 @@
-"""What every component definition may say, and the conventions its figures follow.
+"""Keys that every component may have, and the conventions that its figures follow.
 
 A field is text with a unit in the file, and here an SI float, angles in degrees, None where the
 definition does not say. Net forces are those in sea water of `CATALOGUE_DENSITY` under standard
@@ -214,7 +214,7 @@ class FatigueKeys(Model):
 
 
 class Definition(Model):
-    """What every component may say, whatever its kind.
+    """Hold what every component may say, whatever its kind.
 
     `source` is that of every figure but those for which `sources` names another, field by field.
     `searched` are the fields that were looked for and that no source prints; `prefer` is the id of

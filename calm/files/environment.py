@@ -1,4 +1,4 @@
-"""What a line is in, moored or towed: water or air, its depth, currents, wind and seabed."""
+"""Environment of a line, moored or towed: water or air, its depth, currents, wind and seabed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _MAXIMUM_SPEED = 5.0
 
 
 class Position(Model):
-    """Where the mooring stands [degrees]."""
+    """The position of the mooring [degrees]."""
 
     latitude: Annotated[float, QuantityField("latitude", at_least=-90, at_most=90)] = described(
         "north positive, or degrees and minutes: 48 18.0 N", "48.3 deg"
@@ -52,7 +52,7 @@ class SeabedKeys(Model):
 
     @property
     def plane(self) -> tuple[float, float]:
-        """How much deeper it is per metre to the east and to the north [-]."""
+        """Return how much deeper it is per metre to the east and to the north [-]."""
         way, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
         return steep * math.sin(way), steep * math.cos(way)
 

@@ -1,4 +1,4 @@
-"""What a mooring file keeps beside the design: document, units, serial numbers, what went out."""
+"""Keys of a mooring file beside the design: document, units, serial numbers, what went out."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def unit_meant(text: str) -> tuple[str, str] | None:
 
 
 class Revision(definition.Model):
-    """What a revision of the document changed."""
+    """A revision of the document, and what it changed."""
 
     revision: Text = described("letter or number", "B")
     date: Day | None = optional("day, e.g. 2026-11-20", "2026-11-20")
@@ -82,7 +82,7 @@ class Revision(definition.Model):
 
 
 class DocumentKeys(definition.Model):
-    """What the title block of a drawing says."""
+    """The title block of a drawing."""
 
     id: Text | None = optional("of the drawing", "M-2026-17")
     revision: Text | None = optional("letter or number", "B")
@@ -136,7 +136,7 @@ class ReleaseKeys(definition.Model):
 
 
 class DeployedItem(definition.Model):
-    """What went over the side for a piece or a clamp; `length` [m] is what a cable was cut to."""
+    """A piece or a clamp as it went over the side; a cable was cut to `length` [m]."""
 
     label: Text = described("of the piece or clamp in results", "wire-jacketed-8")
     serial: Text | None = optional("serial number; for a count, a list with one for each", 12345)
@@ -145,7 +145,7 @@ class DeployedItem(definition.Model):
 
 
 class Deployed(definition.Model):
-    """Where and when the mooring was deployed, and what of it differs from the design."""
+    """The deployment: where and when, and what of the mooring differs from the design."""
 
     date: Moment | None = optional("day or time, e.g. 2027-03-02T10:40", "2027-03-02T10:40")
     position: Position | None = optional(
@@ -162,7 +162,7 @@ class Deployed(definition.Model):
 
 
 class Equipment(definition.Model):
-    """What the file says of the individual thing at a place of the line.
+    """Hold what the file says of the individual thing at a place of the line.
 
     `serial` is a text, or as many as the `count` of the item; of an item, one of it is chosen for
     each piece.

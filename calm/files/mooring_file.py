@@ -34,7 +34,7 @@ STAND_IN = ""
 
 
 class TowKeys(Model):
-    """What tows the line: speed over ground [m/s], where to [degrees], height above water [m]."""
+    """A tow: speed over ground [m/s], course [degrees], height of the tow point [m]."""
 
     speed: Annotated[float, QuantityField("speed", above=0)] = described(
         "of the ship over the ground", "0.5 m/s"
@@ -48,7 +48,7 @@ class TowKeys(Model):
 
 
 class Solver(Model):
-    """How the line is solved; `angle_step` in radians, `tolerance` as a share of the depth."""
+    """Settings of the solver: `angle_step` in radians, `tolerance` as a share of the depth."""
 
     angle_step: Annotated[
         float, QuantityField("angle", above=0, at_most=10), AfterValidator(math.radians)
@@ -79,7 +79,7 @@ class Solver(Model):
 
 @dataclass(frozen=True, order=True)
 class Place:
-    """Where a piece or a clamp stands in the line as read, by which it is known from there on.
+    """Hold where a piece or a clamp stands in the line as read, by which it is known from there on.
 
     A row of the file is the place of what it gives: `Place(3)` its fourth item, whatever the count
     of that, `Place(3, clamp=0)` the first clamp of it.

@@ -88,7 +88,7 @@ AngleSpread = Annotated[
 
 
 class Uncertainty(Model):
-    """How sure what a design stands on is: one draw of each a mooring."""
+    """The spread of what a design stands on: one draw of each a mooring."""
 
     current: ShareSpread = described(
         "of the speed, at all depths alike", "10 %", default=Spread(0.1)

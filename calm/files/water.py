@@ -1,4 +1,4 @@
-"""What is in the water and on it: its density, the wind over it, the waves that run on it."""
+"""Keys of the water and of what is on it: its density, the wind, the waves."""
 
 from __future__ import annotations
 

@@ -24,11 +24,10 @@ from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels,
 from calm.files.mooring_file import clamps_down
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
-from calm.motion.line_places import serials_of
-from calm.motion.line_response import Forward, LineResponse, labels_of, points
+from calm.motion.line_response import Forward, LineResponse, forwards_of, labels_of, points
+from calm.motion.matching import serials_of
 from calm.motion.measurements import MooringMeasurements, by_neighbours, level_names
 from calm.motion.unknown_currents import unknown_state
-from calm.motion.whole_record import forwards_of
 from calm.physics.line import Floats
 from calm.records.record import Levels, Record
 

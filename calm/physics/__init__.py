@@ -1,1 +1,1 @@
-"""What the sea does to a line: drag, current, one element, the march. Numbers and arrays only."""
+"""Physics of a line in the sea: drag, current, one element, the march. Numbers and arrays only."""

@@ -120,7 +120,7 @@ def measured_drag(speeds: Sequence[float], forces: Sequence[float]) -> float:
 
 
 class Friction(Enum):
-    """How the current drags a cable or chain along itself; the name is that of the files.
+    """Tell how the current drags a cable or chain along itself; the name is that of the files.
 
     With Kt for a metre at 1 m/s, t the unit vector along the cable and Vt = (V·t) t:
 

@@ -108,7 +108,7 @@ def immersed_shares(form: int, rows: Sequence[HullRow], share: float) -> tuple[f
 
 
 class Riding(NamedTuple):
-    """How a float rides at the surface.
+    """Tell how a float rides at the surface.
 
     Attributes
     ----------
@@ -135,7 +135,7 @@ class Riding(NamedTuple):
 
 @dataclass(frozen=True)
 class Floating:
-    """What a float is besides its buoyancy, for when it is at the surface.
+    """Hold what a float is besides its buoyancy, for when it is at the surface.
 
     Attributes
     ----------

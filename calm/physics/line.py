@@ -108,7 +108,7 @@ def write_element(
 
 @dataclass(frozen=True)
 class Trace:
-    """What a recorded march leaves: k + 1 nodes and the k elements between, free end first.
+    """Hold what a recorded march leaves: k + 1 nodes and the k elements between, free end first.
 
     Attributes
     ----------
@@ -304,7 +304,7 @@ class Line(_Arrays):
 
     @property
     def _of_pieces(self) -> dict[str, Any]:
-        """What it holds of every piece."""
+        """Return what it holds of every piece."""
         return {
             column.name: getattr(self, column.name)
             for column in fields(self)

@@ -60,7 +60,7 @@ NO_CUTS = Cuts(np.zeros(0), np.zeros(0, np.int64))
 
 @dataclass(frozen=True)
 class End:
-    """Where and how a march ended.
+    """Hold where and how a march ended.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What components are made of: the materials known, and what follows from each."""
+"""Materials that components are made of, and what follows from each."""
 
 import re
 from dataclasses import dataclass

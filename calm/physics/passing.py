@@ -51,7 +51,7 @@ SHORT = 1e-6
 
 
 class How(NamedTuple):
-    """How a line is to be marched.
+    """Tell how a line is to be marched.
 
     Attributes
     ----------

@@ -228,7 +228,7 @@ def drag_on(
 
 
 def varied(moored: Moored, body: RefereeBody, depth: float, speed: float) -> float:
-    """How many times its constant drag a body has at a speed across it [m/s]."""
+    """Return how many times its constant drag a body has at a speed across it [m/s]."""
     if body.smooth == 0.0:
         return 1.0
     viscosity = interpolated(moored.viscosity_level, moored.viscosity, depth)
@@ -244,7 +244,7 @@ def strumming(
     w: float,
     across: float,
 ) -> float:
-    """How much strumming raises the normal drag of a cable above that at rest.
+    """Return how much strumming raises the normal drag of a cable above that at rest.
 
     `across` : speed of the current across its axis [m/s]
     """

@@ -84,7 +84,7 @@ def sphere_coefficient(reynolds: float) -> float:
 
 
 class Smooth(NamedTuple):
-    """What of a smooth sphere or cylinder, and of the water about it, sets its drag.
+    """Hold what of a smooth sphere or cylinder, and of the water about it, sets its drag.
 
     Attributes
     ----------
@@ -172,7 +172,7 @@ def _turned(
 
 @dataclass(frozen=True)
 class DragCurve:
-    """How the drag of a smooth sphere or cylinder goes with the Reynolds number.
+    """Tell how the drag of a smooth sphere or cylinder goes with the Reynolds number.
 
     Attributes
     ----------

@@ -182,7 +182,7 @@ def closure(
 
 
 def bears_at_a_point(moored: Moored, shape: RefereeShape, element: int) -> bool:
-    """Whether the seabed can bear on an element at a point: a rigid piece or a clamp."""
+    """Return whether the seabed can bear on an element at a point: a rigid piece or a clamp."""
     if element >= shape.nodes - 1:
         return False
     piece = int(shape.record[6][element + 1])

@@ -1,4 +1,4 @@
-"""How a rope stretches: the curve of its elongation."""
+"""Stretch of a rope, by the curve of its elongation."""
 
 from __future__ import annotations
 

@@ -136,7 +136,7 @@ def drag_factor(ratio: float) -> float:
 
 
 class Vibration(NamedTuple):
-    """How a cable strums: the law of Bourget & Marichal as the march takes it.
+    """Tell how a cable strums: the law of Bourget & Marichal as the march takes it.
 
     Attributes
     ----------

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from calm.errors import CalmError, refused
 from calm.physics.line import Floats
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
-from calm.records.instrument_text import is_instrument_text, read_instrument_text
+from calm.records.instrument_text import reader_of
 from calm.units import QuantityError, unit_factor
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def holds_arrays(path: Path) -> bool:
     for begin, kind in _KINDS.items():
         if signature.startswith(begin):
             raise refused(path, f"is {kind}; NetCDF, zarr or CSV is read")
-    return bool(engine_of(path)) or is_instrument_text(path)
+    return bool(engine_of(path) or reader_of(path))
 
 
 @contextmanager
@@ -96,6 +96,10 @@ def reading(path: Path) -> Iterator[None]:
 @contextmanager
 def opened(path: Path) -> Iterator[xr.Dataset]:
     """Open a dataset; what is wrong with the file is an InputError that says what it holds."""
+    if not path.exists():
+        raise refused(path, "no such file")
+    if not holds_arrays(path):
+        raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
     with reading(path), open_current(path) as dataset:
         try:
             yield dataset
@@ -113,8 +117,8 @@ def open_current(path: Path) -> xr.Dataset:
             path, engine="zarr", decode_times=False, cache=False, consolidated=False
         )
     engine = engine_of(path)
-    if not engine:
-        return read_instrument_text(path)
+    if not engine and (read := reader_of(path)):
+        return read(path)
     return xr.open_dataset(path, engine=engine, decode_times=False, cache=False)
 
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem, UsageError, refused
+from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES_MEASURED, MeasuredQuantity
 from calm.records import cf_files, velocity
@@ -153,8 +153,6 @@ def split_label(text: str) -> tuple[str, Path]:
 def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
-    if not cf_files.holds_arrays(path):
-        raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
     with cf_files.opened(path) as dataset:
         file = _SeriesFile(velocity.with_components(dataset), path.name, flags, seabed)
         found = {name: series for name in names if (series := file.series(name))}

@@ -1,4 +1,4 @@
-"""What a design check concludes: the worst in each environment, and what an engineer signs.
+"""Conclusions of a design check: the worst in each environment, and what an engineer signs.
 
 The figures that decide are on page one of the report and in its JSON.
 """
@@ -76,6 +76,7 @@ class CheckFacts:
     Attributes
     ----------
     mooring : its name
+    environments : their names
     columns : what each rule finds in each environment, and `ON_THE_WAY`
     titles : name and value of what the title block says
     sha256 : of the mooring file, byte for byte; None where it can no longer be read
@@ -85,6 +86,7 @@ class CheckFacts:
     """
 
     mooring: str
+    environments: frozenset[str]
     columns: Columns
     titles: tuple[tuple[str, str], ...]
     sha256: str | None
@@ -114,7 +116,7 @@ class CheckFacts:
 
 def facts_of(assessment: Assessment) -> CheckFacts:
     """Return what is signed of a mooring that is judged."""
-    file = assessment.mooring.file
+    file = replace(assessment.mooring.file, name=assessment.name)
     every = (*assessment.all_findings(), *assessment.tighter_findings())
     anchors = [one for one in every if one.rule == "anchor-weight" and one.value is not None]
     columns = {
@@ -122,6 +124,7 @@ def facts_of(assessment: Assessment) -> CheckFacts:
     }
     return CheckFacts(
         assessment.name,
+        frozenset(one.mooring.file.environment.name or OWN for one in assessment.stands),
         columns | {ON_THE_WAY: by_rule(assessment.findings)},
         tuple(title_pairs(file)),
         _file_hash(Path(file.path)),
@@ -228,7 +231,7 @@ def facts_part(facts: CheckFacts, title: str = "") -> ReportPart:
 
 
 def left_out(facts: CheckFacts) -> Iterator[Table]:
-    """What is accepted and what departs, where page one has not room for all of it."""
+    """Return what is accepted and what departs, where page one has not room for all of it."""
     shown = facts_part(facts).blocks
     return (table for table in settled_tables(facts) if table not in shown)
 
@@ -254,7 +257,7 @@ def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> f
 
 
 def settled_tables(facts: CheckFacts) -> Iterator[Table]:
-    """What the designer has decided: what is accepted, and limits of the design's own."""
+    """Return what the designer has decided: what is accepted, and limits of the design's own."""
     terms = attrgetter("accept.reason", "accept.by", "accept.date", "accept.until")
     groups = check_tables.grouped(facts.accepted, terms)
     rows = [(accept, found) for found in groups if (accept := found[0].accept) is not None]

@@ -1,4 +1,4 @@
-"""What is judged of a mooring as tables; findings, the worst of many, and the verdict in words."""
+"""Tables of the design check: findings, the worst of many, and the verdict in words."""
 
 import re
 from collections import Counter
@@ -69,13 +69,13 @@ def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
 
 
 def to_mend(findings: Iterable[Finding]) -> list[list[Finding]]:
-    """What fails, is unknown or warns, the gravest first, what says the same together."""
+    """Return what fails, is unknown or warns, the gravest first, what says the same together."""
     states = (State.FAIL, State.UNKNOWN, State.WARN)
     return joined(one for one in worst_by_part(findings) if one.state in states)
 
 
 def _wording(finding: Finding) -> str:
-    """What a finding says and advises, without its component and figures."""
+    """Return what a finding says and advises, without its component and figures."""
     text = f"{finding.message} {finding.remedy or ''}"
     if finding.component is not None:
         text = text.replace(finding.component, "")
@@ -122,7 +122,7 @@ def said_of(finding: Finding) -> Cell:
 
 
 def counted_states(findings: Iterable[Finding]) -> Counter[State]:
-    """How many parts of one or several moorings each state is the worst of, rule by rule.
+    """Return how many parts of one or several moorings each state is the worst of, rule by rule.
 
     A missing figure of a component is counted once.
     """

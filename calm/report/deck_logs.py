@@ -108,7 +108,7 @@ _FIRED = ("enabled\nUTC", "range", "command\nsent, UTC", "confirmed\nUTC")
 
 
 def _station(deck: Deck, day: str) -> Table:
-    """Who was where and in what weather; what the file does not say is written in by hand."""
+    """Return who was where in what weather; what the file does not say is written in by hand."""
     document = deck.file.document
     known = {
         "ship": document.ship if document else None,

@@ -37,7 +37,7 @@ _NEAR_THE_END = 0.3  # of a column: where a break is looked for
 
 
 class Paper(StrEnum):
-    """What the sheets are printed on."""
+    """Hold what the sheets are printed on."""
 
     A4 = "a4"
     A3 = "a3"
@@ -78,7 +78,7 @@ class _PageColumn:
 
     @property
     def end(self) -> float:
-        """Where the parts end."""
+        """Return where the parts end."""
         return self.parts[-1].top + self.parts[-1].height
 
 
@@ -186,7 +186,7 @@ class _Diagram:
             self._draw_continued(page, left, end, one.below)
 
     def _draw_continued(self, page: Pen, left: float, top: float, words: str) -> None:
-        """Where a line is parted: its two ends carry the same letter."""
+        """Draw where a line is parted: its two ends carry the same letter."""
         x, text = left + self.column.line_at, left + self.column.text[0]
         page.line(x, top, x, top + _CONTINUED, stroke=INK, stroke_width=1.2, stroke_dasharray="2 2")
         page.draw(

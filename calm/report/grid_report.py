@@ -1,4 +1,4 @@
-"""What was put onto fixed levels: the scales found, sections over time, words for a report."""
+"""Report of what was put onto fixed levels: the scales found, sections over time, words."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Where a report comes from: title block, inputs, versions, date and a hash."""
+"""Provenance of a report: title block, inputs, versions, date and a hash."""
 
 import hashlib
 import json
@@ -228,10 +228,11 @@ def degrees_text(degrees: float, sides: str, digits: int) -> str:
 def inputs_part(inputs: Sequence[tuple[str, MooringFile, Water]]) -> ReportPart:
     """Return the environments, the mooring file, the currents, the hash and the versions.
 
-    The inputs are one mooring or tow as read in each of its environments: the name of that, the
-    file, and its water.
+    The inputs are one mooring or tow, or each leg of a net, as read in each of its environments:
+    the name of that, the file, and its water.
     """
-    files, waters = [file for _, file, _ in inputs], [(name, water) for name, _, water in inputs]
+    files = [file for _, file, _ in inputs]
+    waters = list({name: water for name, _, water in reversed(inputs)}.items())[::-1]
     text = source_text(files[0])
     said = "The file could not be read again." if text is None else text.rstrip()
     origin = (f"SHA-256 of the inputs: {input_hash(files)}", f"Computed with {made_by()}")

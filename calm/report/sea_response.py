@@ -1,4 +1,4 @@
-"""What waves do to a mooring, as a person reads it."""
+"""Report of what waves do to a mooring."""
 
 from collections.abc import Sequence
 from math import isnan

@@ -1,4 +1,4 @@
-"""What a result says: the table of its line, its marks, and the words around it.
+"""Words about a result: the table of its line, its marks, and what is said around it.
 
 Of a net they are the table of its legs, its nodes, and what its ends bear.
 """
@@ -68,9 +68,10 @@ def summary_of(result: Result | TowResult) -> tuple[Prose, ...]:
 
 
 def quality_of(result: Result | TowResult) -> Prose:
-    """How good the solution is, and how it was reached."""
+    """Return how good the solution is, and how it was reached."""
     good, end = result.accuracy, "anchor" if _anchored(result) else "lower end"
-    end = "tow point" if isinstance(result, TowResult) else end
+    if isinstance(result, TowResult):
+        end = "tow point"
     pull = "" if good.anchor is None else f", at the {end} {good.anchor:.2g} N"
     return Prose(
         (
@@ -217,7 +218,7 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
 
 
 def tilt_state(component: Component, tilt: float) -> State | None:
-    """How a tilt [deg] is marked: beyond `max_tilt` the component is not to be trusted."""
+    """Return how a tilt [deg] is marked: beyond `max_tilt` the component is not to be trusted."""
     if component.max_tilt is not None and tilt > component.max_tilt:
         return State.FAIL
     if component.warn_tilt is not None and tilt > component.warn_tilt:
@@ -226,7 +227,8 @@ def tilt_state(component: Component, tilt: float) -> State | None:
 
 
 def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
-    """How a safety factor is marked: too small, or the piece bears more than its working load.
+    """Return how a safety factor is marked: too small, or the piece bears more than its working
+    load.
 
     The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
     mooring, for a synthetic cable, or for steel. What is not known, NaN, is not marked.
@@ -279,7 +281,7 @@ def leg_titles(result: Result | NetResult) -> dict[str, str]:
 
 
 def ends_told(line: Result) -> tuple[str | None, str | None]:
-    """What a leg comes from and leads to; None where it ends at the sea and on the seabed."""
+    """Return what a leg comes from and leads to; None where that is the sea or the seabed."""
     if not line.file.legs:
         return None, None
     top, bottom = line.file.legs[0].ends
@@ -290,7 +292,7 @@ def ends_told(line: Result) -> tuple[str | None, str | None]:
 
 
 def end_text(end: EndKeys) -> str:
-    """What holds an end of a leg, in words."""
+    """Return what holds an end of a leg, in words."""
     if end.join is not None:
         return f"node {end.join}"
     if end.held is not None:
@@ -321,7 +323,7 @@ def _ends(result: NetResult) -> Iterator[Table | Prose]:
 
 
 def _convergence(result: NetResult) -> str:
-    """How the net was solved and how good that is."""
+    """Return how the net was solved and how good that is."""
     accuracy = result.accuracy
     left = max((node.imbalance for node in result.nodes), default=0.0)
     return (

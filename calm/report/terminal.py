@@ -1,4 +1,4 @@
-"""What CALM says on a terminal: tables without rules, and nothing that hangs on colour alone."""
+"""Blocks of a report on a terminal: tables without rules; nothing hangs on colour alone."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence

@@ -1,4 +1,4 @@
-"""What a verification found: tables for people, a document for programs."""
+"""Report of a verification: tables for people, a document for programs."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence

@@ -62,7 +62,7 @@ class BatchAccessor:
         return draw_shape(self._dataset, time)
 
     def _of(self, label: str, quantity: str, of_component: str) -> xr.DataArray:
-        """What a variable has for a component, or that of the same quantity for a clamp."""
+        """Return what a variable has for a component, or that of the same quantity for a clamp."""
         prefix, index = place_of(self._dataset, label)
         variable = f"{prefix}{quantity}" if prefix else of_component
         dimension = "clamp" if prefix else "component"

@@ -1,4 +1,4 @@
-"""What is unknown in a mooring or a tow and how it is found. Arrays in, `Solution` out."""
+"""Solver of a mooring or a tow: what is unknown, and how it is found. Arrays in, `Solution` out."""
 
 from calm.solve.fit import fit_length as fit_length
 from calm.solve.fit import fit_tow_length as fit_tow_length

@@ -1,4 +1,4 @@
-"""What every solution must satisfy, recomputed from its coordinates without the march.
+"""Audit that every solution must pass, recomputed from its coordinates without the march.
 
 Closure: buoyancy and drag of every element from the final positions and axes sum to the force at
 the line's end. Moments: every axis lies along the mean of the forces at its two ends, and a cable

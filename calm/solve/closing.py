@@ -45,7 +45,7 @@ on fixed ones."""
 
 
 class Root(NamedTuple):
-    """Where a line closes: its unknown, the value of it, the miss and its slope there.
+    """Hold where a line closes: its unknown, the value of it, the miss and its slope there.
 
     `found` is false where the miss does not change its sign; a miss of NaN shows a march that
     stopped.

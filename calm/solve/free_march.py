@@ -44,7 +44,7 @@ class FallingAnchor:
 
 @dataclass(frozen=True)
 class Meeting:
-    """What is wrong where two marches meet, or a march meets its anchor.
+    """Hold what is wrong where two marches meet, or a march meets its anchor.
 
     Attributes
     ----------

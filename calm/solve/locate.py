@@ -1,4 +1,4 @@
-"""Where the root is: below the surface from the upright side, else at the surface float."""
+"""Search for the root: below the surface from the upright side, else at the surface float."""
 
 from math import isnan, nan, sqrt
 from typing import NamedTuple

@@ -144,7 +144,7 @@ def refuse_endless(line: Line, water: Water) -> None:
 
 
 class AskedSearch(NamedTuple):
-    """What `find_asked` is asked for."""
+    """Hold what `find_asked` is asked for."""
 
     search: Search
     referee: Referee
@@ -188,7 +188,7 @@ def tell(found: FoundShape, told: MutableSequence[float]) -> None:
 
 
 def as_told(told: Sequence[float]) -> FoundShape:
-    """What was found, by what was written down."""
+    """Return what was found, by what was written down."""
     whole = [int(told[i]) for i in range(len(told)) if i in WHOLE]
     ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = whole
     unknown = Unknown(told[GOAL], sought, bool(rides), bool(lands), stages)

@@ -98,7 +98,7 @@ class NetSearch:
 
     @property
     def lands(self) -> tuple[bool, ...]:
-        """Which legs are taken to lie on the seabed."""
+        """Return which legs are taken to lie on the seabed."""
         return tuple(bool(state[net_march.LANDS]) for state in self.net.state)
 
     def lie_as(self, lands: Sequence[bool]) -> None:
@@ -120,7 +120,7 @@ class NetSearch:
         return int(ending), np.array(own)
 
     def marching(self, step: float, cuts: int, record: int, *, given: bool) -> Marching:
-        """How all legs are to be marched."""
+        """Return how all legs are to be marched."""
         return Marching(self.sea, float(step), cuts, given, record)
 
     def closed(self, x: Floats, step: float, enough: float) -> Floats | None:
@@ -144,7 +144,7 @@ class NetSearch:
         raise unsettled("its legs do not come together to the last digits")
 
     def end(self, i: int, x: Floats) -> Floats:
-        """Where the march of a leg ends [m]."""
+        """Return where the march of a leg ends [m]."""
         end, first = self.laid[i].ends[1], self.net.nodes_at
         return x[first + 3 * end.node :] if end.place is None else np.array(end.place)
 

@@ -160,7 +160,7 @@ def close_on(
 
 
 def lies_otherwise(net: NetProblem, x: Sequence[float], record: int) -> bool:
-    """Whether a leg lies on the seabed but was taken to hang clear, or the other way round.
+    """Return whether a leg lies on the seabed but was taken to hang clear, or the other way round.
 
     It is taken to do so from then on.
     """
@@ -242,8 +242,8 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
 
 
 class AskedNet(NamedTuple):
-    """What `ask_net` is asked: to march a net, with the slopes or without, to close it or to settle
-    it, from unknowns that it changes.
+    """Hold what `ask_net` is asked: to march a net, with the slopes or without, to close it or to
+    settle it, from unknowns that it changes.
 
     Attributes
     ----------

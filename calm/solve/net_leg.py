@@ -42,7 +42,7 @@ from calm.solve.solution import FOUND, Settings, Solution, Status
 
 @dataclass(frozen=True)
 class LegEnd:
-    """Where a leg ends: free, at a node, or held.
+    """Hold where a leg ends: free, at a node, or held.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ class LaidLeg:
 
     @property
     def ends(self) -> tuple[LegEnd, LegEnd]:
-        """Where its march begins and ends."""
+        """Return where its march begins and ends."""
         upper, lower = self.leg.upper, self.leg.lower
         return (lower, upper) if self.kind == net_march.HANGING_DOWN else (upper, lower)
 
@@ -134,7 +134,7 @@ class LaidLeg:
 
     @property
     def highest(self) -> float:
-        """How high it may come [m]: to the surface, or where an end is held above it."""
+        """Return how high it may come [m]: to the surface, or where an end is held above it."""
         return max(0.0, *(each.place[2] for each in self.ends if each.place is not None), 0.0)
 
 
@@ -291,7 +291,7 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
 
 
 def unsettled(why: str) -> NoEquilibrium:
-    """Why a net does not come to rest, with advice."""
+    """Return why a net does not come to rest, with advice."""
     return Status.NOT_CONVERGED.because(
         f"The net does not come to rest: {why}.",
         advice="Check the lengths of its legs against the distances of their ends; solve it with "

@@ -106,7 +106,7 @@ class NetProblem(NamedTuple):
 
 
 class Marching(NamedTuple):
-    """How all legs are marched: in which water, at which angle step, on which cuts, given or
+    """Tell how all legs are marched: in which water, at which angle step, on which cuts, given or
     chosen now, and where they are recorded.
     """
 
@@ -157,7 +157,7 @@ def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: in
 
 
 def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[float, float, float]:
-    """Where the march of a leg is to begin (0) or to end (1) [m]."""
+    """Return where the march of a leg is to begin (0) or to end (1) [m]."""
     leg, held = net.legs[i], net.held[i]
     node = leg.end if end else leg.start
     if node >= 0:

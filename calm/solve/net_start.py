@@ -1,4 +1,4 @@
-"""Where a net of legs about is: lumps on springs, let go and brought to rest.
+"""Start of a net: lumps on springs are let go, and come to rest where its legs about are.
 
 Only a start for the march, which settles everything anew: cables stretch here by some hundredths,
 and friction along them does not count.
@@ -24,7 +24,7 @@ ROUNDS, AT_REST, SWAY = 6000, 2e-3, 20
 
 
 class NetStart(NamedTuple):
-    """Where a net about is.
+    """Hold where a net about is.
 
     Attributes
     ----------
@@ -174,7 +174,7 @@ class _Lumps:
 
 
 def _points(line: Line, water: Water) -> list[tuple[float, float, float, float]]:
-    """What hangs where on a line [m]: net force [N], drag across it and drag any way."""
+    """Return what hangs where on a line [m]: net force [N], drag across it and drag any way."""
     found, top = [], 0.0
     density = water.density_at(np.array(0.5 * water.depth))
     excess = (float(density) - 1025.0) * water.gravity
@@ -193,7 +193,7 @@ def _points(line: Line, water: Water) -> list[tuple[float, float, float, float]]
 
 
 def start_of(legs: tuple[NetLeg, ...], nodes: int, water: Water) -> NetStart:
-    """Where a net of legs about is.
+    """Return where a net of legs about is.
 
     Parameters
     ----------

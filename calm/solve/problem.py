@@ -79,7 +79,7 @@ class BuoyantPiece(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """What a line is sought within.
+    """Hold what a line is sought within.
 
     Attributes
     ----------
@@ -123,7 +123,7 @@ class Limits(NamedTuple):
 
 
 class SearchArrays(NamedTuple):
-    """What a search writes on.
+    """Hold what a search writes on.
 
     Attributes
     ----------
@@ -177,7 +177,8 @@ class LineProblem(NamedTuple):
 
 
 class Unknown(NamedTuple):
-    """What closes a line: the depth of its free end, or how much of a float's buoyancy is used.
+    """Hold what closes a line: the depth of its free end, or how much of a float's buoyancy is
+    used.
 
     Attributes
     ----------
@@ -200,7 +201,7 @@ BELOW = -1
 
 
 class About(NamedTuple):
-    """What a march is about: all but the value of the unknown.
+    """Hold what a march is about: all but the value of the unknown.
 
     Attributes
     ----------

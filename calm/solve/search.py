@@ -67,7 +67,7 @@ PERHAPS_LANDED = 20.0
 
 
 class Referee(NamedTuple):
-    """What the audit of a line takes.
+    """Hold what the audit of a line takes.
 
     Attributes
     ----------
@@ -156,12 +156,12 @@ def rising(search: Search, referee: Referee) -> FoundShape:
 
 
 def is_slack(found: FoundShape) -> bool:
-    """Whether a line is refused as slack."""
+    """Return whether a line is refused as slack."""
     return found.ending == SLACK_AT_REST or found.ending == SLACK_ON_DIGITS
 
 
 def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
-    """Why there is no shape."""
+    """Return why there is no shape."""
     refined = Refined(not_closed(ending, value, root), 0, UNKNOWN_ERRORS)
     return FoundShape(ending, value, piece, refined, UNKNOWN_ERRORS, 0.0, 0.0, NO_OTHER, 0.0)
 
@@ -319,7 +319,7 @@ def residuals(
 
 
 def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
-    """Whether a shape passes the audit, and what is wrong with it."""
+    """Return whether a shape passes the audit, and what is wrong with it."""
     if not off <= LARGEST_CLOSURE:
         return NOT_CLOSED, off
     if not moment <= LARGEST_MOMENT:

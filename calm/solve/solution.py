@@ -26,7 +26,7 @@ LOOSEST_TOLERANCE = 2e-4
 
 @dataclass(frozen=True)
 class Settings:
-    """How finely to march and how well to close.
+    """Tell how finely to march and how well to close.
 
     Attributes
     ----------
@@ -229,7 +229,7 @@ AS_MANY = 8
 
 
 class _Count:
-    """How many lines have been solved, or are expected, by this process; and what that says."""
+    """Count the lines that this process has solved or is to solve, and tell what pays for them."""
 
     def __init__(self) -> None:
         self.solves = 0.0

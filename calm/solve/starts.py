@@ -1,4 +1,4 @@
-"""Where one of many profiles is sought first: from where the line is found in even currents.
+"""Starts of the search for one of many profiles, from where the line is in even currents.
 
 What it is sought from follows from the profile alone, so that neither the order of many nor their
 company changes a digit.

@@ -32,7 +32,7 @@ _ROUNDS = 20
 
 @dataclass(frozen=True)
 class Towing:
-    """What tows a line, and in what.
+    """Hold what tows a line, and in what.
 
     Attributes
     ----------

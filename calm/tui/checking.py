@@ -1,4 +1,4 @@
-"""What a person types, judged as it is typed: taken, completed by its unit, or refused."""
+"""Checks of what a person types, as it is typed: taken, completed by its unit, or refused."""
 
 import re
 from collections.abc import Callable, Mapping

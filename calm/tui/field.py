@@ -1,4 +1,4 @@
-"""Where a value is typed: a line of input, and at each key what is made of its text."""
+"""Fields for a value: a line of input, and at each key what is made of its text."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class Field(Horizontal):
 
     @dataclass
     class Judged(Message):
-        """What the text typed so far comes to."""
+        """Hold what the text typed so far comes to."""
 
         field: Field
         reading: Reading

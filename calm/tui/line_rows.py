@@ -273,7 +273,7 @@ class ColumnFilling:
 
     @property
     def sheet(self) -> ColumnSheet | None:
-        """Where it is entered; None where none of the rows has such a value."""
+        """Return where it is entered; None where none of the rows has such a value."""
         return ColumnSheet(_TITLES[self._column], "", self._asked) if self._asked else None
 
     def write(self, texts: Mapping[str, str]) -> None:

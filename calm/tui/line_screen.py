@@ -14,7 +14,7 @@ from calm.tui.workspace import Workspace
 
 
 class LineScreen(screen.DraftScreen):
-    """What the first screen shows of the line, and how its parts lead to each other."""
+    """Lay out what the first screen shows of the line, and how its parts lead to each other."""
 
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide"), (176, "-huge")]  # noqa: RUF012
     VERTICAL_BREAKPOINTS = [(0, "-flat"), (17, "-high")]  # noqa: RUF012

@@ -191,7 +191,7 @@ LEAD = 4
 
 @dataclass(frozen=True)
 class TableRow:
-    """What is shown of a piece, or of what is clamped on one.
+    """Hold what is shown of a piece, or of what is clamped on one.
 
     `texts` are by the name of the column; `wrong` tells that no such component is known.
     """
@@ -312,7 +312,7 @@ class LineSearch(cell_editor.EditableTable):
         self.workspace.tell(f"{found.index(number) + 1} of {len(found)} {what}")
 
     def _said(self, row: TableRow) -> str:
-        """What a row says, and the catalogue of its component."""
+        """Return what a row says, and the catalogue of its component."""
         index, use = self.workspace.index, row.texts["component"].split()[-1:]
         listed = index.get(use[0]) if index and use else None
         serial = self.workspace.session.written(row.spot).get("serial", "")

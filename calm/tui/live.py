@@ -1,4 +1,4 @@
-"""What a text says while it is edited: the line solved and judged, or what it still lacks.
+"""Live verdict of a text while it is edited: the line solved and judged, or what it still lacks.
 
 Nothing here knows of the screen. `judge` is for a worker at every change; `judge_fully` adds what
 takes longer.

@@ -1,4 +1,4 @@
-"""What is asked about a whole file: name and place, document, deployment, tow, missing figures."""
+"""Sheets for a whole file: name and place, document, deployment, tow, missing figures."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def mooring_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
 
 
 def document_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
-    """What the title block says, as the file has it, and what the revision changed."""
+    """Return what the title block says, as the file has it, and what the revision changed."""
     revision = draft.text_at(("document", "revision"))
     change = said(draft, _HISTORY, ("revision", revision), "change")
     asked = [*filled(draft, _DOCUMENT), Asked("change", "What it changed", change)]
@@ -133,7 +133,7 @@ def hung_at(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | Non
 
 
 def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
-    """When and where the mooring was deployed and what hangs at a row, as in the file."""
+    """Return when and where the mooring was deployed and what hangs at a row, as in the file."""
     asked, changed = filled(draft, _WHOLE), partial(_deployed, hung)
     if hung is None:
         return InputSheet("As deployed", _COMPARED, asked), "the deployment", changed
@@ -289,7 +289,7 @@ def figures_sheet(missing: Sequence[Missing]) -> InputSheet:
 
 @dataclass
 class Missing:
-    """What is not known of a component, once for all rows that use it.
+    """Hold what is not known of a component, once for all rows that use it.
 
     Attributes
     ----------

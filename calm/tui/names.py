@@ -1,4 +1,4 @@
-"""What a file names: its pieces by their labels, kept in step with the line; its environments."""
+"""Names in a file: labels of pieces, kept in step with the line; environments."""
 
 import os.path
 from collections.abc import Iterable, Iterator, Mapping
@@ -117,7 +117,9 @@ def _called(
 
 
 def namings(draft: Draft, place: Place) -> list[Named]:
-    """What names a row, and nothing but it: a copy of it would be another piece of that name."""
+    """Return what names a row, and nothing but it: a copy of it would be another piece of that
+    name.
+    """
     return [each for each in named_in(draft) if labels_of(draft).get(place) == [each.text]]
 
 

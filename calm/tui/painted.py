@@ -1,4 +1,4 @@
-"""What the terminal shows, cell by cell, so that only cells that change are sent to it.
+"""Cells that the terminal shows, so that only those that change are sent to it.
 
 Textual sends a part of the screen again as soon as one cell of it may have changed, and all of it
 where something has another size: 38 kB for a screen of 140 columns and 45 rows.
@@ -101,7 +101,7 @@ class Pace:
 
 
 class _Changes(CompositorUpdate):
-    """What of an update is to be sent."""
+    """Hold what of an update is to be sent."""
 
     def __init__(self, painted: Painted, update: CompositorUpdate) -> None:
         self._painted, self._update = painted, update

@@ -16,7 +16,7 @@ from calm.tui.workspace import Workspace
 
 
 class DraftScreen(Screen[None]):
-    """What shows and edits the draft of a workspace: title, its parts, keys.
+    """Show and edit the draft of a workspace: title, its parts, keys.
 
     The application settles the screen on top before it saves or leaves, and has every one of them
     read the draft again when that was replaced from outside.

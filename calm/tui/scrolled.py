@@ -1,4 +1,4 @@
-"""What is scrolled: rows that are drawn for the cells there are, texts, and tables with a cursor.
+"""Scrolled rows that are drawn for the cells there are, texts, and tables with a cursor.
 
 Textual lays the whole screen out where the length of anything in it changes, 10 to 20 ms at each
 key of a search. Nothing here has a size that depends on what it shows.

@@ -330,7 +330,7 @@ def _whole(spots: Iterable[Place]) -> list[Place]:
 
 
 def location(spot: Place) -> Location:
-    """Where a row stands in the file."""
+    """Return where a row stands in the file."""
     rows, index = _listed(spot)
     return (*rows, index)
 

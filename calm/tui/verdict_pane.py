@@ -26,7 +26,7 @@ _CHOSEN = Style(reverse=True)
 
 
 class VerdictPane(scrolled.ScrolledText, can_focus=True):
-    """What holds, what does not and why; the figures of the anchor and the top.
+    """Show what holds, what does not and why; the figures of the anchor and the top.
 
     Parameters
     ----------

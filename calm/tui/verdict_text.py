@@ -1,4 +1,4 @@
-"""What is said of the line as it stands: figures and findings, or what is missing."""
+"""Words on the line as it stands: figures and findings, or what is missing."""
 
 from __future__ import annotations
 
@@ -203,7 +203,7 @@ def _figure(text: str, heading: str, worst: Finding | None) -> Saying:
 
 
 def _net(result: NetResult) -> Iterator[Saying]:
-    """What the anchors and held ends of a net bear, and where its nodes are."""
+    """Return what the anchors and held ends of a net bear, and where its nodes are."""
     for end in (*result.anchors, *result.held):
         needs = end.required_weight
         said = "" if needs is None else f", needs {say('required_weight', needs)} in water"

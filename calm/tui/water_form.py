@@ -1,4 +1,4 @@
-"""Where the water of an environment is written in a file, and how its form reads and writes it."""
+"""Form of the water: where an environment is written in a file, how it is read and written."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def mistakes(problems: Sequence[Problem], path: Path) -> str:
 
 
 class Workspace:
-    """What all screens and their parts are handed.
+    """Hold what all screens and their parts are handed.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""What waves add to a mooring: linear tensions and motions about its static equilibrium."""
+"""Waves on a mooring: linear tensions and motions about its static equilibrium."""

@@ -156,7 +156,7 @@ class WaveAnalysis:
 
 @dataclass(frozen=True)
 class _Setting:
-    """What is solved: the line, its float, the water, and how many frequencies of each sea."""
+    """Hold what is solved: the line, its float, the water, and how many frequencies of each sea."""
 
     line: LumpedLine
     buoy: Buoy | None

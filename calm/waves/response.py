@@ -105,7 +105,7 @@ class Waves:
 
 
 class _Afloat(NamedTuple):
-    """What holds a float and what pushes it, by its bail's three ways and its pitch.
+    """Tell what holds a float and what pushes it, by its bail's three ways and its pitch.
 
     `held` (f, 4, 4) and `pushed` (f, 4) per metre of elevation, without drag. Drag acts where
     `ways` (p, 3, 4) says how that moves, in water of these velocities (f, p, 3), and by `turning`,

@@ -1,1 +1,1 @@
-"""What a finished result says: distributions, limits, extremes."""
+"""Statistics of a finished result: distributions, limits, extremes."""

@@ -1,4 +1,4 @@
-"""What a batch result says of a mooring: its distributions, its limits, its extremes."""
+"""Summary of a batch result: the distributions, the limits and the extremes of a mooring."""
 
 from __future__ import annotations
 
@@ -129,6 +129,12 @@ class Summary:
     source: Mapping[str, str]
     limits_used: tuple[LimitKey, ...] = ()
     stops: tuple[StopDepths, ...] = ()
+
+    @property
+    def known_responses(self) -> Sequence[Response]:
+        """Those that are known in some profile, as the offset of most nets is not; else all."""
+        known = [one for one in self.responses if one.distribution is not None]
+        return known or self.responses
 
     @property
     def solved(self) -> int:

@@ -117,7 +117,7 @@ def _draw_scene(
 
 @dataclass(frozen=True)
 class LineColumn:
-    """Where a line is drawn, and what stands beside it.
+    """Hold where a line is drawn, and what stands beside it.
 
     Attributes
     ----------
@@ -171,7 +171,7 @@ class TextLine(NamedTuple):
 
     @property
     def width(self) -> float:
-        """How far it reaches."""
+        """Return how far it reaches."""
         beside = self.at + text_width(self.beside, FONT) if self.beside else 0.0
         return max(text_width(self.text, FONT, bold=self.bold), beside)
 
@@ -188,7 +188,7 @@ class PlacedPart:
 
     @property
     def middle(self) -> float:
-        """Where its symbol is."""
+        """Return where its symbol is."""
         return self.top + self.height / 2
 
 

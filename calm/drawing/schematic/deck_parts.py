@@ -1,4 +1,4 @@
-"""What the mooring diagram shows of a deck from the top down."""
+"""Parts of a deck that the mooring diagram shows, from the top down."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

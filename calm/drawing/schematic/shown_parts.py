@@ -1,4 +1,4 @@
-"""What a schematic shows of a line: its parts from the top, their rows of text, their lengths."""
+"""Parts of a line that a schematic shows, from the top: their rows of text, their lengths."""
 
 from __future__ import annotations
 
@@ -203,7 +203,7 @@ _UNKNOWN = "Not to scale. Depths are known once the line is solved."
 
 @dataclass(frozen=True)
 class Levels:
-    """Where the pieces are; NaN where that is unknown.
+    """Hold where the pieces are; NaN where that is unknown.
 
     Attributes
     ----------

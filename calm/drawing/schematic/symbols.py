@@ -17,7 +17,7 @@ from calm.physics.materials import fibre_of
 
 
 class Symbol(StrEnum):
-    """What a schematic draws, and what a legend calls it."""
+    """Hold what a schematic draws, and what a legend calls it."""
 
     SPHERE = "float"
     BALL = "ball"
@@ -391,6 +391,6 @@ def draw_helicopter(pen: Pen) -> None:
 
 
 def draw_clamp(pen: Pen, reach: float) -> None:
-    """What holds an instrument beside the line, which is at the origin."""
+    """Draw what holds an instrument beside the line, which is at the origin."""
     for y in (-3.5, 3.5):
         pen.line(0.0, y, reach, y, stroke=INK, stroke_width=1.6)

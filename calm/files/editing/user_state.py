@@ -1,4 +1,4 @@
-"""What CALM keeps of a person between sessions: what is open, and which components are liked."""
+"""Files that CALM keeps of a person between sessions: what is open, which components are liked."""
 
 import hashlib
 import json

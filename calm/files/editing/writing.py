@@ -1,4 +1,4 @@
-"""How values are written into a file: after its manner, in the order of the keys in the models,
+"""Writing of values into a file: after its manner, in the order of the keys in the models,
 and put into its text, or taken out of it, at the places where libyaml found them.
 
 A word is plain where that reads back, and in quotes where it would not. A text is never written

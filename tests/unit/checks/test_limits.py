@@ -44,6 +44,13 @@ def test_what_flatters_departs():
     assert told.backed
 
 
+def test_a_time_is_said_in_days():
+    text = LINE.format(float="", clamp="") + "checks: {service_time: 1.5 d}\n"
+    file = calm.load("line.yaml", text=text).file
+    (time,) = [key for key in limits_used(file, surface=False) if key.name == "service_time"]
+    assert (said(time, time.value), said(time, time.default)) == ("1.5 d", "365 d")
+
+
 def test_settings_that_flatter_depart():
     text = LINE.format(float="", clamp="").replace("length: 50 m", "length: 50 m, slack: allowed")
     text += "solver: {strumming: {factor: 1.2}, seabed_friction: 0.3}\n"

@@ -90,6 +90,12 @@ def ragged():
     return whole
 
 
+def with_ids():
+    one = instrument()
+    one["sensor_id"] = ("TIME", np.array(["SBE37", "SBE16"] * (TIMES // 2), object))
+    return one
+
+
 def out_of_time():
     one = instrument()
     one["TIME"] = ("TIME", np.where(np.arange(TIMES) == 3, -712224.4, DAYS), SINCE)
@@ -100,6 +106,7 @@ def out_of_time():
     (lambda: instrument("DEPTH", "depth", "m", comment=INFERRED), "is not a measurement"),
     (lambda: instrument("DEPTH", "depth", "m", long_name="depth estimated by CALM"), "by calm"),
     (ragged, "2 instruments one after the other"),
+    (with_ids, "2 instruments one after the other (`sensor_id` says whose"),
     (out_of_time, "-712224.4 among its times"),
     (lambda: instrument(units=""), "unit"),
     (lambda: instrument(units="degC"), "unit"),

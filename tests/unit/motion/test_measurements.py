@@ -30,7 +30,7 @@ def currents(time, u, depth=(10.0,), **more):
 
 
 def sensor(label, time, depth):
-    return Sensor(label, time, np.asarray(depth, float), "p")
+    return Sensor(label, "", np.nan, "p", time, np.asarray(depth, float))
 
 
 def test_values_are_linear_within_the_gap_and_never_beyond_the_ends():

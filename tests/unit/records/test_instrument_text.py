@@ -10,7 +10,7 @@ from calm.motion.sensors import depth_of, read_sensors
 from calm.records.current_file import open_record, read_current_file
 from calm.records.current_terms import Terms
 from calm.records.instrument_series import read_series
-from calm.records.instrument_text import is_instrument_text, read_instrument_text
+from calm.records.instrument_text import reader_of
 
 HEAD = """Mooring              = wb1_12_2015
 SerialNumber         = 6123
@@ -128,9 +128,9 @@ def test_mistakes_have_their_line(tmp_path: Path) -> None:
     assert (one.line, one.message) == (10, "is no row of 7 numbers")
     path.write_text(CNV.format("depSM: Depth [salt water, m]", 1, 2, 3))
     with pytest.raises(InputError, match="has no times"):
-        read_instrument_text(path)
+        reader_of(path)(path)
     path.write_text(USE.replace("T:C:P", "T:C:X"))
     with pytest.raises(InputError, match=r"holds no pressures: .* it holds TIME .* TEMP .* CNDC"):
         read_sensors([f"CTD={path}"], frozenset({1}), 26.5, 1401.0)
     path.write_text("time,a[dbar]\n2026-03-01,5\n")
-    assert not is_instrument_text(path)
+    assert reader_of(path) is None
