@@ -70,11 +70,26 @@ def read_designs(
     UsageError
         Nothing but tows; a file given twice; two environments of one name.
     """
+    from calm.case import Tow
+
     given = Counter([*map(str, files), *(environments or ())])
     twice = [word for word, count in given.items() if count > 1]
     if twice:
         raise UsageError(f"given twice: {', '.join(twice)}")
-    stands, tows = _loaded(files, environments, catalogs, workers, meanwhile)
+    problems: dict[Problem, None] = {}
+    stands: dict[Path, list[Mooring | Net]] = {}
+    tows: list[Path] = []
+    tasks = [(file, environments, catalogs) for file in files]
+    loaded = mapped(_load, tasks, workers, "files read", meanwhile)
+    for file, read in zip(files, loaded, strict=True):
+        if isinstance(read, tuple):
+            problems |= dict.fromkeys(read)  # what files share has its mistakes told once
+        elif any(isinstance(one, Tow) for one in read):
+            tows.append(file)
+        else:
+            stands[file] = [one for one in read if not isinstance(one, Tow)]
+    if problems:
+        raise InputError(list(problems))
     if not stands:
         raise UsageError(f"{command} is for moorings; these are tows: {', '.join(map(str, tows))}")
     for its in stands.values():
@@ -111,33 +126,6 @@ def _cut_alike(moorings: Sequence[Mooring | Net]) -> tuple[Mooring | Net, ...]:
         return first, *(Mooring(parts.cut_like(each.file, first), memory=memory) for each in others)
     except NoEquilibrium:
         return first, *others  # the first is reported not to stand, and why
-
-
-def _loaded(
-    files: Sequence[Path],
-    environments: Sequence[str] | None,
-    catalogs: Sequence[Path],
-    workers: int | None,
-    meanwhile: Callable[[], object] | None = None,
-) -> tuple[dict[Path, list[Mooring | Net]], list[Path]]:
-    """The moorings of each file, and which of the files are tows."""
-    from calm.case import Tow
-
-    tasks = [(file, environments, catalogs) for file in files]
-    problems: dict[Problem, None] = {}
-    moorings: dict[Path, list[Mooring | Net]] = {}
-    tows: list[Path] = []
-    loaded = mapped(_load, tasks, workers, "files read", meanwhile)
-    for file, read in zip(files, loaded, strict=True):
-        if isinstance(read, tuple):
-            problems |= dict.fromkeys(read)  # what files share has its mistakes told once
-        elif any(isinstance(one, Tow) for one in read):
-            tows.append(file)
-        else:
-            moorings[file] = [one for one in read if not isinstance(one, Tow)]
-    if problems:
-        raise InputError(list(problems))
-    return moorings, tows
 
 
 def _load(
