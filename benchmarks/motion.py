@@ -21,8 +21,7 @@ import xarray
 from machine import describe
 
 import calm
-from calm.motion.line_response import Forward, points
-from calm.motion.matching import labels_of
+from calm.motion.line_response import Forward, labels_of, points
 
 HOURS, SMOKE = 8766, 48
 FILE = Path(__file__).parents[1] / "docs" / "field" / "dune2" / "mooring.yaml"

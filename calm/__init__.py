@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from calm.checks.net_check import check
     from calm.drop.plan import drop_plan
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
-    from calm.motion.motion_estimate import MotionEstimate, estimate_motion
+    from calm.motion.motion_estimate import estimate_motion
+    from calm.motion.study import MotionEstimate
     from calm.ranging import locate
 
 __all__ = [
@@ -43,7 +44,8 @@ _HOMES = {
     "calm.checks.net_check": ("check",),
     "calm.drop.plan": ("drop_plan",),
     "calm.errors": ("CalmError", "InputError", "NoEquilibrium", "UsageError"),
-    "calm.motion.motion_estimate": ("MotionEstimate", "estimate_motion"),
+    "calm.motion.motion_estimate": ("estimate_motion",),
+    "calm.motion.study": ("MotionEstimate",),
     "calm.ranging": ("locate",),
 }
 

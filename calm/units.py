@@ -100,11 +100,25 @@ _MASS_AND_FORCE = {"kg": "kgf", "g": "gf", "t": "tf", "lb": "lbf", "kg/m": "kgf/
 _MASS_AND_FORCE |= {"kg/km": "kgf/km", "lb/ft": "lbf/ft"}
 _TWINS = _MASS_AND_FORCE | {force: mass for mass, force in _MASS_AND_FORCE.items()}
 
+_FATHOM = ("is no length at sea; a fathom is `fathom`", "fathom")
+_TON = ("may be of 907, 1000 or 1016 kg; a tonne is `t`, its force `tf`", None)
+_MILE = ("may be of 1609 or 1852 m; write `mi` or `nmi`", None)
+_MISTAKEN: Mapping[str, tuple[str, str | None]] = {
+    "nm": ("is in nanometres; a nautical mile is `nmi`", "nmi"),
+    **dict.fromkeys(("fm", "fth"), _FATHOM),
+    **dict.fromkeys(("ton", "tons", "ton_force"), _TON),
+    **dict.fromkeys(("mile", "miles"), _MILE),
+    "mt": ("is in thousandths of a tonne; a metric ton is `t`", "t"),
+    "Mt": ("is in millions of tonnes; a metric ton is `t`", "t"),
+}
+"""What pint reads as a unit that nobody means in a mooring: what is said, and what may be meant."""
+
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4}(?![\d.]))?")
 _FRACTION = re.compile(r"([+-]?)(?:(\d+)\s+)?(\d+)\s*/\s*(\d+)(?![\d.])")
 _COMMA = re.compile(r"([+-]?\d+),(\d+)(?=$|[^\d,.])")
-_THOUSANDS = re.compile(  # `1,250,000`, `1,250.0` and `1.250,0`
-    r"([+-]?\d{1,3}(?:([,.])\d{3}(?:\2\d{3})+|(?:,\d{3})+(?=\.\d)|(?:\.\d{3})+(?=,\d)))"
+_THOUSANDS = re.compile(  # `1,250,000`, `1 250`, `1,250.0` and `1.250,0`
+    r"([+-]?\d{1,3}(?:(?:[ '’\u00a0\u202f]\d{3})+"
+    r"|([,.])\d{3}(?:\2\d{3})+|(?:,\d{3})+(?=\.\d)|(?:\.\d{3})+(?=,\d)))"
     r"(?:[.,](\d+))?(?![\d.,])"
 )
 # a word ends where no more of it follows: else the ways to part one double with every letter
@@ -239,9 +253,11 @@ def unit_factor(text: str, dimension: str) -> float:
                 f"is {other.noun}; {_described(wanted)} is needed",
                 twin if twin in wanted.units else None,
             )
-    if re.search(r"\bnm\b", unit):
-        offer = re.sub(r"\bnm\b", "nmi", unit)
-        raise QuantityError("is in nanometres; a nautical mile is `nmi`", offer)
+    words = re.findall(r"[A-Za-z_]+", unit)
+    for word, (complaint, meant) in _MISTAKEN.items():
+        if word in words:
+            offer = re.sub(rf"\b{word}\b", meant, unit) if meant else None
+            raise QuantityError(complaint, offer)
     if wanted.unit == "degC":
         # Other scales have other zeros, which no factor can express.
         raise QuantityError("is not a temperature in degC", "degC" if unit == "C" else None)
@@ -264,7 +280,7 @@ def _split(text: str, wanted: Dimension) -> tuple[float, str]:
         return (-size if sign == "-" else size), text[fraction.end() :].strip()
     marked = _THOUSANDS.match(text)
     if marked:
-        plain = re.sub("[.,]", "", marked[1]) + (f".{marked[3]}" if marked[3] else "")
+        plain = re.sub("[^+0-9-]", "", marked[1]) + (f".{marked[3]}" if marked[3] else "")
         raise QuantityError("has marks between thousands", plain + text[marked.end() :])
     comma = _COMMA.match(text)
     if comma:

@@ -6,7 +6,7 @@ Only figures that a definition gives are judged; a missing one is no fault, exce
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain
-from math import pi
+from math import pi, sqrt
 
 from calm.assemble import drag_of, mass_in_air
 from calm.checks.assessment import Handling
@@ -48,6 +48,19 @@ SOFTEST_WIRE = 0.05
 
 GREATEST_STRENGTH = 4e9
 """Greatest tensile strength of any fibre or wire of a cable [Pa]."""
+
+STRONGEST_STEEL = 2e9
+"""Greatest tensile strength of the two bars of a chain [Pa]; those of grade 120 have 1.2e9."""
+
+STRONGEST_METAL = 350e3
+"""Greatest strength of a metal over its density, that of titanium alloys [Pa/(kg/m³)]. Links and
+shackles of the catalogue bear 45e3 by their mass and length at most."""
+
+HOLLOW = 0.5
+"""Least density of what joins pieces, as a share of its material's; those known have 0.85."""
+
+SLOWEST_ANCHOR = 0.3
+"""Least speed at which an anchor alone falls, by its weight and `kt` [m/s]; those known 1.2."""
 
 DEEPEST_WATER = 11000.0
 """Greatest depth of the ocean, in round figures [m]."""
@@ -140,7 +153,33 @@ def impossible(component: Component) -> Iterator[str]:
             )
         elif volume is not None and volume > ROUNDING * envelope:
             yield f"displaces {volume:.3g} m³; its size is {envelope:.3g} m³"
+    solid = materials.density_of(component.material)
+    if component.role == "connector" and mass and solid and mass < HOLLOW * solid * (volume or 0.0):
+        weight = (1.0 - CATALOGUE_DENSITY / solid) * mass * STANDARD_GRAVITY
+        yield (
+            f"weighs {mass:.4g} kg in air and {-net:.4g} N in water; its material weighs "
+            f"{weight:.4g} N there"
+        )
+    if isinstance(component, Anchor) and component.kt:
+        speed = sqrt(-net / component.kt)
+        if speed < SLOWEST_ANCHOR:
+            yield f"falls at {speed:.2g} m/s by its weight and `kt`; no anchor is so slow"
+    yield from _of_a_load(component)
     yield from _drags_out_of_range(component)
+
+
+def _of_a_load(component: Component) -> Iterator[str]:
+    """Yield a load greater than what any piece of its kind, size and mass bears."""
+    load = max(component.breaking_load or 0.0, component.working_load or 0.0)
+    if isinstance(component, Flexible):
+        strength = 2.0 * STRONGEST_STEEL if isinstance(component, Chain) else GREATEST_STRENGTH
+        most, size = strength * _section(component), "diameter"
+    elif component.mass is None or not component.length or materials.fibre_of(component.material):
+        return
+    else:
+        most, size = STRONGEST_METAL * component.mass / component.length, "mass and length"
+    if load > most:
+        yield f"bears {load:.4g} N; no {component.kind} of its {size} bears more than {most:.4g} N"
 
 
 def _displaced(component: Component, mass: float) -> float:
@@ -159,8 +198,7 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
     bar = ROPE_ROUNDING * density * section
     weight = max(bar - CATALOGUE_DENSITY * section, 0.0) * STANDARD_GRAVITY
     lift = ROPE_ROUNDING * CATALOGUE_DENSITY * STANDARD_GRAVITY * section
-    stiff, strong = ROUNDING * STEEL_MODULUS * section, GREATEST_STRENGTH * section
-    net, breaking = rope.net_buoyancy, rope.breaking_load
+    stiff, net = ROUNDING * STEEL_MODULUS * section, rope.net_buoyancy
     if rope.mass is not None and rope.mass > bar:
         yield f"has {rope.mass:.4g} kg/m; a solid bar of its diameter has {bar:.4g} kg/m"
     elif -net > weight:
@@ -186,8 +224,6 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
             yield f"{stiffness}; a steel bar of its diameter {stiff:.4g} N"
         elif rope.material and wire and rope.stiffness < SOFTEST_WIRE * stiff:
             yield f"{stiffness}; a wire of its diameter {SOFTEST_WIRE * stiff:.4g} N at least"
-    if breaking is not None and breaking > strong:
-        yield f"breaks at {breaking:.4g} N; no cable of its diameter at {strong:.4g}"
 
 
 LEAST_DRAG = {"sphere": 0.06, "cylinder": 0.2, "cable": 0.05, "chain": 1.0}

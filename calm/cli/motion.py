@@ -124,7 +124,7 @@ def motion(
     from calm.case import Tow
     from calm.case.net import load_line
     from calm.motion.instrument_file import read_instruments
-    from calm.motion.line_places import places_of
+    from calm.motion.matching import places_of
     from calm.motion.motion_estimate import RecoveredMooring
     from calm.motion.study import series_of
     from calm.records.instrument_series import split_label
@@ -184,7 +184,7 @@ def motion(
             return code
         with finished.open_result(output) as result, finished.readable(output):
             study = recovery.study(result, narrate, workers)
-            series = series_of(mooring, recovery.measured, study.task.measured.label, result)
+            series = series_of(study, recovery.measured)
             if onto is not None and instruments is not None:
                 inputs = [file, *files[:-1]]
                 write_copies(instruments, result, apart, copy, inputs, recovery.source)
@@ -342,7 +342,7 @@ def fields_of(
 
     from calm.grid.field import field_of
     from calm.grid.samples import common_times, gather
-    from calm.motion.line_places import points_of
+    from calm.motion.matching import points_of
     from calm.quantities import QUANTITIES_MEASURED
 
     matched = {name: points_of(each, where.places) for name, each in series.items() if each}

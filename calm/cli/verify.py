@@ -85,7 +85,7 @@ def verify_field(outputs: Outputs) -> ExitCode:
     import calm
     from calm.case import Mooring
     from calm.checks.finding import State
-    from calm.motion import correction, line_response, matching, motion_estimate, study
+    from calm.motion import correction, line_response, motion_estimate, study
     from calm.report import blocks, motion_report
     from calm.shipped import shipped_folder
 
@@ -93,7 +93,7 @@ def verify_field(outputs: Outputs) -> ExitCode:
     mooring = calm.load(folder / "mooring.yaml")
     assert isinstance(mooring, Mooring)
     files = [str(folder / f"{name}.nc") for name in ("pressures", "currents")]
-    measured, _, _ = matching.read_measured(mooring, files[:1], files[1:])
+    measured = motion_estimate.RecoveredMooring(mooring, files[:1], files[1:]).measured
     task = study.prepare(mooring, measured, motion_estimate.fitted(), HIDDEN)
     points = [int(measured.point[measured.label.index(label)]) for label in HIDDEN]
     depth, spread = correction.estimate_in_memory(task, points)

@@ -191,7 +191,7 @@ class Anchor(definition.Definition):
     )
     density: definition.MaterialDensity = None
     length: definition.Length = 0.0
-    friction: Annotated[float | None, QuantityField("number", above=0)] = optional(
+    friction: Annotated[float | None, QuantityField("number", above=0, at_most=10)] = optional(
         "coefficient on the seabed", 0.6
     )
     kt: definition.TangentialDrag = None

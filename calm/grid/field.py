@@ -157,7 +157,7 @@ def profile_of(samples: Samples, noise: float) -> RecordProfile:
     off = depth[None, :] - node[:, None]
     far = (off / width) ** 2
     weight = np.exp(-0.5 * (far - far.min(axis=1, keepdims=True)))
-    mean, _ = _local_line(weight, off, value[None, :], weight > 0.0, width)
+    mean, _ = _local_line(weight, off, value[None, :], width)
     square = (value - np.interp(depth, node, mean)) ** 2
     deviation = np.sqrt((weight * square).sum(axis=1) / weight.sum(axis=1))
     return RecordProfile(node, mean, np.maximum(deviation, noise))
@@ -171,13 +171,10 @@ def spacing(samples: Samples) -> float:
     return float(np.median(wide)) if len(wide) else 1.0
 
 
-def _local_line(
-    weight: Floats, off: Floats, value: Floats, known: NDArray[np.bool_], width: float
-) -> tuple[Floats, Floats]:
+def _local_line(weight: Floats, off: Floats, value: Floats, width: float) -> tuple[Floats, Floats]:
     """Return value and slope at 0 of weighted lines over the last axis; flat where depths are too
     close for one.
     """
-    weight = weight * known
     total = np.maximum(weight.sum(axis=-1), 1e-300)
     centre = (weight * off).sum(axis=-1) / total
     mean = (weight * value).sum(axis=-1) / total
@@ -245,7 +242,7 @@ def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Flo
     far = np.where(known, (off / width) ** 2, np.inf)
     nearest = far.min(axis=-1, keepdims=True)
     weight = np.exp(-0.5 * (far - np.where(np.isfinite(nearest), nearest, 0.0)))
-    _, slope = _local_line(weight, off, np.where(known, value, 0.0), weight > 0.0, width)
+    _, slope = _local_line(weight, off, np.where(known, value, 0.0), width)
     wrong = (weight * np.nan_to_num(error)).sum(axis=-1) / np.maximum(weight.sum(axis=-1), 1e-300)
     return slope, wrong
 

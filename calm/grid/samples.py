@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem, UsageError
-from calm.motion.line_places import LinePlaces
+from calm.batch.finished import labels_of
+from calm.errors import UsageError
+from calm.motion.matching import LinePlaces
 from calm.motion.measurements import interpolated
-from calm.records.cf_files import UnreadableError, holds_arrays, open_current, read_times, reading
+from calm.records.cf_files import UnreadableError, opened, read_times
 from calm.records.instrument_series import InstrumentSeries
 
 if TYPE_CHECKING:
@@ -53,11 +54,7 @@ def read_depths(path: Path) -> MooringDepths:
 
     InputError: it is not such a result, or has no time at which a depth is known.
     """
-    if not path.exists():
-        raise InputError([Problem(str(path), 0, 0, "no such file")])
-    if not holds_arrays(path):
-        raise InputError([Problem(str(path), 0, 0, "is not a result of calm motion")])
-    with reading(path), open_current(path) as dataset:
+    with opened(path) as dataset:
         return _understood(dataset, path)
 
 
@@ -73,10 +70,9 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
                 f"has no `{spread}`: the depths of a result of calm motion are wanted, which have "
                 "their uncertainty"
             )
-        mine = [str(one) for one in dataset[f"{dimension}_label"].values.tolist()]
+        mine = labels_of(dataset, f"{dimension}_label")
         labels += mine
-        told = dataset.variables.get(f"{dimension}_serial")
-        serials += [""] * len(mine) if told is None else [str(one) for one in told.values]
+        serials += labels_of(dataset, f"{dimension}_serial") or [""] * len(mine)
         depth.append(np.asarray(dataset[name].values, np.float64))
         deviation.append(np.asarray(dataset[spread].values, np.float64))
         clamps = len(mine) if dimension == "clamp" else clamps

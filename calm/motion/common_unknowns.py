@@ -12,7 +12,8 @@ settles early in it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import chain, combinations
 from typing import TYPE_CHECKING
 
@@ -24,6 +25,8 @@ from calm.physics.line import Floats, Integers
 if TYPE_CHECKING:
     from calm.motion.unknown_currents import SpeedLaw
 
+FURTHEST = 1.0
+"""Of the logarithm of a factor, at most."""
 REACH = 5.0
 """Between a sensor and the points by which the slope of the line at it is known, at least [m]."""
 
@@ -43,7 +46,6 @@ class Common:
     moved : (s,) how far below its place in the file a sensor hangs, along the line at rest [m]
     since : (s,) the first time at which it does; NaT where it never does
     until : (s,) the time up to which it drifts by `moved`, no clamp having slipped; NaT of others
-    elsewhere : (s,) probability that it does, or drifts
     covariance : (q, q)
     scale : of the errors of the currents, on those of `calm.motion.common_unknowns`
     gap : (g, g) error of the logarithm of the factor on a group of levels whose currents are taken
@@ -58,7 +60,6 @@ class Common:
     offset: Floats
     moved: Floats
     since: NDArray[np.datetime64]
-    elsewhere: Floats
     covariance: Floats
     scale: float
     gap: Floats
@@ -77,6 +78,25 @@ class Common:
         """Return (q,) as the columns of the covariance stand."""
         logs = np.log(list(self.factors.values()))
         return np.concatenate([logs, [self.datum], self.offset, self.moved])
+
+    @property
+    def unmoved(self) -> tuple[Floats, Floats]:
+        """Return mean and covariance of all but the moves."""
+        fixed = len(self.value) - len(self.moved)
+        return self.value[:fixed], self.covariance[:fixed, :fixed]
+
+    def at(self, value: Floats) -> Common:
+        """Return the same with other values (q,) of its unknowns, or (q - s,) without moves."""
+        count, sensors = len(self.factors), len(self.offset)
+        factors = np.exp(np.clip(value[:count], -FURTHEST, FURTHEST)).tolist()
+        moved = value[count + 1 + sensors :]
+        return replace(
+            self,
+            factors=dict(zip(self.factors, factors, strict=True)),
+            datum=float(value[count]),
+            offset=value[count + 1 : count + 1 + sensors],
+            moved=moved if len(moved) else self.moved,
+        )
 
     def fall(
         self, time: NDArray[np.datetime64], depth: Floats, still: Floats, point: Integers
@@ -112,35 +132,56 @@ FEWEST = 4
 """Readings of a sensor before and after its clamp slips, at least."""
 
 
+ROBUST = 4.0
+"""Degrees of freedom of Student's law for the misfit of a time."""
+
+
 @dataclass(frozen=True)
-class Evidence:
-    """Hold what each time says of the common unknowns x, by the linear law left = seen (x - 0).
+class LinearLaw:
+    """What n times say of the unknowns of the whole record, by the slopes at a state.
 
     Attributes
     ----------
-    left : (n, s) measured less computed depths where the unknowns are 0 [m]; 0 of no reading
-    seen : (n, s, q) their slopes with the unknowns; no moves are among these
-    inverse : (n, s, s) of the covariance of `left` beside the unknowns
-    weight : (n,) what a time counts
+    time, share : (n,) times, and the share of the record that is over by then
     known : (n, s) whether there is a reading
+    raw, left : (n, s) measured less computed depths where the unknowns are 0, and as they are [m]
+    expected, currents : (n, s, s) covariance of `left`, and that part of it which is the currents'
+    fixed : (n, s, q) slopes with factors, datum and offsets
+    fall : (n, s) change of the depth of each sensor with how far it has moved throughout
+    bent : (n, s, s) covariance of the errors of the line itself, of a share of 1
     """
 
-    left: Floats
-    seen: Floats
-    inverse: Floats
-    weight: Floats
+    time: NDArray[np.datetime64]
+    share: Floats
     known: NDArray[np.bool_]
+    raw: Floats
+    left: Floats
+    expected: Floats
+    currents: Floats
+    fixed: Floats
+    fall: Floats
+    bent: Floats
+
+    @cached_property
+    def inverse(self) -> Floats:
+        """Return (n, s, s) of the covariance of what is left."""
+        return np.asarray(np.linalg.inv(self.expected), np.float64)
+
+    @cached_property
+    def weight(self) -> Floats:
+        """Return (n,) what a time counts, by Student's law: one of large misfit less."""
+        misfit = np.einsum("ns,nst,nt->n", self.left, self.inverse, self.left)
+        weight: Floats = (ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit)
+        return weight
 
     def pulls(self, seen: Floats, left: Floats) -> Floats:
         """Return (n, q) slopes of the logarithm of the likelihood of each time."""
-        pull: Floats = np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left)
-        return pull
+        return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
 
     def normal(self, seen: Floats) -> Floats:
         """Return (q, q) the information of all times."""
         heavy = self.weight[:, None, None] * self.inverse
-        matrix: Floats = np.einsum("nsq,nsr->qr", seen, heavy @ seen)
-        return matrix
+        return np.asarray(np.einsum("nsq,nsr->qr", seen, heavy @ seen))
 
 
 NEVER = -1
@@ -175,9 +216,7 @@ def chance_of(first: int, times: int) -> tuple[float, float]:
     return float(np.log(SLIPPED / times if first else MISPLACED)), ELSEWHERE
 
 
-def first_time(
-    evidence: Evidence, fall: Floats, share: Floats, mean: Floats, covariance: Floats
-) -> Integers:
+def first_time(law: LinearLaw, mean: Floats, covariance: Floats) -> Integers:
     """Return (s,) the time from which on each sensor most likely hangs elsewhere, if it does.
 
     0 is throughout; `NEVER` where it has too few readings; one of `RAMPS` where it is likelier to
@@ -185,19 +224,19 @@ def first_time(
 
     Parameters
     ----------
-    fall, share : as of `moves`
+    law : what the times say
     mean, covariance : (q,), (q, q) of the unknowns beforehand, without moves
     """
-    count = len(fall)
+    fall, count = law.fall, len(law.time)
     if not count:
-        return np.full(fall.shape[1], -1)
+        return np.full(fall.shape[1], NEVER)
     before = np.linalg.inv(covariance)
-    inverse = np.linalg.inv(evidence.normal(evidence.seen) + before)
-    pull = evidence.pulls(evidence.seen, evidence.left).sum(axis=0)
-    left = evidence.left - evidence.seen @ (inverse @ (pull + before @ mean))
-    heavy = evidence.weight[:, None, None] * evidence.inverse
+    inverse = np.linalg.inv(law.normal(law.fixed) + before)
+    pull = law.pulls(law.fixed, law.raw).sum(axis=0)
+    left = law.raw - law.fixed @ (inverse @ (pull + before @ mean))
+    heavy = law.weight[:, None, None] * law.inverse
     pulls = (heavy @ left[:, :, None])[:, :, 0]
-    crossed = evidence.seen.transpose(0, 2, 1) @ heavy
+    crossed = law.fixed.transpose(0, 2, 1) @ heavy
     single = np.einsum("nss->ns", heavy)
 
     def gained(own: Floats, cross: Floats, alone: Floats, wide: float) -> Floats:
@@ -209,14 +248,14 @@ def first_time(
     gain = gained(*steps, _from_there_on(fall**2 * single), ELSEWHERE)
     gain[1:] += np.log(SLIPPED / count)
     gain[0] += np.log(MISPLACED)
-    after = _from_there_on(evidence.known.astype(float))
+    after = _from_there_on(law.known.astype(float))
     can = (after >= FEWEST) & (after[:1] - after >= FEWEST)
     can[0] = after[0] >= FEWEST
     gain = np.where(can, gain, -np.inf)
     first: Integers = np.where(can.any(axis=0), gain.argmax(axis=0), NEVER)
     best = gain.max(axis=0) + np.where(first > 0, np.log(count), 0.0)  # of a slip at any time
     for code, part in RAMPS.items():
-        ramp = np.minimum(share / part, 1.0)[:, None]
+        ramp = np.minimum(law.share / part, 1.0)[:, None]
         own, cross = (ramp * pulls).sum(axis=0), (crossed * ramp[:, :, None]).sum(axis=0)
         alone = (ramp**2 * single).sum(axis=0)
         chance, wide = chance_of(code, count)
@@ -226,9 +265,7 @@ def first_time(
     return first
 
 
-def fits(
-    evidence: Evidence, fall: Floats, share: Floats, mean: Floats, covariance: Floats
-) -> Iterator[tuple[bool, Floats, float]]:
+def fits(law: LinearLaw, mean: Floats, covariance: Floats) -> Iterator[tuple[bool, Floats, float]]:
     """Yield the best fits where no sensor hangs elsewhere, and then where one does.
 
     A slip that is taken for errors of the currents makes these so large, and the times that show
@@ -236,52 +273,37 @@ def fits(
 
     Parameters
     ----------
-    fall, share, mean, covariance : as of `first_time`
+    law, mean, covariance : as of `first_time`
 
     Yields
     ------
     Whether one does; (n, s) what is left [m]; the logarithm of how likely this is besides.
     """
-    count, _, fixed = evidence.seen.shape
-    first = first_time(evidence, fall, share, mean, covariance)
-    move = moves(first, fall, share)
+    count, sensors, fixed = law.fixed.shape
+    first = first_time(law, mean, covariance)
+    move = moves(first, law.fall, law.share)
     for sensor in (None, *np.flatnonzero(first != NEVER).tolist()):
-        seen, spread, odds = evidence.seen, covariance, 0.0
+        seen, spread, odds = law.fixed, covariance, 0.0
         if sensor is not None:
-            alone = move * (np.arange(fall.shape[1]) == sensor)
+            alone = move * (np.arange(sensors) == sensor)
             seen = np.concatenate([seen, alone[:, :, None]], axis=2)
             spread = np.pad(spread, (0, 1))
             odds, wide = chance_of(int(first[sensor]), count)
             spread[fixed, fixed] = wide**2
         before = np.linalg.inv(spread)
-        matrix, pull = evidence.normal(seen) + before, evidence.pulls(seen, evidence.left)
+        matrix, pull = law.normal(seen) + before, law.pulls(seen, law.raw)
         found = np.linalg.solve(matrix, pull.sum(axis=0) + before[:, :fixed] @ mean)
         off = found - np.pad(mean, (0, len(found) - fixed))
         odds -= 0.5 * (off @ before @ off + np.linalg.slogdet(matrix @ spread)[1])
-        rest = np.where(evidence.known, evidence.left - seen @ found, 0.0)
+        rest = np.where(law.known, law.raw - seen @ found, 0.0)
         yield sensor is not None, rest, float(odds)
-
-
-@dataclass(frozen=True)
-class HangingSensors:
-    """The common unknowns over all ways the sensors may hang.
-
-    Attributes
-    ----------
-    mean, covariance : (q,), (q, q), moves included
-    elsewhere : (s,) see `calm.motion.common_unknowns.Common`
-    """
-
-    mean: Floats
-    covariance: Floats
-    elsewhere: Floats
 
 
 def hanging_sensors(
     normal: Floats, pull: Floats, mean: Floats, covariance: Floats, first: Integers,
     times: int, alike: float,
-) -> HangingSensors:  # fmt: skip
-    """Return the mixture over all ways the sensors may hang.
+) -> tuple[Floats, Floats]:  # fmt: skip
+    """Return mean (q,) and covariance (q, q) over all ways the sensors may hang.
 
     Parameters
     ----------
@@ -315,16 +337,15 @@ def hanging_sensors(
         found, whole = np.zeros(count), np.zeros((count, count))
         whole[part] = np.linalg.inv(normal[part] + before)
         found[free] = whole[part] @ (pull[free] + centre)
-        told.append((log, way, found, whole))
+        told.append((log, found, whole))
     weights = np.exp([log - max(one[0] for one in told) for log, *_ in told])
     weights /= weights.sum()
-    centre = np.sum([w * one[2] for w, one in zip(weights, told, strict=True)], axis=0)
-    spread, elsewhere = np.zeros((count, count)), np.zeros(sensors)
-    for weight, (_, way, found, whole) in zip(weights, told, strict=True):
+    centre = np.sum([w * one[1] for w, one in zip(weights, told, strict=True)], axis=0)
+    spread = np.zeros((count, count))
+    for weight, (_, found, whole) in zip(weights, told, strict=True):
         off = found - centre
         spread += weight * (whole + np.outer(off, off))
-        elsewhere[list(way)] += weight
-    return HangingSensors(centre, spread, elsewhere)
+    return centre, spread
 
 
 def _from_there_on(values: Floats) -> Floats:
@@ -376,11 +397,3 @@ NOISE = 0.2
 """Of a depth by pressure at one time [m]."""
 SPIKE, SPIKES = 30.0, 1e-5
 """Of a depth that is a spike [m], and the probability that one is."""
-
-
-def by_flag(values: Mapping[int, float], flag: NDArray[np.int8]) -> Floats:
-    """Return a figure for every flag; one that is not known counts as bad, 4."""
-    table = np.full(256, values[4])
-    for number, value in values.items():
-        table[number] = value
-    return table[flag.astype(np.uint8)]

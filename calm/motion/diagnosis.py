@@ -14,14 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.motion import common_unknowns
+from calm.motion.common_unknowns import DATUM, ROBUST, LinearLaw
 from calm.motion.correction import Task
-from calm.motion.estimate import best_state, posterior
+from calm.motion.estimate import measured_state, posterior
 from calm.motion.line_response import LineResponse
-from calm.motion.measurements import interpolated
-from calm.motion.remarks import ALL, LIKELY, Fault
-from calm.motion.suspects import NO_TIME, Suspect, line_suspects
+from calm.motion.measurements import chosen_times, interpolated
+from calm.motion.remarks import ALL, LIKELY, NO_TIME, Fault
+from calm.motion.suspects import Suspect, line_suspects
 from calm.motion.unknown_currents import SEABED, unknown_state
-from calm.motion.whole_record import ROBUST, LinearLaw, chosen_times, linear_law, repeated
+from calm.motion.whole_record import common_beforehand, linear_law, repeated
 from calm.physics.line import Floats
 
 LIKELY_ALONE = 1000.0
@@ -57,7 +58,6 @@ class _Found:
     log : its logarithm
     value, deviation : of the size of the last fault
     left : (n, s) what is not explained [m]
-    weight : (n,) what a time counts
     pulls : (n,) what each time says of the size of the last fault
     """
 
@@ -65,7 +65,6 @@ class _Found:
     value: float
     deviation: float
     left: Floats
-    weight: Floats
     pulls: Floats
 
 
@@ -92,15 +91,15 @@ def law_near(task: Task, whole: Task) -> tuple[LinearLaw | None, list[Suspect]]:
         return None, []
     moments = LineResponse(task.measured.at(times), *task.forwards)
     fixed = replace(common, covariance=np.zeros_like(common.covariance))
-    here = unknown_state(moments, fixed) if alone else best_state(moments, fixed)
-    at, found = (here.at, here.found) if alone else (here.begin, here.before)
+    here = unknown_state(moments, fixed) if alone else measured_state(moments, fixed)
     if whole is not task:
         moments = LineResponse(whole.measured.at(times), *task.forwards)
         common = whole.common
         fixed = replace(common, covariance=np.zeros_like(common.covariance))
-        found = posterior(moments.measured, at, here.way.spread, fixed, moments.forward.still)
-    law = linear_law(moments, common, at, found, here.way.spread, task.measured.time[[0, -1]])
-    return law, [] if alone else list(line_suspects(task, moments, here.way, at))
+        still, spread = moments.forward.still, here.way.spread
+        here = replace(here, found=posterior(moments.measured, here.at, spread, fixed, still))
+    law = linear_law(moments, common, here, task.measured.time[[0, -1]])
+    return law, [] if alone else list(line_suspects(task, moments, here.way, here.at))
 
 
 class Diagnosis:
@@ -112,8 +111,9 @@ class Diagnosis:
         self.causes = causes
         self.label, self.law, self.judged = task.measured.label, law, judged
         self.measured = task.measured
-        self.spread = _beforehand(task)
-        self.mean = np.zeros(len(self.spread))
+        depth = float(task.mooring.water.depth) * (SEABED if task.common.inferred else DATUM)
+        known = common_beforehand(task.common.factors, depth, task.measured, task.common.gap)
+        _, self.spread = known.unmoved
         self.white = np.linalg.inv(np.linalg.cholesky(law.expected))
         self.seen = self.white @ law.fixed
         self.alone = task.common.inferred
@@ -261,20 +261,19 @@ class Diagnosis:
         rest = (
             raw - self.law.fixed @ value[: len(self.spread)] - columns @ value[len(self.spread) :]
         )
-        return _Found(log, size, deviation, rest, weight, pulls)
+        return _Found(log, size, deviation, rest, pulls)
 
     def _suspects(self, taken: list[Suspect], begun: _Found) -> Iterator[Suspect]:
         law, none = self.law, np.zeros_like(self.law.raw)
         had = {(one.fault.label, one.fault.kind) for one in taken}
         # not as measured: a gain less than 1 would shrink the errors as well
         depth = np.nan_to_num(self.depth - begun.left)
-        fixed, raw = law.fixed, self._raw(taken)
+        raw = self._raw(taken)
         for one in taken:
             if one.wide:
                 raw = raw - one.column * one.fault.size
-        inverse = self.white.transpose(0, 2, 1) @ self.white
-        evidence = common_unknowns.Evidence(raw, fixed, inverse, begun.weight, law.known)
-        first = common_unknowns.first_time(evidence, law.fall, law.share, self.mean, self.spread)
+        rest = replace(law, raw=raw, left=begun.left)
+        first = common_unknowns.first_time(rest, np.zeros(len(self.spread)), self.spread)
         for j, label in enumerate(self.label):
             mine = np.arange(len(self.label)) == j
             codes = dict.fromkeys(common_unknowns.RAMPS, "drift")
@@ -297,19 +296,13 @@ class Diagnosis:
                     since = self.measured.time[0]
                     span = self.measured.time[-1] - since
                     until = since + common_unknowns.RAMPS[code] * span
-                fault = Fault(label, kind, 0.0, 0.0, 0.0, 0.0, since, until)
+                fault = Fault(label, kind, since=since, until=until)
                 yield Suspect(fault, column, wide, chance, none)
         yield from (one for one in self.causes if (one.fault.label, one.fault.kind) not in had)
         for label, mine in self._whose():
             if (label, "gain") not in had and not self.alone:
-                fault = Fault(label, "gain", 0.0, 0.0, 0.0, 0.0, NO_TIME, NO_TIME)
-                yield Suspect(
-                    fault,
-                    depth * mine,
-                    GAIN,
-                    float(np.log(ALL_GAINS if label == ALL else GAINS)),
-                    none,
-                )
+                chance = float(np.log(ALL_GAINS if label == ALL else GAINS))
+                yield Suspect(Fault(label, "gain"), depth * mine, GAIN, chance, none)
             if (label, "clock") not in had:
                 late = self._late(taken, begun.left, mine)
                 if late.fault.value:
@@ -324,7 +317,7 @@ class Diagnosis:
                 continue
             if {(names[0], "exchanged"), (names[1], "exchanged")} & had:
                 continue
-            fault = Fault(names[0], "exchanged", 0.0, 0.0, 0.0, 0.0, NO_TIME, NO_TIME, names[1])
+            fault = Fault(names[0], "exchanged", other=names[1])
             pairs = len(self.label) * (len(self.label) - 1) / 2
             yield Suspect(fault, shift, 0.0, float(np.log(EXCHANGED / pairs)), shift)
 
@@ -369,15 +362,5 @@ class Diagnosis:
         label = ALL if mine.all() and len(mine) > 1 else self.label[int(mine.argmax())]
         shift, half = self._shift(late, mine), 0.5 * self.step
         rate = (self._shift(late + half, mine) - self._shift(late - half, mine)) / self.step
-        fault = Fault(label, "clock", late, late, late, 0.0, NO_TIME, NO_TIME)
+        fault = Fault(label, "clock", late)
         return Suspect(fault, rate, 0.0, float(np.log(CLOCKS)), shift)
-
-
-def _beforehand(task: Task) -> Floats:
-    """Return (q, q) covariance of factors, datum and offsets beforehand."""
-    common = task.common
-    depth = task.mooring.water.depth
-    datum = SEABED if common.inferred else common_unknowns.DATUM
-    spread = [common_unknowns.FACTORS[name][1] for name in common.factors]
-    offsets = [common_unknowns.OFFSET] * len(common.offset)
-    return np.diag(np.square([*spread, datum * depth, *offsets]))

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.motion import common_unknowns
+from calm.motion import common_unknowns, line_response
 from calm.motion.common_unknowns import Common
-from calm.motion.line_response import Linear, LineResponse, ReadCurrents, between, own_errors
+from calm.motion.line_response import Linear, LineResponse, ReadCurrents
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats
 
@@ -66,7 +66,7 @@ def estimated(
     mixture = Mixture(moments, known.way, first)
     if not len(one.label):
         return mixture.estimate()
-    own = own_errors(at.depth, still, common.inferred)
+    own = line_response.own_errors(at.depth, still, common.inferred)
     for sensor in range(len(one.label)):
         spike = posterior(one, at, known.way.spread, common, still, sensor, furthest, own)
         chance = np.full(len(every), np.log(common_unknowns.SPIKES))
@@ -127,7 +127,7 @@ def _odds(moments: LineResponse) -> Floats:
     """
     one = moments.measured
     known = np.isfinite(one.u) & np.isfinite(one.v)
-    false = np.where(known, common_unknowns.by_flag(common_unknowns.FALSE, one.flag), 0.0)
+    false = np.where(known, line_response.by_flag(common_unknowns.FALSE, one.flag), 0.0)
     odds = np.full((len(one.time), moments.groups), -np.inf)
     for g in range(moments.groups):
         mine = moments.group == g
@@ -327,7 +327,7 @@ def posterior(
     if spike >= 0:
         noise[:, spike] = np.maximum(noise[:, spike], common_unknowns.SPIKE**2)
     if own is None:
-        own = own_errors(at.depth, still, common.inferred)
+        own = line_response.own_errors(at.depth, still, common.inferred)
     own = common.worst**2 * own
     bent = own[:, :, one.point]
     spread_of = slope @ state
@@ -360,32 +360,29 @@ def posterior(
 
 @dataclass(frozen=True)
 class CurrentsState:
-    """The currents as measured, at the levels where the line has them.
-
-    Attributes
-    ----------
-    way : the currents
-    begin, before : the line in them as they are, and what the pressures make of it by its slopes
-    at, found : the same at the best state
-    """
+    """Some currents, the line in them, and what the pressures make of it by its slopes there."""
 
     way: ReadCurrents
-    begin: Linear
-    before: Posterior
     at: Linear
     found: Posterior
 
 
-def best_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Hang the currents where the line is, and find the best state."""
+def measured_state(moments: LineResponse, common: Common) -> CurrentsState:
+    """Hang the currents where the line is, and take them as they were measured."""
     one, still = moments.measured, moments.forward.still
     none = np.zeros((len(one.time), moments.groups))
-    there = between(one, np.tile(still, (len(one.time), 1)), still)
+    there = line_response.between(one, np.tile(still, (len(one.time), 1)), still)
     there = moments.depths(moments.way(moments.levels(there), common), none)
-    way = moments.way(moments.levels(between(one, there, still)), common)
-    begin = at = moments.linear(way, none)
-    before = found = posterior(one, at, way.spread, common, still)
+    way = moments.way(moments.levels(line_response.between(one, there, still)), common)
+    at = moments.linear(way, none)
+    return CurrentsState(way, at, posterior(one, at, way.spread, common, still))
+
+
+def best_state(moments: LineResponse, common: Common) -> CurrentsState:
+    """Return the best state of currents that were measured."""
+    state = measured_state(moments, common)
+    way, at, found = state.way, state.at, state.found
     for _ in range(2):
         at = at.moved(found.logs, moments.depths(way, found.logs))
-        found = posterior(one, at, way.spread, common, still)
-    return CurrentsState(way, begin, before, at, found)
+        found = posterior(moments.measured, at, way.spread, common, moments.forward.still)
+    return CurrentsState(way, at, found)

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from calm.batch.finished import labels_of
 from calm.dataset.discovery import FLAGS, written
-from calm.errors import InputError, Problem, UsageError
+from calm.errors import UsageError, refused
 from calm.motion.correction import ESTIMATED, MEASURED, MISSING
-from calm.motion.line_places import LinePlaces, points_of
+from calm.motion.matching import LinePlaces, points_of
 from calm.motion.measurements import interpolated
 from calm.motion.study import depths_at
 from calm.records import cf_files
@@ -95,8 +95,8 @@ def read_instruments(
 
 
 def _read(path: Path, seabed: float, replacing: bool) -> Instruments:
-    if not path.is_file() or not cf_files.holds_arrays(path):
-        raise InputError([Problem(str(path), 0, 0, "is not NetCDF, RODB, .cnv or RBR's table")])
+    if path.is_dir():
+        raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
     with cf_files.opened(path) as dataset:
         if groups := cf_files.groups_of(path):
             raise cf_files.UnreadableError(
@@ -231,7 +231,7 @@ def at_own_times(
 
     Parameters
     ----------
-    point : see `calm.motion.line_places`
+    point : see `calm.motion.matching`
     time : (n,)
     gap : between neighbours of a depth, at most
     """

@@ -124,13 +124,11 @@ class LineResponse:
         without : groups whose currents are taken from the others
         """
         if common.law is not None:
-            u = np.tile(np.exp(common.law.mean), (len(level), 1))
-            spread = np.tile(common.law.covariance, (len(level), 1, 1))
-            return ReadCurrents(level, u, np.zeros_like(u), spread)
+            return common.law.read(level)
         u, v, known = self.read(level, without)
         speed = np.maximum(np.hypot(u, v), 1e-3)
         own = np.hypot(
-            common_unknowns.by_flag(common_unknowns.LEVEL, self.measured.flag),
+            by_flag(common_unknowns.LEVEL, self.measured.flag),
             common_unknowns.STEADY / speed,
         )
         gap = common.gap[:, [*without]].max(axis=1) if without else np.diag(common.gap)
@@ -161,6 +159,12 @@ class LineResponse:
         own = [self.depths(way, logs + ahead) for ahead in STEP * np.eye(self.groups)]
         common = [self.depths(way, logs, forward) for forward in self.shifted.values()]
         return Linear(logs, there, _slopes(own, there), _slopes(common, there))
+
+
+def by_flag(values: Mapping[int, float], flag: NDArray[np.int8]) -> Floats:
+    """Return a figure for every flag; one that is not known counts as bad, 4."""
+    table = np.array([values.get(number, values[4]) for number in range(256)])
+    return table[flag.astype(np.uint8)]
 
 
 def _slopes(ahead: Sequence[Floats], there: Floats) -> Floats:
@@ -230,6 +234,15 @@ class Forward:
         depth, u, v : see `solve`
         """
         return points(self.solve(depth, u, v))
+
+
+def forwards_of(mooring: Mooring, common: Common) -> tuple[Forward, dict[str, Forward]]:
+    """Return the mooring at the common factors, and a step from each."""
+    shifted = {
+        name: Forward(mooring, {**common.factors, name: value * float(np.exp(STEP))})
+        for name, value in common.factors.items()
+    }
+    return Forward(mooring, common.factors), shifted
 
 
 def points(profiles: Profiles) -> Floats:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,16 +15,18 @@ from numpy.typing import NDArray
 from calm.batch.statuses import implausible
 from calm.errors import UsageError, unknown
 from calm.motion.common_unknowns import NOISE, NORMAL
-from calm.motion.sensors import Sensor
 from calm.physics.line import Floats, Integers
 from calm.records.current_file import open_record
 from calm.records.current_terms import Terms
-from calm.records.instrument_series import split_label
+from calm.records.instrument_series import InstrumentSeries, split_label
 from calm.records.record import RULES
 from calm.records.velocity import MISSING
 
 MOST_GROUPS = 8
 """So many levels have errors of their own; of more, neighbours share theirs."""
+
+MOST_TIMES = 500
+"""So many times, spread evenly over the record, are what is common to it estimated from."""
 
 FREE = -1
 """In place of a point or a sensor, where a level has none."""
@@ -42,8 +43,7 @@ class MooringMeasurements:
     point : (s,) where they are, see `calm.motion.line_response`
     depth : (n, s) below the surface by their pressures [m]; NaN where not measured, or flagged
     level_depth : (n, k) [m]; NaN for levels that hang on the line
-    level_point, level_sensor : (k,) the point that a level hangs at, and the used sensor there;
-        `FREE` without
+    level_point : (k,) the point that a level hangs at; `FREE` without
     u, v : (n, k) current [m/s], NaN where not measured
     flag : (n, k) quality flags of the current; 0 where it has none
     tide : (n,) height of the sea surface above its mean [m]; None where not known
@@ -56,12 +56,18 @@ class MooringMeasurements:
     depth: Floats
     level_depth: Floats
     level_point: Integers
-    level_sensor: Integers
     u: Floats
     v: Floats
     flag: NDArray[np.int8]
     tide: Floats | None = None
     false: NDArray[np.bool_] | None = None
+
+    @property
+    def level_sensor(self) -> Integers:
+        """Return (k,) the used sensor where a level hangs; `FREE` without."""
+        used = self.point.tolist()
+        found = [used.index(at) if at in used else FREE for at in self.level_point.tolist()]
+        return np.array(found, np.int64)
 
     @property
     def group(self) -> Integers:
@@ -71,17 +77,20 @@ class MooringMeasurements:
 
     def at(self, times: slice | Integers) -> MooringMeasurements:
         """Return what was measured at some of the times."""
-        return replace(
-            self,
-            time=self.time[times],
-            depth=self.depth[times],
-            level_depth=self.level_depth[times],
-            u=self.u[times],
-            v=self.v[times],
-            flag=self.flag[times],
-            tide=None if self.tide is None else self.tide[times],
-            false=None if self.false is None else self.false[times],
-        )
+        columns = ("time", "depth", "level_depth", "u", "v", "flag", "tide", "false")
+        known = {name: getattr(self, name) for name in columns}
+        return replace(self, **{name: one[times] for name, one in known.items() if one is not None})
+
+
+def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
+    """Return times that have a current and a pressure, or a pressure alone, evenly spread where
+    they are many.
+    """
+    currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
+    used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
+    if len(used) <= MOST_TIMES:
+        return used
+    return used[np.linspace(0, len(used) - 1, MOST_TIMES).round().astype(np.int64)]
 
 
 def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[str, ...]:
@@ -98,14 +107,16 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
 Times = NDArray[np.datetime64]
 
 
-def common_times(currents: Sequence[CurrentMeasurements], sensors: Sequence[Sensor]) -> Times:
+def common_times(
+    currents: Sequence[CurrentMeasurements], sensors: Sequence[InstrumentSeries]
+) -> Times:
     """Return those of the first current, or of the first sensor without; of the others, and then of
     the sensors, what is far from these.
 
     Far is more than half of the median step of what is there already; of readings less than a
     quarter apart, as those of a burst, the first is taken.
     """
-    everything: list[CurrentMeasurements | Sensor] = [*currents, *sensors]
+    everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time
     for other in everything[1:]:
         step = np.median(np.diff(times)) if len(times) > 1 else np.timedelta64(1, "h")
@@ -151,7 +162,7 @@ def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64)
     return np.where(near, result, np.nan)
 
 
-def measured_at(one: Sensor, wanted: Times, gap: np.timedelta64) -> Floats:
+def measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Floats:
     """Return depths of a sensor at other times; where it has a reading of its own, that one or
     none.
 
@@ -161,9 +172,9 @@ def measured_at(one: Sensor, wanted: Times, gap: np.timedelta64) -> Floats:
     wanted : (n,) other times
     gap : between known neighbours, at most
     """
-    result = interpolated(one.time, one.depth, wanted, gap)
+    result = interpolated(one.time, one.value, wanted, gap)
     at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
-    own: Floats = np.where(one.time[at] == wanted, one.depth[at], result)
+    own: Floats = np.where(one.time[at] == wanted, one.value[at], result)
     return own
 
 
@@ -202,7 +213,7 @@ FAR_NEIGHBOURS = 4.0
 
 def joined(
     currents: Sequence[CurrentMeasurements],
-    sensors: Sequence[Sensor],
+    sensors: Sequence[InstrumentSeries],
     points: Sequence[int],
     labels: Sequence[str],
     still: Floats,
@@ -236,14 +247,18 @@ def joined(
                     what = f"{one.source}: no part of the line is called `{label}`"
                     raise UsageError(unknown(what, label, labels))
                 where = list(labels).index(label)
-            at = interpolated(one.time, one.depth[:, k], time, gap)
-            u = interpolated(one.time, one.u[:, k], time, gap)
-            v = interpolated(one.time, one.v[:, k], time, gap)
-            place = float(still[where]) if label else _mean(at)
+            at, u, v = (
+                interpolated(one.time, each[:, k], time, gap) for each in (one.depth, one.u, one.v)
+            )
+            places = [float(still[where])] if label else at[np.isfinite(at)].tolist()
+            place = float(np.mean(places)) if places else float("inf")
             columns.append((place, where, at, u, v, _nearest(one, k, time)))
     columns.sort(key=lambda column: column[0])
-    level_point = np.array([column[1] for column in columns], np.int64)
-    used = point.tolist()
+    none = np.zeros((len(time), 0))
+    level, u, v, flag = (
+        np.stack([column[i] for column in columns], axis=1) if columns else none
+        for i in (2, 3, 4, 5)
+    )
     tide = None
     if sea_level is not None:
         tide = interpolated(*sea_level, time, gap)
@@ -253,31 +268,24 @@ def joined(
     when = [one.time[one.false] for one in currents if one.false is not None]
     measured = MooringMeasurements(
         time,
-        tuple(one.label or labels[where] for one, where in zip(sensors, used, strict=True)),
+        tuple(labels[where] for where in point.tolist()),
         point,
         depth,
-        _beside([column[2] for column in columns], len(time)),
-        level_point,
-        np.array([used.index(at) if at in used else FREE for at in level_point.tolist()], np.int64),
-        _beside([column[3] for column in columns], len(time)),
-        _beside([column[4] for column in columns], len(time)),
-        _beside([column[5] for column in columns], len(time)).astype(np.int8),
+        level,
+        np.array([column[1] for column in columns], np.int64),
+        u,
+        v,
+        flag.astype(np.int8),
         tide,
         np.isin(time, np.concatenate(when)) if when else None,
     )
-    if currents:
-        _refuse_apart(measured)
+    both = (np.isfinite(u) & np.isfinite(v)).any(axis=1) & np.isfinite(depth).any(axis=1)
+    if currents and not both.any():
+        raise UsageError(
+            "no time has both a current and a pressure: the currents have none, or the two "
+            "records are of different times, or further apart than --gap"
+        )
     return measured
-
-
-def _beside(columns: Sequence[NDArray[Any]], times: int) -> NDArray[Any]:
-    """Return columns side by side; (n, 0) without any."""
-    return np.stack(columns, axis=1) if columns else np.zeros((times, 0))
-
-
-def _mean(depth: Floats) -> float:
-    known = depth[np.isfinite(depth)]
-    return float(known.mean()) if known.size else float("inf")
 
 
 def _nearest(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
@@ -289,15 +297,6 @@ def _nearest(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
     flags = np.where(exact, one.flag[upper, k], flags)
     outside = (after == len(one.time)) | ((after == 0) & ~exact)
     return np.where(outside, MISSING, flags).astype(np.int8)
-
-
-def _refuse_apart(measured: MooringMeasurements) -> None:
-    known = np.isfinite(measured.u) & np.isfinite(measured.v)
-    if not (known.any(axis=1) & np.isfinite(measured.depth).any(axis=1)).any():
-        raise UsageError(
-            "no time has both a current and a pressure: the currents have none, or the two "
-            "records are of different times, or further apart than --gap"
-        )
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,19 +18,28 @@ from calm.batch.work import Progress
 from calm.batch.work_store import identity_of, open_store, to_text
 from calm.case import Mooring
 from calm.dataset.discovery import hashed
-from calm.errors import UsageError, unknown
+from calm.errors import UsageError, not_among, unknown
+from calm.motion import matching, sensors
 from calm.motion.common_unknowns import MISPLACED, SPIKE
 from calm.motion.correction import BLOCK, MeasuredRecord, MotionWork, Task, motion_layout
 from calm.motion.diagnosis import FEWEST, Diagnosis, diagnosed, law_near
-from calm.motion.line_response import FACTORS
-from calm.motion.matching import CORRECTABLE, GAP, read_measured, without
-from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, read_currents
-from calm.motion.remarks import LIKELY, Agreement, Fault, SensorFit
-from calm.motion.study import HeldOut, Study, cross_validated, judged, prepare, several
-from calm.motion.suspects import NO_TIME, Suspect
+from calm.motion.line_response import FACTORS, instruments_of
+from calm.motion.matching import without
+from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, joined, read_currents
+from calm.motion.remarks import ALL, LIKELY, NO_TIME, Fault, SensorFit
+from calm.motion.study import MotionEstimate, cross_validated, judged, prepare, several
+from calm.motion.suspects import Suspect, distances_of, torn
+from calm.records.instrument_series import split_label
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+
+_MATCHES = ("label", "height", "depth")
+CORRECTABLE = ("clock", "gain", "offset", "drift", "air")
+"""What can be taken off what a sensor reads: of `calm.motion.remarks.Fault`, and the air."""
+GAP = np.timedelta64(2, "h")
+"""Longest time between two values that are interpolated, where nothing else is asked for."""
 
 
 def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
@@ -55,19 +64,25 @@ class RecoveredMooring:
     Attributes
     ----------
     mooring : with a position
-    pressures, currents, match, flags, gap, sea_level, declination : see `read_measured`
+    pressures, currents : files, as their paths or as ``LABEL=PATH``
+    match : by `label`, or by nominal `height` or `depth`
     fit : what is estimated besides the drag
     hold_out : labels of sensors that are hidden, and at which the result is judged
     cross_validate : whether each used sensor is hidden in turn
     correct : of `CORRECTABLE`, what is taken off where nothing else is as likely
     judge : label of a sensor that is hidden, and of which is said whether it fits; empty of none
+    sea_level : the height of the sea surface, as a path
+    flags : of the pressures that count as measured, separated by commas
+    gap : longest time between two values that are interpolated
+    declination : added to the directions of the currents [degrees]
     prior : a record of currents whose shapes are taken, where none were measured; None of none
-    measured, notes, source : what was read, see `read_measured`
+    measured, notes, source : what was read, with notes on it and the source files
 
     Raises
     ------
     InputError, UsageError
-        A file cannot be read, or what is asked for cannot be done.
+        A file cannot be read, the mooring has no position, no sensor is left, or what is asked for
+        cannot be done.
     """
 
     mooring: Mooring
@@ -111,10 +126,62 @@ class RecoveredMooring:
             several(self.measured, self.hidden)
 
     def _read(self) -> None:
-        self.measured, self.notes, self.source = read_measured(
-            self.mooring, self.pressures, self.currents, self.match, self.flags, self.gap,
-            self.sea_level, self.declination, self._faults, "air" in self.correct,
+        """Read what was measured, at common times, less the faults that are known."""
+        mooring, position = self.mooring, self.mooring.file.position
+        if self.match not in _MATCHES:
+            raise UsageError(not_among("--match", self.match, _MATCHES))
+        if position is None:
+            raise UsageError(
+                f"{mooring.file.path} has no `position`, whose latitude turns pressures into depths"
+            )
+        seabed, line = float(mooring.water.depth), matching.places_of(mooring)
+        wanted = sensors.parse_flags(self.flags)
+        given = sensors.read_sensors(self.pressures, wanted, position.latitude, seabed)
+        if self.match == "label":
+            points, notes = matching.matched_by_label(given, line)
+        else:
+            points, notes = matching.matched_by_place(given, line, instruments_of(mooring))
+        read = read_currents(
+            self.currents, seabed, (position.latitude, position.longitude), self.declination,
+            mooring.file.environment.maximum_speed,
         )  # fmt: skip
+        notes += dict.fromkeys(f"{one.source}: {one.note}" for one in given if one.note)
+        used, absolute = [], "air" in self.correct
+        for i, at in points.items():
+            depth = given[i].value - sensors.AIR * absolute
+            one = replace(given[i], label=line.label[at], value=depth)
+            for fault in self._faults:
+                if fault.label in (ALL, one.label):
+                    time, depth = fault.taken_off(one.time, one.value)
+                    one = replace(one, time=time, value=depth)
+            one, said = sensors.plausible(one, float(line.still[at]), seabed)
+            used.append(one)
+            notes += said
+            if one.dropped:
+                notes.append(f"{one.label}: {one.dropped} pressures left out for their flag")
+        if not any(np.isfinite(one.value).any() for one in used):
+            raise UsageError("--pressures: no sensor has a good pressure: " + "; ".join(notes))
+        level = None if self.sea_level is None else sensors.read_sea_level(self.sea_level)
+        where = list(points.values())
+        measured = joined(read, used, where, line.label, line.still, self.gap, level)
+        notes += [f"{one.source}: {note}" for one in read for note in one.notes]
+        places = line.still[measured.point]
+        notes += sensors.air_notes(measured.depth, places)
+        lost = sensors.unusable(measured.label, measured.depth, places)
+        notes += [f"{label} {reason}" for label, reason in lost.items()]
+        measured = without(measured, list(lost))
+        if not measured.label:
+            raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
+        self.measured, said = torn(measured, distances_of(mooring))
+        self.notes = notes + said
+        self.source = {
+            "currents": ", ".join(hashed(split_label(one)[1]) for one in self.currents),
+            "pressures": ", ".join(hashed(split_label(one)[1]) for one in self.pressures),
+        }
+        off = [one.sentence() for one in self._faults]
+        off += ["all sensors: 10.13 dbar, the pressure of the air"] * absolute
+        if off:
+            self.source["corrected"] = "taken off: " + "; ".join(off)
         if self.prior is not None:
             self.source["prior"] = hashed(self.prior)
 
@@ -169,7 +236,7 @@ class RecoveredMooring:
         result: Dataset,
         tell: Callable[[str], None] = lambda _: None,
         workers: int | None = None,
-    ) -> Study:
+    ) -> MotionEstimate:
         """Return how a finished result agrees with all that was measured.
 
         Parameters
@@ -179,14 +246,15 @@ class RecoveredMooring:
         workers : threads
         """
         faults = (*self._faults, *diagnosed(self.task))
-        study = judged(self.task, self.measured, result, faults)
+        study = replace(judged(self.task, self.measured, result, faults), notes=tuple(self.notes))
         if self.judge:
             study = replace(study, judged=fit_of(self.task, self.measured, self.judge))
         if self.cross_validate:
             each = cross_validated(
                 self.mooring, self.measured, self.names, self.hidden, tell, workers, self.shapes
             )
-            study = replace(study, held_out=(*study.held_out, *each))
+            held = {**study.held_out, **{one.label: one for one in each}}
+            study = replace(study, held_out=held)
         return study
 
 
@@ -211,8 +279,7 @@ def fit_of(task: Task, measured: MooringMeasurements, label: str) -> SensorFit:
         measured, [one for one in measured.label if one not in (*task.measured.label, label)]
     )
     at, one, common = kept.label.index(label), task.measured, task.common
-    level = one.level_sensor + (one.level_sensor >= at)
-    with_it = replace(one, label=kept.label, point=kept.point, depth=kept.depth, level_sensor=level)
+    with_it = replace(one, label=kept.label, point=kept.point, depth=kept.depth)
     common = replace(
         common,
         offset=np.insert(common.offset, at, 0.0),
@@ -257,74 +324,6 @@ def fit_of(task: Task, measured: MooringMeasurements, label: str) -> SensorFit:
     if fits is False and max(against) > nothing:
         reason = mine[int(np.argmax(against))][0].fault.sentence()
     return SensorFit(label, fits, odds, reason)
-
-
-@dataclass(frozen=True, repr=False)
-class MotionEstimate:
-    """The depth of every part of a mooring at every time, and how well it agrees with the sensors.
-
-    Attributes
-    ----------
-    study : what was estimated for the whole record, and its agreement
-    notes : what was said of the input, in sentences
-    """
-
-    study: Study
-    notes: tuple[str, ...]
-    _dataset: Dataset
-
-    @property
-    def factors(self) -> Mapping[str, tuple[float, float, float]]:
-        """Return each factor of the whole record with the ends of its interval of 95 %."""
-        return self.study.factors
-
-    @property
-    def sensors(self) -> Mapping[str, Agreement]:
-        """Return how the estimate agrees with each used sensor, by label."""
-        return self.study.fit
-
-    @property
-    def held_out(self) -> Mapping[str, HeldOut]:
-        """Return how well the depths of each hidden sensor were found, by label."""
-        return {one.label: one for one in self.study.held_out}
-
-    @property
-    def diagnosis(self) -> tuple[Fault, ...]:
-        """Return what is wrong with sensors, line and currents, with sizes and odds."""
-        return (*self.study.diagnosis, *self.study.line)
-
-    @property
-    def judged(self) -> SensorFit | None:
-        """Return whether the sensor of `judge` fits the line, with the odds."""
-        return self.study.judged
-
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """Return doubts about the data, in sentences."""
-        return self.study.remarks
-
-    def to_xarray(self) -> Dataset:
-        """Return the dataset that ``calm motion`` writes, with labels and units."""
-        return self._dataset.copy()
-
-    def __repr__(self) -> str:
-        """Return the times, the factors and the agreement, in ten lines at most."""
-        time = self._dataset["time"].values
-        name = self.study.task.mooring.file.name or "mooring"
-        span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}"
-        lines = [f"{name}: {len(time)} times, {span}"]
-        lines += [
-            f"{factor}: {value:.3f} ({low:.3f} to {high:.3f})"
-            for factor, (value, low, high) in self.factors.items()
-        ]
-        for title, found in (("used", self.sensors), ("hidden", self.held_out)):
-            if found:
-                rms = [one.rms for one in found.values()]
-                low, high = min(rms), max(rms)
-                lines.append(f"{len(rms)} sensors {title}: rms {low:.2f} to {high:.2f} m")
-        if self.remarks:
-            lines.append(f"{len(self.remarks)} remarks")
-        return "\n".join(lines)
 
 
 def estimate_motion(
@@ -396,5 +395,4 @@ def estimate_motion(
         recovery.estimate(output, workers=workers)
         with open_result(output) as kept:
             dataset = kept.load()
-    study = recovery.study(dataset, workers=workers)
-    return MotionEstimate(study, tuple(recovery.notes), dataset)
+    return recovery.study(dataset, workers=workers)

@@ -14,6 +14,7 @@ from calm.physics.line import Floats, Integers
 
 Times = NDArray[np.datetime64]
 
+NO_TIME = np.datetime64("NaT", "ns")
 FALSE = 0.5
 """Probability from which the current of a level is named as false."""
 ALL, LINE, CURRENTS = "all sensors", "the line", "all currents"
@@ -52,12 +53,12 @@ class Fault:
 
     label: str
     kind: str
-    value: float
-    low: float
-    high: float
-    odds: float
-    since: np.datetime64
-    until: np.datetime64
+    value: float = 0.0
+    low: float = 0.0
+    high: float = 0.0
+    odds: float = 0.0
+    since: np.datetime64 = NO_TIME
+    until: np.datetime64 = NO_TIME
     other: str = ""
     rival: str = ""
     corrected: bool = False
@@ -85,6 +86,17 @@ class Fault:
         """Whether it is the same, or both are of the line as a whole and all its currents."""
         both = {self.label, other.label} <= {LINE, CURRENTS}
         return both or self.same(other)
+
+    def taken_off(self, time: Times, depth: Floats) -> tuple[Times, Floats]:
+        """Return what a sensor would have read without it, and when: (n,) each [m]."""
+        if self.kind == "clock":
+            return time - np.timedelta64(round(self.value * 3.6e12), "ns"), depth
+        if self.kind == "gain":
+            return time, depth / self.value
+        share: Floats = np.ones(1)
+        if self.kind != "offset":
+            share = np.clip((time - self.since) / (self.until - self.since), 0.0, 1.0)
+        return time, depth - self.value * share
 
     @property
     def certain(self) -> bool:
@@ -327,15 +339,14 @@ def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats
 
     Beyond the sensors the slope of the two nearest goes on; a single one moves everything alike.
     """
-    order = np.argsort(still[point], kind="stable")
-    place, values = still[point][order], depth[:, order]
+    from scipy.interpolate import make_interp_spline
+
+    place, first = np.unique(still[point], return_index=True)
+    values = depth[:, first]
     if len(place) == 1:
-        alike: Floats = values[:, 0] + still[wanted] - place[0]
-        return alike
-    upper = int(np.clip(np.searchsorted(place, still[wanted]) - 1, 0, len(place) - 2))
-    share = (still[wanted] - place[upper]) / (place[upper + 1] - place[upper])
-    between: Floats = values[:, upper] * (1.0 - share) + values[:, upper + 1] * share
-    return between
+        return np.asarray(values[:, 0] + still[wanted] - place[0])
+    line = make_interp_spline(place, values, k=1, axis=1, check_finite=False)
+    return np.asarray(line(still[wanted]))
 
 
 def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:

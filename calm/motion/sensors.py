@@ -1,10 +1,14 @@
-"""Pressures of instruments on a mooring, turned into depths, and the height of the sea surface."""
+"""Pressures of instruments on a mooring, turned into depths, and which of these can be right.
+
+And the height of the sea surface.
+"""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,11 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError
+from calm.motion.common_unknowns import FEWEST
 from calm.physics.line import Floats
-from calm.records import cf_files, instrument_series
+from calm.records import cf_files, instrument_series, instrument_text
 from calm.records.attributes import words_of
 from calm.records.cf_files import UnreadableError, factor_of, find_times
 from calm.records.headings import read_time_columns
+from calm.records.instrument_series import InstrumentSeries
 from calm.records.velocity import MISSING, flag_variable
 
 if TYPE_CHECKING:
@@ -31,39 +37,13 @@ _NOT_MEASURED = re.compile(
 )
 
 
-@dataclass(frozen=True)
-class Sensor:
-    """Hold what one sensor measured.
-
-    Attributes
-    ----------
-    label : what it is called; empty where its file does not say
-    time : (n,) to the nanosecond, rising
-    depth : (n,) below the surface [m]; NaN where nothing was measured, or the flag is not wanted
-    source : its file
-    nominal : depth where it was meant to hang [m]; NaN where its file does not say
-    dropped : readings that were left out for their flag
-    note : what a person should know before trusting it
-    serial : number of the instrument; empty where its file does not say
-    """
-
-    label: str
-    time: NDArray[np.datetime64]
-    depth: Floats
-    source: str
-    nominal: float = float("nan")
-    dropped: int = 0
-    note: str = ""
-    serial: str = ""
-
-
 def read_sensors(
     given: Sequence[str], flags: frozenset[int], latitude: float, seabed: float
-) -> list[Sensor]:
-    """Return the sensors of some files, each given by its path, or as ``LABEL=PATH`` where it has
-    one.
+) -> list[InstrumentSeries]:
+    """Return the depths that the sensors of some files measured, by instrument [m].
 
-    Pressures are turned into depths by TEOS-10.
+    A file is given by its path, or as ``LABEL=PATH`` where it has one. Pressures are turned into
+    depths by TEOS-10.
 
     Parameters
     ----------
@@ -78,11 +58,8 @@ def read_sensors(
     UsageError
         A label is given for a file of several sensors; two sensors are called the same.
     """
-    found: list[Sensor] = []
-    for text in given:
-        label, path = instrument_series.split_label(text)
-        if not path.exists():
-            raise InputError([Problem(str(path), 0, 0, "no such file")])
+    found: list[InstrumentSeries] = []
+    for label, path in instrument_series.files_given(given):
         if cf_files.holds_arrays(path):
             with cf_files.opened(path) as dataset:
                 mine = _from_arrays(dataset, path, flags, latitude, seabed)
@@ -113,7 +90,7 @@ def depth_of(dbar: Floats, latitude: float) -> Floats:
 
 def _from_arrays(
     dataset: xr.Dataset, path: Path, flags: frozenset[int], latitude: float, seabed: float
-) -> list[Sensor]:
+) -> list[InstrumentSeries]:
     name, is_pressure = _find(dataset)
     variable = dataset[name]
     found = instrument_series.readings(dataset, [name], flags)
@@ -130,19 +107,9 @@ def _from_arrays(
     factor = factor_of(variable, unit) / (PASCALS_PER_DBAR if is_pressure else 1.0)
     values = np.where(found.dropped, np.nan, found.values[0] * factor)
     depth = depth_of(values, latitude) if is_pressure else values
-    return [
-        Sensor(
-            **vars(who),
-            time=found.time,
-            depth=depth[:, j],
-            dropped=int(found.dropped[:, j].sum()),
-            note=note,
-        )
-        for j, who in enumerate(
-            instrument_series.who_along(dataset, found.along, seabed, path.name)
-        )
-        if not note or np.isfinite(depth[:, j]).any()
-    ]
+    who = instrument_series.who_along(dataset, found.along, seabed, path.name)
+    each = [replace(one, note=note) for one in found.series(depth, who)]
+    return [one for one in each if not note or np.isfinite(one.value).any()]
 
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
@@ -163,15 +130,17 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
     )
 
 
-def _from_csv(path: Path, latitude: float) -> list[Sensor]:
+def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
     """Return a table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
     table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
     return [
-        Sensor(
+        InstrumentSeries(
             label,
+            "",
+            float("nan"),
+            path.name,
             table.time,
             depth_of(values / PASCALS_PER_DBAR, latitude) if dimension == "pressure" else values,
-            path.name,
         )
         for label, dimension, values in zip(
             table.names, table.dimensions, table.values.T, strict=True
@@ -212,9 +181,7 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
 
     InputError: the file cannot be read, or holds no height with its unit, or one that cannot be.
     """
-    if not path.exists():
-        raise InputError([Problem(str(path), 0, 0, "no such file")])
-    if not cf_files.holds_arrays(path):
+    if path.is_file() and not cf_files.holds_arrays(path):
         table = read_time_columns(path, ("length",), "level[m]")
         if len(table.names) != 1:
             message = "has several columns; the sea level is one: `time,level[m]`"
@@ -222,18 +189,15 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
         _refuse_far(path, table.time, table.values[:, 0])
         return table.time, table.values[:, 0]
     with cf_files.opened(path) as dataset:
-        for standard in _STANDARD:
-            for name in map(str, dataset.cf.standard_names.get(standard, [])):
-                clock = find_times(dataset, name)
-                variable = dataset[name].squeeze()
-                if clock is None or variable.ndim != 1:
-                    continue
-                times = cf_files.read_times(dataset, clock)
-                order = np.argsort(times, kind="stable")
-                level = cf_files.known_values(variable) * factor_of(variable, "length")
-                _refuse_far(path, times, level)
-                return times[order], level[order]
-        raise UnreadableError("holds no height of the sea surface")
+        names = instrument_series.named(dataset, _STANDARD, ())
+        if not names:
+            raise UnreadableError("holds no height of the sea surface")
+        found = instrument_series.readings(dataset, names, frozenset(range(MISSING)))
+        if found.along is not None:
+            raise UnreadableError(f"`{names[0]}` is of several places: {found.along}")
+        level = found.values[0][:, 0] * factor_of(dataset[names[0]], "length")
+        _refuse_far(path, found.time, level)
+        return found.time, level
 
 
 def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None:
@@ -247,3 +211,162 @@ def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None
             "measured"
         )
         raise InputError([Problem(str(path), 0, 0, message)])
+
+
+CONSTANT = 1e-6
+"""A sensor whose depths span no more than this measures nothing [m]."""
+MISPLACED = 20.0
+"""How far from its place in still water a sensor may be at its least depth [m], where that is
+not within a factor of two either."""
+UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}
+"""How many times too great pressures are whose unit was taken for another."""
+ALIKE, APART = 0.03, 3.0
+"""How alike that is, twice as much for several; how far apart exchanged sensors are [m]."""
+BELOW = 1.1
+"""No reading is deeper than the seabed by this factor, and by `MISPLACED`."""
+
+
+def plausible(
+    sensor: InstrumentSeries, place: float, seabed: float
+) -> tuple[InstrumentSeries, list[str]]:
+    """Return a sensor without the readings that cannot be from its place, and what is said of them.
+
+    Those far above its place in still water (on deck, a fill value), those far below the seabed,
+    and the later ones of a time that stands twice. Where most are so, the sensor is wrong, not
+    these readings, and all stay: see `unusable`.
+
+    Parameters
+    ----------
+    place : depth where it hangs in still water [m]
+    seabed : depth of the water [m]
+
+    Raises
+    ------
+    UsageError
+        A third of its times or more stand twice with different depths.
+    """
+    notes = []
+    again = np.zeros(len(sensor.time), bool)
+    again[1:] = sensor.time[1:] == sensor.time[:-1]
+    if again.any():
+        differ = np.abs(np.diff(sensor.value))[again[1:]] > 1.0
+        if 3 * again.sum() >= again.size and 2 * differ.sum() > differ.size:
+            raise UsageError(
+                f"--pressures: `{sensor.label}` has several depths at {again.sum()} of its times: "
+                "these are readings of several instruments; give the file of each"
+            )
+        when = np.datetime_as_string(sensor.time[again][0], "s")
+        notes.append(
+            f"{sensor.label}: {again.sum()} of its times stand twice, the first {when}: the first "
+            "reading of each counts"
+        )
+        sensor = replace(sensor, time=sensor.time[~again], value=sensor.value[~again])
+    least = min(0.5 * place, place - MISPLACED)
+    greatest = max(BELOW * seabed, seabed + MISPLACED)
+    deck = sensor.value[sensor.value < min(least, 2.0 * AIR)]
+    if len(deck) >= FEWEST and np.percentile(np.abs(deck - AIR), 75.0) < ON_DECK:
+        notes.append(
+            f"{sensor.label}: reads {np.median(deck):.1f} m on deck: its pressures are absolute, "
+            "and 10.13 dbar, the air's, are taken off"
+        )
+        sensor = replace(sensor, value=sensor.value - AIR)
+    wrong = (sensor.value < least) | (sensor.value > greatest)
+    if wrong.any() and 2 * wrong.sum() < np.isfinite(sensor.value).sum():
+        first = int(wrong.argmax())
+        notes.append(
+            f"{sensor.label}: {wrong.sum()} of its readings cannot be from its place, "
+            f"{place:.1f} m, and are left out: the first is {sensor.value[first]:.1f} m, at "
+            f"{np.datetime_as_string(sensor.time[first], 's')}"
+        )
+        sensor = replace(sensor, value=np.where(wrong, np.nan, sensor.value))
+    return sensor, notes
+
+
+AIR = instrument_text.AIR / 1.0082
+"""What the pressure of the air adds to a depth by pressure [m], at 1.0082 dbar/m of sea water."""
+NEAR_AIR, ON_DECK = 2.5, 0.6
+"""How near that is, to what sensors are off in calm water, and to what one reads on deck [m]."""
+
+
+def air_notes(depth: Floats, place: Floats) -> list[str]:
+    """Return a sentence where all depths (n, s) are those of absolute pressures; see `unusable`.
+
+    In calm water they are all too great by the pressure of the air, where a current takes them
+    deeper still: what counts is the sensor that is the least too deep.
+    """
+    off = np.array([_least(column) for column in depth.T]) - place
+    alike = float(np.min(off[np.isfinite(off)], initial=np.inf))
+    if abs(alike - AIR) > NEAR_AIR:
+        return []
+    return [
+        f"all sensors are {alike:.1f} m or more below their places at their least: these pressures "
+        "look absolute, 10.13 dbar being the air's. `--correct air` takes it off; else they are "
+        "taken as they stand, the depth of the water being wrong, and all depths are from there"
+    ]
+
+
+def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, str]:
+    """Return why sensors cannot be used, by label; what cannot be right is refused.
+
+    Parameters
+    ----------
+    labels : (s,) of the sensors
+    depth : (n, s) as measured [m]
+    place : (s,) depths where they hang in still water [m]
+
+    Raises
+    ------
+    UsageError
+        A sensor is nowhere near its place on the line, so that its unit or its label is wrong.
+    """
+    reasons, complaints = {}, []
+    least = np.array([_least(column) for column in depth.T])
+    complaints += _exchanged(labels, least, place)
+    units = _other_unit(least, place)
+    for j, label in enumerate(labels):
+        known = depth[:, j][np.isfinite(depth[:, j])]
+        if not known.size:
+            reasons[label] = "has no good pressure at any time of the currents"
+            continue
+        if known.size > 2 and np.ptp(known) <= CONSTANT:
+            reasons[label] = f"is constant at {known[0]:.1f} m: it is left out"
+            continue
+        far = abs(least[j] - place[j]) > MISPLACED and not 0.5 < least[j] / place[j] < 2.0
+        if (far or units) and not any(f"`{label}`" in one for one in complaints):
+            doubted = "sign" if least[j] < -MISPLACED else f"unit ({units or 'bar, kPa?'})"
+            complaints.append(
+                f"`{label}` is at {least[j]:.1f} m at its least, where the line has it at "
+                f"{place[j]:.1f} m: its {doubted} or its label is wrong"
+            )
+    if complaints:
+        raise UsageError("--pressures: " + "; ".join(complaints))
+    return reasons
+
+
+def _least(depth: Floats) -> float:
+    known = depth[np.isfinite(depth)]
+    return float(np.percentile(known, 5.0)) if known.size else float("nan")
+
+
+def _exchanged(labels: Sequence[str], least: Floats, place: Floats) -> list[str]:
+    """Return sentences on pairs of sensors that hang the other way round, as deep as each other."""
+    return [
+        f"`{labels[i]}` is at {least[i]:.1f} m at its least and `{labels[j]}` at {least[j]:.1f} m, "
+        f"where the line has them at {place[i]:.1f} m and {place[j]:.1f} m: their labels are "
+        "exchanged"
+        for i, j in combinations(range(len(labels)), 2)
+        if abs(place[j] - place[i]) > APART
+        and min(least[i], least[j]) > -MISPLACED
+        and -1.5 < (least[j] - least[i]) / (place[j] - place[i]) < -0.6
+    ]
+
+
+def _other_unit(least: Floats, place: Floats) -> str:
+    """Return which unit was taken for another, where all depths are so many times too great."""
+    known = np.isfinite(least)
+    for unit, ratio in UNITS.items():
+        meant = ratio * place[known]
+        near = np.abs(least[known] - meant) < ALIKE * min(known.sum(), 2) * meant
+        if known.any() and near.all() and (np.abs(meant - place[known]) > MISPLACED).any():
+            return unit
+    return ""

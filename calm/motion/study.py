@@ -65,35 +65,64 @@ class HeldOut:
     coverage: float
 
 
-@dataclass(frozen=True)
-class Study:
-    """Hold what was found.
+@dataclass(frozen=True, repr=False)
+class MotionEstimate:
+    """The depth of every part of a mooring at every time, and how well it agrees with the sensors.
 
     Attributes
     ----------
     task : with what is common to the record
-    factors : of each name its value and the ends of its interval of 95 %
-    fit, plain : agreement of each used sensor, of what is estimated and of the currents alone
-    held_out : of the hidden ones
-    diagnosis : what is wrong with sensors
-    line : what is wrong with the line or its currents
+    dataset : the result of `calm motion`
+    factors : each factor of the whole record with the ends of its interval of 95 %
+    sensors, plain : how each used sensor agrees with what is estimated, and with the currents alone
+    held_out : how well the depths of each hidden sensor were found
+    diagnosis : what is wrong with sensors, line and currents, with sizes and odds
     fits : whether the line fits its pressures in these currents
-    remarks : what to doubt, in sentences
+    remarks : doubts about the data, in sentences
     false : times at which the current of a level looks false, by its name
-    judged : whether the sensor that was asked for fits the line; None of none
+    judged : whether the sensor of `judge` fits the line, with the odds; None of none
+    notes : what was said of the input, in sentences
     """
 
     task: Task
+    dataset: Dataset
     factors: Mapping[str, tuple[float, float, float]]
-    fit: Mapping[str, Agreement]
+    sensors: Mapping[str, Agreement]
     plain: Mapping[str, Agreement]
-    held_out: tuple[HeldOut, ...]
+    held_out: Mapping[str, HeldOut]
     diagnosis: tuple[Fault, ...]
-    line: tuple[Fault, ...]
     fits: bool
     remarks: tuple[str, ...]
     false: Mapping[str, NDArray[np.datetime64]]
     judged: SensorFit | None = None
+    notes: tuple[str, ...] = ()
+
+    def faults(self, *, of_line: bool) -> list[Fault]:
+        """Return what is wrong with the line and its currents, or with the sensors."""
+        return [one for one in self.diagnosis if (one.kind in OF_LINE) == of_line]
+
+    def to_xarray(self) -> Dataset:
+        """Return the dataset that ``calm motion`` writes, with labels and units."""
+        return self.dataset.copy()
+
+    def __repr__(self) -> str:
+        """Return the times, the factors and the agreement, in ten lines at most."""
+        time = self.task.measured.time
+        name = self.task.mooring.file.name or "mooring"
+        span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}"
+        lines = [f"{name}: {len(time)} times, {span}"]
+        lines += [
+            f"{factor}: {value:.3f} ({low:.3f} to {high:.3f})"
+            for factor, (value, low, high) in self.factors.items()
+        ]
+        for title, found in (("used", self.sensors), ("hidden", self.held_out)):
+            if found:
+                rms = [one.rms for one in found.values()]
+                low, high = min(rms), max(rms)
+                lines.append(f"{len(rms)} sensors {title}: rms {low:.2f} to {high:.2f} m")
+        if self.remarks:
+            lines.append(f"{len(self.remarks)} remarks")
+        return "\n".join(lines)
 
 
 def prepare(
@@ -149,7 +178,7 @@ def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
 
 def judged(
     task: Task, measured: MooringMeasurements, result: Dataset, diagnosis: Sequence[Fault] = ()
-) -> Study:
+) -> MotionEstimate:
     """Return how a finished result agrees with all that was measured.
 
     Parameters
@@ -173,14 +202,11 @@ def judged(
             plain_of[label] = agreement(plain[:, j], used.depth[:, j], calm, every)
     still = Forward(task.mooring, {}).still
     hidden = [label for label in measured.label if label not in used.label]
-    held = []
+    held = {}
     for label in hidden:
         point = int(measured.point[measured.label.index(label)])
-        depth, spread = depths_at(result, point)
-        held.append(judge_hidden(measured, used, label, depth, spread, still))
+        held[label] = judge_hidden(measured, used, label, *depths_at(result, point), still)
     said = [f"{one.sentence()}{'; it is taken off' if one.corrected else ''}" for one in diagnosis]
-    sensors = tuple(one for one in diagnosis if one.kind not in OF_LINE)
-    line = tuple(one for one in diagnosis if one.kind in OF_LINE)
     false: Mapping[str, NDArray[np.datetime64]] = {}
     unfit = alone_remarks(task.common) if alone else []
     said += unfit
@@ -195,19 +221,12 @@ def judged(
             "the pressures miss the computed depths by more than all errors that are allowed "
             f"for: the bands are widened {task.common.widened:.2g} times"
         )
-    fits = not (line or unfit or task.common.widened > 1.0)
-    return Study(
-        task,
-        intervals(task),
-        fit_of,
-        plain_of,
-        tuple(held),
-        sensors,
-        line,
-        fits,
-        tuple(said),
+    of_line = any(one.kind in OF_LINE for one in diagnosis)
+    fits = not (of_line or unfit or task.common.widened > 1.0)
+    return MotionEstimate(
+        task, result, intervals(task), fit_of, plain_of, held, tuple(diagnosis), fits, tuple(said),
         false,
-    )
+    )  # fmt: skip
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
@@ -268,7 +287,7 @@ def cross_validated(
     tell: Callable[[str], None],
     workers: int | None = None,
     prior: Sequence[CurrentMeasurements] = (),
-) -> tuple[HeldOut, ...]:
+) -> list[HeldOut]:
     """Each used sensor hidden in turn, besides those that are hidden anyway.
 
     Parameters
@@ -290,7 +309,7 @@ def cross_validated(
         point = int(measured.point[measured.label.index(label)])
         depth, spread = estimate_in_memory(task, [point], workers)
         held.append(judge_hidden(measured, task.measured, label, depth[:, 0], spread[:, 0], still))
-    return tuple(held)
+    return held
 
 
 @dataclass(frozen=True)
@@ -323,17 +342,12 @@ def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
     return depth, spread
 
 
-def series_of(
-    mooring: Mooring, measured: MooringMeasurements, used: tuple[str, ...], result: Dataset
-) -> list[SensorSeries]:
+def series_of(study: MotionEstimate, measured: MooringMeasurements) -> list[SensorSeries]:
     """Return the depths of all sensors from the top down, and then of the other instruments.
 
-    Parameters
-    ----------
-    measured : with the sensors that were hidden
-    used : labels of those that were not
-    result : of `calm motion`
+    `measured` has the sensors that were hidden.
     """
+    mooring, used, result = study.task.mooring, study.task.measured.label, study.dataset
     found = []
     for j, label in enumerate(measured.label):
         depth, spread = depths_at(result, int(measured.point[j]))

@@ -3,15 +3,19 @@
 Of the line and its currents: all currents or those of one level read too low or too high, or a
 rotor slows; floats are missing; cables are longer or shorter; the drag is another, or grows by
 fouling. Some do nearly the same to the depths: their odds say whether the record tells them apart.
+Of the readings: two sensors are farther apart than the line between them is long.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
+from calm.case import Mooring
+from calm.files.mooring_file import clamps_down
 from calm.motion import line_response
 from calm.motion.correction import Task
 from calm.motion.line_response import FACTORS, STEP, Forward, Linear, LineResponse, ReadCurrents
@@ -19,7 +23,6 @@ from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
 
-NO_TIME = np.datetime64("NaT", "ns")
 CAUSES: Mapping[str, tuple[float, float]] = {
     "currents": (0.3, 0.02),
     "buoyancy": (0.3, 0.02),
@@ -93,7 +96,7 @@ def line_suspects(
         ahead: Callable[[float], Floats] | None = None, part: Floats | None = None,
     ) -> Suspect:  # fmt: skip
         wide, chance = CAUSES[kind]
-        fault = Fault(label, kind, 1.0, 1.0, 1.0, 0.0, NO_TIME, NO_TIME)
+        fault = Fault(label, kind, value=1.0)
         log, none = float(np.log(chance / among)), np.zeros_like(column)
         return Suspect(fault, column, wide, log, none, ahead, part)
 
@@ -187,3 +190,49 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
             continue
         said.append(f"current at {name}: against {names[near[0]]} and {names[near[1]]}, {what}")
     return said
+
+
+STRETCHED, AMISS = 1.25, 20.0
+"""How many times as long as it was cut a line is at most; how far off pressures may be [m]."""
+
+
+def distances_of(mooring: Mooring) -> Floats:
+    """Return how far each clamp and piece is from the top along the line as cut (p,) [m]."""
+    pieces = mooring.file.pieces
+    tops = np.cumsum([0.0, *mooring.line.length.tolist()])[: len(pieces)]
+    clamps = [
+        top + clamp.at
+        for top, piece in zip(tops, pieces, strict=True)
+        for clamp in clamps_down([piece])
+    ]
+    return np.array([*clamps, *tops])
+
+
+def torn(measured: MooringMeasurements, distance: Floats) -> tuple[MooringMeasurements, list[str]]:
+    """Return what was measured without depths farther apart than the line between two sensors is
+    long, and what is said of them.
+
+    Of the two the one is wrong that is farther from its median. Where most of a sensor's depths
+    are, they stay.
+
+    Parameters
+    ----------
+    distance : (p,) of the points along the line [m]
+    """
+    depth, place = measured.depth, distance[measured.point]
+    away = np.abs(depth - np.nanmedian(depth, axis=0))
+    wrong = np.zeros(depth.shape, bool)
+    for i, j in combinations(range(len(place)), 2):
+        reach = STRETCHED * abs(place[i] - place[j]) + AMISS
+        apart = np.abs(depth[:, i] - depth[:, j]) > reach
+        wrong[:, i] |= apart & (away[:, i] > away[:, j])
+        wrong[:, j] |= apart & (away[:, i] <= away[:, j])
+    wrong &= 2 * wrong.sum(axis=0) < np.isfinite(depth).sum(axis=0)
+    notes = [
+        f"{measured.label[j]}: {wrong[:, j].sum()} of its readings are farther from those of "
+        f"others than the line is long, and are left out: the first is {depth[at, j]:.1f} m, at "
+        f"{np.datetime_as_string(measured.time[at], 's')}"
+        for j, at in enumerate(wrong.argmax(axis=0).tolist())
+        if wrong[at, j]
+    ]
+    return replace(measured, depth=np.where(wrong, np.nan, depth)), notes

@@ -21,11 +21,12 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.errors import UsageError
+from calm.motion import line_response
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import CurrentsState, Posterior, posterior
-from calm.motion.line_response import Forward, Linear, LineResponse, ReadCurrents, labels_of
+from calm.motion.line_response import Forward, Linear, LineResponse, ReadCurrents
 from calm.motion.measurements import FREE, CurrentMeasurements, MooringMeasurements
-from calm.motion.whole_record import common_beforehand, fixed_slopes, forwards_of, repeated
+from calm.motion.whole_record import common_beforehand, fixed_slopes, repeated
 from calm.physics.line import Floats, Integers
 
 KNOTS, FINER = 6, 2.2
@@ -76,7 +77,12 @@ class SpeedLaw:
 
     mean: Floats
     covariance: Floats
-    kept: Linear
+    kept: Linear | None = None
+
+    def read(self, level: Floats) -> ReadCurrents:
+        """Return the currents at levels (n, k), whose direction is the same at all of them [m]."""
+        u = np.tile(np.exp(self.mean), (len(level), 1))
+        return ReadCurrents(level, u, np.zeros_like(u), np.tile(self.covariance, (len(u), 1, 1)))
 
 
 def with_knots(measured: MooringMeasurements, mooring: Mooring) -> MooringMeasurements:
@@ -95,7 +101,6 @@ def with_knots(measured: MooringMeasurements, mooring: Mooring) -> MooringMeasur
         measured,
         level_depth=np.broadcast_to(knots, shape).copy(),
         level_point=np.full(KNOTS, FREE, np.int64),
-        level_sensor=np.full(KNOTS, FREE, np.int64),
         u=np.full(shape, np.nan),
         v=np.full(shape, np.nan),
         flag=np.zeros(shape, np.int8),
@@ -174,8 +179,9 @@ def learn_currents(
     part = measured.at(_chosen(measured))
     mean, covariance = assumed_law(part)
     if prior:
-        labels = dict(zip(labels_of(mooring), Forward(mooring, {}).still.tolist(), strict=True))
-        mean, covariance = shaped_law(part, prior, labels)
+        labels, still = line_response.labels_of(mooring), Forward(mooring, {}).still
+        places = dict(zip(labels, still.tolist(), strict=True))
+        mean, covariance = shaped_law(part, prior, places)
     worth = SHAPED if prior else PRIOR
     begun = common_beforehand(
         dict.fromkeys(names, 1.0), SEABED * mooring.water.depth, part, np.zeros((KNOTS, KNOTS))
@@ -190,8 +196,8 @@ def learn_currents(
     used = np.flatnonzero(down >= np.quantile(down, 1.0 - STRONGER))
     for turn in range(TURNS):
         tell(f"learning the currents from the pressures: {turn + 1} of {TURNS}")
-        moments = LineResponse(part, *forwards_of(mooring, common))
-        fit = _Fit(moments, replace(common, covariance=nothing), mean, covariance)
+        moments = LineResponse(part, *line_response.forwards_of(mooring, common))
+        fit = _Fit(moments, replace(common, covariance=nothing), SpeedLaw(mean, covariance))
         at = fit.linear(logs) if at is None else fit.moved(at, logs)
         found = fit.posterior(at)
         tried = logs + reach[:, None] * np.clip(found.logs - logs, -LONGEST, LONGEST)
@@ -224,13 +230,11 @@ class _Fit:
 
     moments: LineResponse
     common: Common
-    mean: Floats
-    covariance: Floats
+    law: SpeedLaw
 
     @property
     def way(self) -> ReadCurrents:
-        law = SpeedLaw(self.mean, self.covariance, _NOTHING)
-        return self.moments.way(self.moments.measured.level_depth, replace(self.common, law=law))
+        return self.law.read(self.moments.measured.level_depth)
 
     def linear(self, logs: Floats) -> Linear:
         """Return the line in these currents with its slopes there."""
@@ -250,18 +254,15 @@ class _Fit:
         one, point = self.moments.measured, self.moments.measured.point
         found = self.posterior(at)
         seen = at.slope[:, point]
-        rest = found.expected - seen @ self.covariance @ seen.transpose(0, 2, 1)
+        rest = found.expected - seen @ self.law.covariance @ seen.transpose(0, 2, 1)
         tide = 0.0 if one.tide is None else one.tide[:, None]
         there = at.depth[:, point] + self.common.datum + self.common.offset + tide
         left = np.where(np.isfinite(one.depth), one.depth - there, 0.0)
         size = np.linalg.slogdet(rest)[1]
         bent = np.einsum("ns,ns->n", left, np.linalg.solve(rest, left[:, :, None])[:, :, 0])
-        own = np.einsum("nk,kl,nl->n", at.logs, np.linalg.inv(self.covariance), at.logs)
+        own = np.einsum("nk,kl,nl->n", at.logs, np.linalg.inv(self.law.covariance), at.logs)
         sum_of_all: Floats = np.nan_to_num(bent + own + size, nan=np.inf)
         return sum_of_all
-
-
-_NOTHING = Linear(*(np.zeros((0,) * n) for n in (2, 2, 3, 3)))
 
 
 def _either(first: NDArray[np.bool_], one: Linear, other: Linear) -> Linear:
@@ -312,11 +313,11 @@ def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
 
 def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterior) -> Common:
     """Return factors, datum and offsets after a step of Gauss and Newton, and their covariance."""
-    names, free = list(begun.factors), len(begun.value) - len(begun.offset)
+    free = len(begun.value) - len(begun.offset)
     seen = fixed_slopes(at.common[:, fit.moments.measured.point])
     inverse = np.linalg.inv(found.expected)
     pulls = np.einsum("nsq,nst,nt->nq", seen, inverse, found.innovation)
-    alike = repeated(pulls[:, len(names)])
+    alike = repeated(pulls[:, len(begun.factors)])
     before = np.linalg.inv(begun.covariance[:free, :free])
     now = known.value[:free]
     normal = np.einsum("nsq,nst,ntr->qr", seen, inverse, seen) / alike + before
@@ -324,32 +325,24 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
     value = now + np.clip(step, -5.0, 5.0)
     covariance = np.zeros_like(begun.covariance)
     covariance[:free, :free] = np.linalg.inv(normal)
-    factors = np.exp(np.clip(value[: len(names)], -1.0, 1.0))
-    return replace(
-        known,
-        factors=dict(zip(names, factors.tolist(), strict=True)),
-        datum=float(value[len(names)]),
-        offset=value[len(names) + 1 :],
-        covariance=covariance,
-    )
+    return replace(known.at(value), covariance=covariance)
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
     """Return the best state of each time, from the nearest of the fits that were kept."""
     law, one = common.law, moments.measured
-    assert law is not None
-    way = moments.way(one.level_depth, common)
-    kept, still = law.kept, moments.forward.still
+    assert law is not None and law.kept is not None
+    way, kept, still = law.read(one.level_depth), law.kept, moments.forward.still
     offset = common.offset + common.datum
     off = np.nan_to_num(one.depth[:, None, :] - offset - kept.depth[None, :, one.point])
     near = np.square(off).sum(axis=2).argmin(axis=1) if len(one.label) else 0
     near = np.where(np.isfinite(one.depth).any(axis=1), near, 0)
-    begin = at = Linear(*(part[near] for part in vars(kept).values()))
-    before = found = posterior(one, at, way.spread, common, still, furthest=np.inf)
+    at = Linear(*(part[near] for part in vars(kept).values()))
+    found = posterior(one, at, way.spread, common, still, furthest=np.inf)
     for _ in range(AGAIN):
         logs = at.logs + np.clip(found.logs - at.logs, -LONGEST, LONGEST)
         there = moments.depths(way, logs)
         lost = np.isnan(there).any(axis=1, keepdims=True)
         at = at.moved(np.where(lost, at.logs, logs), np.where(lost, at.depth, there))
         found = posterior(one, at, way.spread, common, still, furthest=np.inf)
-    return CurrentsState(way, begin, before, at, found)
+    return CurrentsState(way, at, found)

@@ -1,31 +1,25 @@
 """What is common to the whole record: factors on the line, the datum, the offsets of sensors."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.motion import common_unknowns, line_response
-from calm.motion.common_unknowns import RAMPS, Common, Evidence, first_time, fits, hanging_sensors
-from calm.motion.estimate import Posterior, best_state
-from calm.motion.line_response import STEP, Forward, Linear, LineResponse, gap_errors
-from calm.motion.measurements import MooringMeasurements
-from calm.physics.line import Floats, Integers
+from calm.motion.common_unknowns import RAMPS, ROBUST, Common, LinearLaw
+from calm.motion.estimate import CurrentsState, measured_state
+from calm.motion.line_response import LineResponse
+from calm.motion.measurements import MooringMeasurements, chosen_times
+from calm.physics.line import Floats
 from calm.solve import expect_many
 
-MOST_TIMES = 500
-"""So many times, spread evenly over the record, are what it is estimated from."""
 TURNS, ENOUGH = 12, 0.02
 """Steps of Gauss and Newton at most; fewer where one moves no unknown by more than this share of
 its standard deviation."""
-ROBUST = 4.0
-"""Degrees of freedom of Student's law for the misfit of a time."""
 SOLVES = 500
 """Moorings whose solving takes as long as laying out all that are tried here."""
-FURTHEST = 1.0
-"""Of the logarithm of a factor, at most."""
 SCALES = (0.5, 2.5)
 """Least and greatest factor on the errors of the currents."""
 SHARES = (0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.085, 0.1)
@@ -41,15 +35,6 @@ LONGEST_MEMORY = 25
 """Times over which errors that repeat are looked for."""
 
 
-def forwards_of(mooring: Mooring, common: Common) -> tuple[Forward, dict[str, Forward]]:
-    """Return the mooring at the common factors, and a step from each."""
-    shifted = {
-        name: Forward(mooring, {**common.factors, name: value * float(np.exp(STEP))})
-        for name, value in common.factors.items()
-    }
-    return Forward(mooring, common.factors), shifted
-
-
 def assumed(mooring: Mooring, measured: MooringMeasurements, names: Sequence[str]) -> Common:
     """Return what is common before any pressure is looked at.
 
@@ -60,9 +45,9 @@ def assumed(mooring: Mooring, measured: MooringMeasurements, names: Sequence[str
     names : of the factors that are estimated
     """
     factors = {name: float(np.exp(common_unknowns.FACTORS[name][0])) for name in names}
-    moments = LineResponse(measured, Forward(mooring, factors), {})
+    moments = LineResponse(measured, line_response.Forward(mooring, factors), {})
     level = moments.levels(np.tile(moments.forward.still, (len(measured.time), 1)))
-    gap = gap_errors(level, measured.u, measured.v, moments.group)
+    gap = line_response.gap_errors(level, measured.u, measured.v, moments.group)
     return common_beforehand(factors, common_unknowns.DATUM * mooring.water.depth, measured, gap)
 
 
@@ -82,7 +67,7 @@ def common_beforehand(
     known = [common_unknowns.FACTORS[name][1] for name in factors]
     spread = [*known, datum, *[common_unknowns.OFFSET] * sensors, *[0.0] * sensors]
     none, never = np.zeros(sensors), np.full(sensors, "NaT", "M8[ns]")
-    return Common(factors, 0.0, none, none, never, none, np.diag(np.square(spread)), 1.0, gap)
+    return Common(factors, 0.0, none, none, never, np.diag(np.square(spread)), 1.0, gap)
 
 
 def estimate_common(
@@ -105,89 +90,55 @@ def estimate_common(
     expect_many(SOLVES)
     common, sensors, span = known, len(part.label), measured.time[[0, -1]]
     for _ in range(TURNS):
-        moments = LineResponse(part, *forwards_of(mooring, common))
-        here = best_state(moments, replace(common, covariance=np.zeros_like(known.covariance)))
-        found = linear_law(moments, common, here.begin, here.before, here.way.spread, span)
-        if not len(found.time):
+        moments = LineResponse(part, *line_response.forwards_of(mooring, common))
+        fixed = replace(common, covariance=np.zeros_like(known.covariance))
+        law = linear_law(moments, common, measured_state(moments, fixed), span)
+        if not len(law.time):
             return known
-        raw, left, expected, currents = found.raw, found.left, found.expected, found.currents
-        fixed, there, fall, share = found.fixed, found.known, found.fall, found.share
-        evidence = _evidence(raw, left, fixed, expected, there)
+        left, expected, currents, bent = law.left, law.expected, law.currents, law.bent
         begun = replace(known, since=np.full(sensors, span[0]))
-        usual = expected + (USUAL_SHARE**2 - common.worst**2) * found.bent
+        usual = expected + (USUAL_SHARE**2 - common.worst**2) * bent
         scale, likely = _scale(left, usual, currents, common.scale)
         worst = USUAL_SHARE
-        if _widened(left, usual + ((scale / common.scale) ** 2 - 1.0) * currents, there) == 1.0:
+        if _widened(left, usual + ((scale / common.scale) ** 2 - 1.0) * currents, law.known) == 1.0:
             # of times that miss by more, most would be left to spikes and false currents
-            worst = _worst(left, expected, found.bent, common.worst)
-        expected = expected + (worst**2 - common.worst**2) * found.bent
+            worst = _worst(left, expected, bent, common.worst)
+        expected = expected + (worst**2 - common.worst**2) * bent
         scale, likely = _scale(left, expected, currents, common.scale)
         beside, best = 0.0, 0.0
-        for moved, rest, odds in fits(evidence, fall, share, *_unmoved(begun)):
+        for moved, rest, odds in common_unknowns.fits(law, *begun.unmoved):
             other, gained = _scale(rest, expected, currents, common.scale)
             if not moved:
                 if gained + odds > likely:
                     likely, beside = gained, odds
                 continue
-            gain = (gained - likely) / _memory(evidence, rest) + odds - beside
+            gain = (gained - likely) / _memory(law, rest) + odds - beside
             if gain > best:
                 best, scale, left = gain, other, rest
         expected = expected + ((scale / common.scale) ** 2 - 1.0) * currents
-        evidence = _evidence(raw, left, fixed, expected, there)
-        alike = repeated(evidence.pulls(fixed, left)[:, 0]) if names else 1.0
+        law = replace(law, left=left, expected=expected)
+        alike = repeated(law.pulls(law.fixed, left)[:, 0]) if names else 1.0
         before = common.value
-        widened = _widened(left, expected, there)
+        widened = _widened(left, expected, law.known)
         begun = replace(begun, scale=scale, worst=worst, widened=widened)
-        common = _placed(begun, evidence, fall, found.time, share, alike)
+        common = _placed(begun, law, alike)
         deviation = np.sqrt(np.diag(common.covariance))
         if (np.abs(common.value - before) <= ENOUGH * deviation).all():
             break
     return common
 
 
-@dataclass(frozen=True)
-class LinearLaw:
-    """What n times say of the unknowns of the whole record, by the slopes at a state.
-
-    Attributes
-    ----------
-    time, share : (n,) times, and the share of the record that is over by then
-    known : (n, s) whether there is a reading
-    raw, left : (n, s) measured less computed depths where the unknowns are 0, and as they are [m]
-    expected, currents : (n, s, s) covariance of `left`, and that part of it which is the currents'
-    fixed : (n, s, q) slopes with factors, datum and offsets
-    fall : (n, s) change of the depth of each sensor with how far it has moved throughout
-    bent : (n, s, s) covariance of the errors of the line itself, of a share of 1
-    """
-
-    time: NDArray[np.datetime64]
-    share: Floats
-    known: NDArray[np.bool_]
-    raw: Floats
-    left: Floats
-    expected: Floats
-    currents: Floats
-    fixed: Floats
-    fall: Floats
-    bent: Floats
-
-
 def linear_law(
-    moments: LineResponse,
-    common: Common,
-    at: Linear,
-    found: Posterior,
-    spread: Floats,
-    span: NDArray[np.datetime64],
+    moments: LineResponse, common: Common, state: CurrentsState, span: NDArray[np.datetime64]
 ) -> LinearLaw:
     """Return what the times at which there is an equilibrium say.
 
     Parameters
     ----------
-    at, found : a state of the currents, and what the pressures make of it
-    spread : (n, g, g) prior covariance of the logarithms of the currents
+    state : of the currents
     span : first and last time of the record
     """
+    at, found, spread = state.at, state.found, state.way.spread
     part, still, sensors = moments.measured, moments.forward.still, len(moments.measured.label)
     good = np.isfinite(at.depth).all(axis=1)
     time, depth = part.time[good], at.depth[good]
@@ -224,16 +175,6 @@ def fixed_slopes(common: Floats) -> Floats:
     return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)
 
 
-def _evidence(
-    raw: Floats, left: Floats, seen: Floats, expected: Floats, known: NDArray[np.bool_]
-) -> Evidence:
-    """Return what each time says, times of large misfit less."""
-    inverse = np.asarray(np.linalg.inv(expected), np.float64)
-    misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
-    weight = (ROBUST + known.sum(axis=1)) / (ROBUST + misfit)
-    return Evidence(raw, seen, inverse, weight, known)
-
-
 def _widened(left: Floats, expected: Floats, known: NDArray[np.bool_]) -> float:
     """Return by how much the pressures miss more than is expected; 1 where the usual time does not.
 
@@ -247,79 +188,38 @@ def _widened(left: Floats, expected: Floats, known: NDArray[np.bool_]) -> float:
     return float(np.sqrt(max(large, 1.0))) if usual > MISSED else 1.0
 
 
-def _unmoved(known: Common) -> tuple[Floats, Floats]:
-    """Mean and covariance beforehand, where every sensor hangs as the file says."""
-    fixed = len(known.value) - len(known.moved)
-    return known.value[:fixed], known.covariance[:fixed, :fixed]
-
-
-def _memory(evidence: Evidence, left: Floats) -> float:
+def _memory(law: LinearLaw, left: Floats) -> float:
     """Return over how many times in a row the errors of a sensor are the same, at most."""
     sensors = left.shape[1]
-    return max(repeated(column) for column in evidence.pulls(evidence.seen, left)[:, -sensors:].T)
+    return max(repeated(column) for column in law.pulls(law.fixed, left)[:, -sensors:].T)
 
 
-def _placed(
-    known: Common, evidence: Evidence, fall: Floats, time: NDArray[np.datetime64], share: Floats,
-    alike: float,
-) -> Common:  # fmt: skip
+def _placed(known: Common, law: LinearLaw, alike: float) -> Common:
     """Return what is common by the linear law of all times, over all ways the sensors may hang.
 
     Parameters
     ----------
     known : beforehand
-    fall : (n, s) change of the depth of each sensor with how far down the line it has moved
-    time, share : (n,) of the evidence, and of the record, 0 to 1
     alike : so many times that follow each other have the same error, as far as factors go
     """
-    sensors = fall.shape[1]
-    first = first_time(evidence, fall, share, *_unmoved(known))
-    gone = common_unknowns.moves(first, fall, share)
-    seen = np.concatenate([evidence.seen, gone[:, :, None] * np.eye(sensors)], axis=2)
-    normal, pull = evidence.normal(seen), evidence.pulls(seen, evidence.left).sum(axis=0)
+    sensors = law.fall.shape[1]
+    first = common_unknowns.first_time(law, *known.unmoved)
+    gone = common_unknowns.moves(first, law.fall, law.share)
+    seen = np.concatenate([law.fixed, gone[:, :, None] * np.eye(sensors)], axis=2)
+    normal, pull = law.normal(seen), law.pulls(seen, law.raw).sum(axis=0)
     free = np.linalg.solve(normal + np.eye(len(normal)) / common_unknowns.ELSEWHERE**2, pull)
-    longest = _memory(evidence, evidence.left - seen @ free)
-    found = hanging_sensors(
-        normal / alike, pull / alike, known.value, known.covariance, first, len(time),
+    longest = _memory(law, law.raw - seen @ free)
+    mean, covariance = common_unknowns.hanging_sensors(
+        normal / alike, pull / alike, known.value, known.covariance, first, len(law.time),
         max(longest / alike, 1.0),
     )  # fmt: skip
-    names, count = list(known.factors), len(known.factors)
-    logs = np.clip(found.mean[:count], -FURTHEST, FURTHEST)
-    offset, moved = found.mean[count + 1 :].reshape(2, sensors)
-    return replace(
-        known,
-        factors={name: float(np.exp(log)) for name, log in zip(names, logs, strict=True)},
-        datum=float(found.mean[count]),
-        offset=offset,
-        moved=moved,
-        since=np.where(first > 0, time[first], known.since),
-        until=_until(first, known.since, time, share),
-        elsewhere=found.elsewhere,
-        covariance=found.covariance,
-    )
-
-
-def _until(
-    first: Integers, since: NDArray[np.datetime64], time: NDArray[np.datetime64], share: Floats
-) -> NDArray[np.datetime64]:
-    """Return (s,) the times up to which sensors drift; NaT of those that do not."""
-    until = np.full(len(first), "NaT", "M8[ns]")
-    if share[-1] > 0.0:
-        whole = (time[-1] - since) / share[-1]
+    since, until = known.since, np.full(sensors, "NaT", "M8[ns]")
+    if law.share[-1] > 0.0:
+        whole = (law.time[-1] - since) / law.share[-1]
         for code, part in RAMPS.items():
             until = np.where(first == code, since + part * whole, until)
-    return until
-
-
-def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
-    """Return times that have a current and a pressure, or a pressure alone, evenly spread where
-    they are many.
-    """
-    currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
-    used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
-    if len(used) <= MOST_TIMES:
-        return used
-    return used[np.linspace(0, len(used) - 1, MOST_TIMES).round().astype(np.int64)]
+    since = np.where(first > 0, law.time[first], since)
+    return replace(known.at(mean), since=since, until=until, covariance=covariance)
 
 
 def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> tuple[float, float]:

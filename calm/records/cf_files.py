@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from calm.errors import CalmError, refused
 from calm.physics.line import Floats
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
-from calm.records.instrument_text import is_instrument_text, read_instrument_text
+from calm.records.instrument_text import reader_of
 from calm.units import QuantityError, unit_factor
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def holds_arrays(path: Path) -> bool:
     InputError: it is a folder of something else, or of a kind that is known, and not read.
     """
     if path.is_dir():
-        if not any((path / name).is_file() for name in _ZARR):
+        if not is_zarr(path):
             raise refused(path, "is a folder, and not a zarr store; join its files into one first")
         return True
     with path.open("rb") as file:
@@ -74,7 +74,12 @@ def holds_arrays(path: Path) -> bool:
     for begin, kind in _KINDS.items():
         if signature.startswith(begin):
             raise refused(path, f"is {kind}; NetCDF, zarr or CSV is read")
-    return bool(engine_of(path)) or is_instrument_text(path)
+    return bool(engine_of(path) or reader_of(path))
+
+
+def is_zarr(path: Path) -> bool:
+    """Return whether a folder is a zarr store."""
+    return any((path / name).is_file() for name in _ZARR)
 
 
 @contextmanager
@@ -96,11 +101,21 @@ def reading(path: Path) -> Iterator[None]:
 @contextmanager
 def opened(path: Path) -> Iterator[xr.Dataset]:
     """Open a dataset; what is wrong with the file is an InputError that says what it holds."""
-    with reading(path), open_current(path) as dataset:
-        try:
-            yield dataset
-        except UnreadableError as error:
-            raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
+    if not path.exists():
+        raise refused(path, "no such file")
+    if not holds_arrays(path):
+        raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
+    with reading(path), open_current(path) as dataset, saying_what_it_holds(dataset):
+        yield dataset
+
+
+@contextmanager
+def saying_what_it_holds(dataset: xr.Dataset) -> Iterator[None]:
+    """Add what a dataset holds to what is wrong with it."""
+    try:
+        yield
+    except UnreadableError as error:
+        raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
 
 
 def open_current(path: Path) -> xr.Dataset:
@@ -113,8 +128,8 @@ def open_current(path: Path) -> xr.Dataset:
             path, engine="zarr", decode_times=False, cache=False, consolidated=False
         )
     engine = engine_of(path)
-    if not engine:
-        return read_instrument_text(path)
+    if not engine and (read := reader_of(path)):
+        return read(path)
     return xr.open_dataset(path, engine=engine, decode_times=False, cache=False)
 
 

@@ -21,9 +21,9 @@ from calm.physics.line import Floats, Integers
 from calm.records import current_terms, delimited
 from calm.records.attributes import refused_by_comments, remarks_in_comments
 from calm.records.cf_files import UnreadableError, holds_arrays, open_current, reading
-from calm.records.current_dataset import ArrayRecord, understand
+from calm.records.current_dataset import ArrayRecord, CurrentDataset
 from calm.records.current_terms import Terms, TimeChoiceError, choose_time, current_notices
-from calm.records.delimited import COMMENT, CellRow, NumberedLine, abridged, is_gap, read_table
+from calm.records.delimited import COMMENT, CellRow, NumberedLine, abridged, read_table
 from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
 from calm.records.profile_tables import CurrentTable, QuantityTable, read_currents, turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
@@ -92,7 +92,7 @@ def open_record(path: Path, terms: Terms, time: Period | None = None, every: int
 
 def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
     with reading(path), open_current(path) as dataset:
-        current = understand(dataset, terms)
+        current = CurrentDataset(dataset, terms)
         notices = [*current.notices, *current.turned]
         index = 0
         if current.times is not None:
@@ -131,29 +131,29 @@ def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
 
 def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
     table = read_table(path, EXAMPLE)
-    header, rows = CurrentHeader(table.header), list(table.rows)
-    notices: list[str] = []
+    header, rows, notices = CurrentHeader(table.header), table.rows, list[str]()
     if header.timed:
         rows, notices = _rows_of(rows, time)
-        known = [rows[i] for i in header.known(rows)]
-        if rows and not known:
-            raise InputError([rows[0].problem("no level has a value")])
-        if left_out := len(rows) - len(known):
-            levels = f"{left_out} level{'s' * (left_out > 1)}"
-            notices.append(f"{levels} without a value left out of the current")
-        rows = known
     elif time is not None:
         raise TimeChoiceError("the file has no column `time`")
     problems: list[Problem] = []
-    depth, u, v, w = header.currents(rows, problems, terms).T
+    profile = np.zeros(len(rows), np.int64) if header.timed else None
+    found = header.currents(rows, problems, terms, profile)
     if problems:
         raise InputError(abridged(problems))
+    known = np.isfinite(found).all(axis=1)
+    if not known.any():
+        raise InputError([rows[0].problem("no level has a value")])
+    if left_out := int((~known).sum()):
+        levels = f"{left_out} level{'s' * (left_out > 1)}"
+        notices.append(f"{levels} without a value left out of the current")
+    depth, u, v, w = found[known].T
     notices += [*_comment_notices(header), *turned_notices(header.columns, terms)]
     notices += current_notices((depth, u[np.newaxis], v[np.newaxis]), None, terms.water_depth)
     return CurrentTable(*(tuple(each.tolist()) for each in (depth, u, v, w))), notices
 
 
-def _rows_of(rows: list[CellRow], time: str | None) -> tuple[list[CellRow], list[str]]:
+def _rows_of(rows: Sequence[CellRow], time: str | None) -> tuple[list[CellRow], list[str]]:
     """Return the rows of the time nearest to the one wanted, and the notice that says so."""
     problems: list[Problem] = []
     moments = np.array([_moment_of(row, problems) for row in rows], "datetime64[us]")
@@ -161,7 +161,7 @@ def _rows_of(rows: list[CellRow], time: str | None) -> tuple[list[CellRow], list
         raise InputError(abridged(problems))
     times = np.unique(moments)
     index, notice = choose_time(times, time)
-    chosen = np.flatnonzero(moments == times[index])
+    chosen = np.flatnonzero(moments == times[index]).tolist()
     return [rows[i] for i in chosen], [notice] if notice else []
 
 
@@ -352,13 +352,3 @@ class CurrentHeader:
         table = QuantityTable(self.columns, cells, report, problems)
         found = read_currents(table, terms, profile)
         return np.empty((0, COLUMNS)) if found is None or len(problems) > before else found
-
-    def known(self, rows: Sequence[CellRow]) -> list[int]:
-        """Return which rows of a record give a current."""
-        names = [heading(cell)[0].lower() for cell in self.row.cells]
-        current = [j for j, name in enumerate(names) if name not in ("time", "depth")]
-        return [
-            i
-            for i, row in enumerate(rows)
-            if len(row.cells) != len(names) or not any(map(is_gap, (row.cells[j] for j in current)))
-        ]

@@ -1,5 +1,6 @@
 """How a person wants the currents of a file taken, at which time, and which of them cannot be."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -75,6 +76,10 @@ ZONES_OF_UTC = ("UTC", "GMT", "Z", "ZULU", "UTC+0", "UTC+00:00", "+00:00", "ETC/
 """What a zone is called that is no other than UTC, in capitals."""
 
 
+_PART_OF_HOUR = re.compile(r"[^\d.,:]\d\d(?::?\d\d)?[.,]")
+"""A point after hours or minutes, as in `06.30`, of which `fromisoformat` makes 0.3 seconds."""
+
+
 class TimeChoiceError(ValueError):
     """The time asked for is none, is not in the record, or is needed and not given."""
 
@@ -85,6 +90,8 @@ def parse_time(text: str) -> np.datetime64:
     TimeChoiceError: the text is no such time.
     """
     try:
+        if _PART_OF_HOUR.search(text):
+            raise ValueError
         time = datetime.fromisoformat(text.strip())
     except ValueError:
         raise TimeChoiceError(f"`{text[:40]}` is not a time; write 2026-03-01T06:00") from None

@@ -74,6 +74,8 @@ def choose_column(
         There are several and no place is given, the place is outside the grid, or no column near
         it has water.
     """
+    import xarray as xr
+
     dims = dataset[velocity[0]].dims
     pair = _positions(dataset, set(dims) - {time})
     if pair is None:
@@ -94,12 +96,8 @@ def choose_column(
         )
     box = _box(latitude, longitude, horizontal, wanted)
     near = dataset[list(velocity)].isel(box)
-    shape = [near.sizes[dim] for dim in horizontal]
-    # each axis of a regular grid spread over the box
-    lat, lon = (
-        np.broadcast_to(_spread(near[str(one.name)], horizontal), shape).astype(np.float64)
-        for one in pair
-    )
+    spread = xr.broadcast(*(near[str(one.name)] for one in pair))
+    lat, lon = (one.transpose(*horizontal).values.astype(np.float64) for one in spread)
     distance = kilometres_from(lat, lon, wanted)
     nearest = np.unravel_index(np.nanargmin(distance), distance.shape)
     if len(horizontal) > 1 and distance[nearest] > _spacing(lat, lon, nearest):
@@ -155,39 +153,27 @@ def _box(
     """Return the part of the grid around the place: indices by dimension."""
     if len(horizontal) == 1:  # a list of places, in any order
         return {horizontal[0]: np.arange(latitude.sizes[horizontal[0]])}
-    north = np.abs(latitude.values - wanted[0])
-    east = np.abs(_turned(longitude.values - wanted[1]))
-    centre: dict[str, int] = {}
-    if latitude.dims == longitude.dims:
-        away = north**2 + (east * np.cos(np.radians(wanted[0]))) ** 2
-        place = np.unravel_index(np.nanargmin(away), away.shape)
-        centre = {str(dim): int(i) for dim, i in zip(latitude.dims, place, strict=True)}
-    else:
-        for one, away in ((latitude, north), (longitude, east)):
-            centre |= {str(dim): int(np.nanargmin(away)) for dim in one.dims}
-    sizes = {**latitude.sizes, **longitude.sizes}
-    box = {dim: np.arange(max(i - REACH, 0), min(i + REACH + 1, sizes[dim]))
-           for dim, i in centre.items()}  # fmt: skip
-    if _goes_round(longitude):
-        dim = str(longitude.dims[0])
-        box[dim] = np.arange(centre[dim] - REACH, centre[dim] + REACH + 1) % sizes[dim]
-    return box
+    north = latitude.values.astype(np.float64) - wanted[0]
+    east = _turned(longitude.values.astype(np.float64) - wanted[1])
+    if latitude.dims != longitude.dims:
+        return {
+            str(one.dims[0]): _nearest(away) for one, away in ((latitude, north), (longitude, east))
+        }
+    away = north**2 + (east * np.cos(np.radians(wanted[0]))) ** 2
+    centre = np.unravel_index(np.nanargmin(away), away.shape)
+    return {
+        str(dim): np.arange(max(i - REACH, 0), min(i + REACH + 1, latitude.sizes[dim]))
+        for dim, i in zip(latitude.dims, map(int, centre), strict=True)
+    }
 
 
-def _goes_round(longitude: xr.DataArray) -> bool:
-    """Return whether an axis of longitudes, in even steps, goes all round the earth."""
-    if longitude.ndim != 1 or longitude.size <= 2 * REACH:
-        return False
-    steps = np.diff(longitude.values.astype(np.float64))
-    even = bool(np.allclose(steps, steps[0], rtol=1e-3))
-    return even and abs(abs(steps[0]) * longitude.size - 360.0) < 0.5 * abs(steps[0])
+def _nearest(away: Floats) -> NDArray[Any]:
+    """Return which points of an axis are nearest, `REACH` on either side, in their order.
 
-
-def _spread(values: xr.DataArray, horizontal: list[str]) -> NDArray[Any]:
-    """Return values with an axis for every horizontal dimension, of length 1 where it is new."""
-    missing = [dim for dim in horizontal if dim not in values.dims]
-    values = values.isel({dim: 0 for dim in values.dims if dim not in horizontal})
-    return values.expand_dims(missing).transpose(*horizontal).values
+    Those of an axis of longitudes that goes round the earth may be its last and its first.
+    """
+    near = np.argsort(np.abs(away), kind="stable")[: 2 * REACH + 1]
+    return near[np.argsort(away[near], kind="stable")]
 
 
 def _wet(

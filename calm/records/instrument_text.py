@@ -64,25 +64,14 @@ _SECONDS = "seconds since 1970-01-01 00:00:00"
 _MISSING = (-9999.0, -999.0, -99.999, -9.99e-29, 1e35)
 
 
-def is_instrument_text(path: Path) -> bool:
-    """Return whether a file is text of one instrument, of a format that is known."""
-    return _reader(path) is not None
+def reader_of(path: Path) -> Callable[[Path], xr.Dataset] | None:
+    """Return what reads a text file of an instrument; None of any other file.
 
-
-def read_instrument_text(path: Path) -> xr.Dataset:
-    """Return what a text file of an instrument holds, in the names and attributes of OceanSITES.
-
-    Times are seconds since 1970; values are NaN where they are missing. A current has its depth in
-    `INSTRUMENT_DEPTH`: that of the pressure, by TEOS-10, or the nominal one.
-
-    InputError: it cannot be read, has no times, or a row that is none.
+    It returns what the file holds, in the names and attributes of OceanSITES. Times are seconds
+    since 1970; values are NaN where they are missing. A current has its depth in
+    `INSTRUMENT_DEPTH`: that of the pressure, by TEOS-10, or the nominal one. InputError: it cannot
+    be read, has no times, or a row that is none.
     """
-    reader = _reader(path)
-    assert reader is not None  # by `is_instrument_text`
-    return reader(path)
-
-
-def _reader(path: Path) -> Callable[[Path], xr.Dataset] | None:
     with path.open("rb") as file:
         head = file.read(_HEAD).decode("latin-1")
     if head.startswith("* Sea-Bird") or re.search(r"(?m)^# nquan\s*=", head):

@@ -209,20 +209,27 @@ def _believed(dataset: xr.Dataset, name: str, sought: _Sought) -> str:
     return name
 
 
+_WHOSE = re.compile(r"(?:sensor|instrument|platform|station|mooring|serial)", re.IGNORECASE)
+"""What is called so and has a text for each reading says whose it is."""
+
+
 def refuse_ragged(dataset: xr.Dataset, name: str) -> None:
     """Refuse what has the readings of several instruments one after the other.
 
     UnreadableError: with the index that says which reading is whose.
     """
     for index, variable in dataset.variables.items():
-        counted = variable.attrs.get("instance_dimension")
+        many, counted = 0, variable.attrs.get("instance_dimension")
         if counted and variable.dims[:1] == dataset[name].dims[:1]:
             many = dataset.sizes.get(counted, 2)
-            if many > 1:
-                raise UnreadableError(
-                    f"`{name}` has {many} instruments one after the other (`{index}` says whose a "
-                    "reading is): give the file of each instrument"
-                )
+        whose = "cf_role" in variable.attrs or _WHOSE.search(str(index))
+        if whose and variable.dims == dataset[name].dims and variable.dtype.kind in "OSU":
+            many = len({*variable.to_numpy().reshape(-1).tolist()})
+        if many > 1:
+            raise UnreadableError(
+                f"`{name}` has {many} instruments one after the other (`{index}` says whose a "
+                "reading is): give the file of each instrument"
+            )
 
 
 _WAYS = {"east": ("E", "EAST"), "north": ("N", "NORTH"), "up": ("U", "UP", "U1")}

@@ -13,7 +13,7 @@ from calm.batch.finished import open_result
 from calm.batch.statistics import summary as statistics
 from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
 from calm.batch.statistics.limits import Exceedance
-from calm.batch.statistics.summary import PERCENTILES, RESPONSES, Distribution, Response, Summary
+from calm.batch.statistics.summary import PERCENTILES, Distribution, Response, Summary
 from calm.case import Mooring
 from calm.case.net import Net
 from calm.checks.finding import State
@@ -297,12 +297,12 @@ _LIMIT = Stroke("#b3261e", 1.0, (4.0, 2.0))
 
 def series_figure(summary: Summary) -> str:
     """Least and greatest value of every response in each interval of time, as SVG."""
-    tall = 108.0
-    page = Graph(_WIDTH, len(RESPONSES) * (tall + _GAP) + 20.0, "responses through time", _SIZE)
-    begin = summary.responses[0].begin
+    tall, responses = 108.0, summary.known_responses
+    page = Graph(_WIDTH, len(responses) * (tall + _GAP) + 20.0, "responses through time", _SIZE)
+    begin = responses[0].begin
     across = covering(seconds(begin))
     ticks = graph.moments(begin[0], begin[-1], 7)
-    for row, response in enumerate(summary.responses):
+    for row, response in enumerate(responses):
         quantity, limit = QUANTITIES[QUANTITY[response.name]], _limit_of(summary, response)
         low, high = (quantity.scale * edge for edge in (response.low, response.high))
         up = covering(low, high, [limit or np.nan])
@@ -317,7 +317,7 @@ def series_figure(summary: Summary) -> str:
         axes.frame(
             ticks, 5,
             beside=f"{TITLES[response.name]}\n[{quantity.display_unit}]",
-            grid=True, numbered=(row == len(RESPONSES) - 1, True),
+            grid=True, numbered=(row == len(responses) - 1, True),
         )  # fmt: skip
     return page.svg()
 
@@ -336,7 +336,7 @@ class _Panel(NamedTuple):
 def exceedance_figure(summary: Summary) -> str:
     """Share of the profiles beyond each value: of the responses, as SVG."""
     panels = []
-    for response in summary.responses:
+    for response in summary.known_responses:
         one, limit = response.distribution, _limit_of(summary, response)
         curves = [] if one is None else [(one, Stroke(COLOURS[0], 1.5), "")]
         panels.append(_Panel(TITLES[response.name], QUANTITY[response.name], curves, limit))

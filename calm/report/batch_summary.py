@@ -188,7 +188,7 @@ DEFINITIONS = (
     "Every profile has the same weight, so a share of the profiles is a share of the time if the "
     "record is evenly spaced. Means, percentiles, maxima and exceedance curves are of the "
     "profiles solved. The share in which a rule fails is of the profiles in which it is judged; "
-    "the share *at most* also counts every profile with a current that was not solved.",
+    "the share “at most” also counts every profile with a current that was not solved.",
     "Percentiles: linear between the order statistics; the value of rank 1 + (n - 1) "
     "p of n is the p quantile. Tension of a component: the greater of its two ends. "
     "Knockdown and depth of a component: of its upper end.",
@@ -245,13 +245,13 @@ def left_out(summary: Summary) -> str:
 def refusals(summary: Summary) -> Iterator[str]:
     """Yield why there are no return levels: each reason once, with the responses it is for."""
     reasons: dict[str, list[str]] = {}
-    for response in summary.responses:
+    for response in summary.known_responses:
         for fit in response.return_levels:
             if isinstance(fit, LevelsRefused):
                 said = f"no return levels by {METHODS_IN_SHORT[fit.method]}: {fit.reason}"
                 reasons.setdefault(said, []).append(TITLES[response.name])
     for said, of in reasons.items():
-        yield said if len(of) == len(summary.responses) else f"{', '.join(of)}: {said}"
+        yield said if len(of) == len(summary.known_responses) else f"{', '.join(of)}: {said}"
 
 
 def stops_tables(summary: Summary) -> Iterator[Table]:

@@ -76,6 +76,7 @@ class CheckFacts:
     Attributes
     ----------
     mooring : its name
+    environments : their names
     columns : what each rule finds in each environment, and `ON_THE_WAY`
     titles : name and value of what the title block says
     sha256 : of the mooring file, byte for byte; None where it can no longer be read
@@ -85,6 +86,7 @@ class CheckFacts:
     """
 
     mooring: str
+    environments: frozenset[str]
     columns: Columns
     titles: tuple[tuple[str, str], ...]
     sha256: str | None
@@ -114,7 +116,7 @@ class CheckFacts:
 
 def facts_of(assessment: Assessment) -> CheckFacts:
     """Return what is signed of a mooring that is judged."""
-    file = assessment.mooring.file
+    file = replace(assessment.mooring.file, name=assessment.name)
     every = (*assessment.all_findings(), *assessment.tighter_findings())
     anchors = [one for one in every if one.rule == "anchor-weight" and one.value is not None]
     columns = {
@@ -122,6 +124,7 @@ def facts_of(assessment: Assessment) -> CheckFacts:
     }
     return CheckFacts(
         assessment.name,
+        frozenset(one.mooring.file.environment.name or OWN for one in assessment.stands),
         columns | {ON_THE_WAY: by_rule(assessment.findings)},
         tuple(title_pairs(file)),
         _file_hash(Path(file.path)),

@@ -9,7 +9,7 @@ from typing import Any
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment, Situation
 from calm.checks.comparison import Comparison
-from calm.checks.finding import ON_THE_WAY, Finding, State, by_rule, worst_state
+from calm.checks.finding import OWN, Finding, State, by_rule, worst_state
 from calm.checks.inventory import total_of
 from calm.checks.recovery import Recovery
 from calm.drawing.check_figures import check_figure
@@ -34,7 +34,8 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
     `against` is the mooring compared with the design that it came from.
     """
     facts, items = facts_of(assessment), assessment.inventory
-    inputs = [(one.environment, one.mooring.file, one.mooring.water) for one in assessment.stands]
+    stood = [one.mooring for one in assessment.stands]
+    inputs = [(one.file.environment.name or OWN, one.file, one.water) for one in stood]
     checks = (
         *check_tables.checks_table(assessment.all_findings()),
         *check_facts.left_out(facts),
@@ -63,7 +64,7 @@ def check_report(sections: Sequence[Section]) -> blocks.Report:
     """
     count = len(sections)
     facts = [each.facts for each in sections if each.facts is not None]
-    environments = {column for each in facts for column in each.columns} - {ON_THE_WAY}
+    environments = {name for each in facts for name in each.environments}
     moorings = sections[0].name if count == 1 else f"{count} moorings"
     in_all = f"{len(environments)} environment{'s' if len(environments) != 1 else ''}"
     findings = [one for each in facts for one in each.findings]
@@ -99,12 +100,13 @@ def _judgement(assessment: Assessment, facts: CheckFacts) -> Iterator[Block]:
 
 
 def _line(assessment: Assessment) -> Iterator[Block]:
-    """The schematic and the table of the line in the first environment that it stands in."""
-    solved = ((one.environment, one.result) for one in assessment.stands if one.result is not None)
-    environment, result = next(solved, ("", None))
-    where = environment and f", environment: {environment}"
-    yield Figure(f"Schematic{where}", schematic_svg(assessment.mooring.file, result), tall=True)
-    if result is not None:
+    """The schematic and the table, of each leg of a net, in the first environment it stands in."""
+    solved = [(one, one.result) for one in assessment.stands if one.result is not None]
+    if not solved:
+        yield Figure("Schematic", schematic_svg(assessment.mooring.file, None), tall=True)
+    for (one, result), *_ in check_tables.grouped(solved, lambda pair: pair[0].mooring.file.name):
+        where = f", environment: {one.environment}"
+        yield Figure(f"Schematic{where}", schematic_svg(one.mooring.file, result), tall=True)
         yield table_of_line(result, f"Table of the line{where}", places=True)
         yield from (*summary_of(result), quality_of(result))
 
@@ -225,8 +227,6 @@ def _decisive(facts: CheckFacts, *, several: bool) -> Iterator[blocks.Block]:
 def _told(facts: CheckFacts) -> Iterator[blocks.Block]:
     """Return what a mooring fails, lacks or is warned of, the gravest first, with its remedy."""
     listed = check_tables.to_mend(facts.findings)
-    if not listed:
-        return
     lines: list[blocks.Line] = []
     for state, groups in groupby(listed, key=lambda found: found[0].state):
         found = list(groups)
@@ -234,8 +234,9 @@ def _told(facts: CheckFacts) -> Iterator[blocks.Block]:
         lines += map(_sentence, found[:most])
         if len(found) > most:
             lines.append(f"  and {len(found) - most} more that {state}; --json has them")
-    yield blocks.Heading(facts.mooring)
-    yield Prose(tuple(lines))
+    if lines:
+        yield blocks.Heading(facts.mooring)
+        yield Prose(tuple(lines))
 
 
 def _sentence(found: Sequence[Finding]) -> blocks.Line:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
 from math import isfinite
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ import numpy as np
 from calm.checks.finding import State
 from calm.drawing.picture import empty_figure, figure_svg
 from calm.motion.remarks import Agreement, Fault, no_drag
-from calm.motion.study import HeldOut, SensorSeries, Study, knockdown
+from calm.motion.study import HeldOut, MotionEstimate, SensorSeries, knockdown
 from calm.report import blocks
 from calm.report.blocks import Figure, Note, Prose, ReportPart, Table, number, table_of, words
 from calm.report.provenance import report_of
@@ -25,12 +25,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-_BARE, _DEPTHS = "Instruments without a pressure", "Depths over time"
+_BARE = "Instruments without a pressure: depths estimated, with the 95 % band"
+_DEPTHS = "Depths measured (black), estimated (blue, 95 % band), by the currents alone (orange)"
 _FALSE = "Times when a current is probably wrong"
-_LEGEND = (
-    "Black: measured. Blue: estimated, with its 95 % band. Orange: from the currents "
-    "alone. Hidden sensors were not used."
-)
 _WHOLE = "Depths of all instruments, with 95 % bands; hidden ones and those without pressure dashed"
 _ASSUMED = (
     "Assumed beforehand: floats, weights, lengths and places as in the mooring file; the drag of "
@@ -40,7 +37,7 @@ _NOTHING = "Nothing is clearly wrong: no clock, gain, offset, drift, slipped cla
 
 
 def motion_report(
-    study: Study,
+    study: MotionEstimate,
     series: Sequence[SensorSeries],
     time: NDArray[np.datetime64],
     name: str,
@@ -65,7 +62,10 @@ def motion_report(
     depths = [Figure(_BARE, depth_figure(bare), tall=True)] if bare else []
     depths.append(Figure(_DEPTHS, depth_figure(shown), tall=True))
     factors = factors_table(study.factors, study.task.common.datum)
-    found = [sensors_table(study), *([held_out_table(study.held_out)] if study.held_out else [])]
+    found = [
+        sensors_table(study),
+        *([held_out_table(study.held_out.values())] if study.held_out else []),
+    ]
     how = Note((PLAIN if study.plain else UNKNOWN,))
     marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
     return report_of(
@@ -76,7 +76,7 @@ def motion_report(
         ReportPart("Factors", (factors, Note((_ASSUMED,)))),
         ReportPart("Measured against computed", (*found, how, *marks)),
         ReportPart("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
-        ReportPart("Depths", (*depths, Note((_LEGEND,)))),
+        ReportPart("Depths", tuple(depths)),
         name=name,
     )
 
@@ -85,7 +85,7 @@ MOST_PANELS = 12
 """Sensors that are drawn; of more, those that are hidden come first."""
 
 
-def methods_text(study: Study, series: Sequence[SensorSeries]) -> tuple[str, ...]:
+def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple[str, ...]:
     """Return sentences to paste into the methods of a cruise report."""
     used, common, time = study.task.measured, study.task.common, series[0].time
     levels = used.u.shape[1]
@@ -111,9 +111,9 @@ def methods_text(study: Study, series: Sequence[SensorSeries]) -> tuple[str, ...
     said += [
         f"Hidden from the estimate, {one.label} was found with an rms of {one.rms:.1f} m "
         f"(interpolated: {one.linear_rms:.1f} m)."
-        for one in study.held_out
+        for one in study.held_out.values()
     ]
-    return (*said, *(f"{one.sentence()}." for one in study.diagnosis if one.corrected))
+    return (*said, *(f"{one.sentence()}." for one in study.faults(of_line=False) if one.corrected))
 
 
 TITLES = {
@@ -131,21 +131,21 @@ PLAIN = (
 UNKNOWN = f"The currents are not known: they are inferred from these pressures. {_RMS}"
 
 
-def motion_part(study: Study, name: str) -> ReportPart:
+def motion_part(study: MotionEstimate, name: str) -> ReportPart:
     """Factors, sensors, sensors that were hidden, and what to doubt."""
     shown: tuple[blocks.Block, ...] = (
         blocks.Heading(name),
         factors_table(study.factors, study.task.common.datum),
         sensors_table(study),
         Prose((PLAIN if study.plain else UNKNOWN,)),
-        *([held_out_table(study.held_out)] if study.held_out else []),
+        *([held_out_table(study.held_out.values())] if study.held_out else []),
         *judged_prose(study),
         *blocks.warned(study.remarks),
     )
     return ReportPart("", shown)
 
 
-def judged_prose(study: Study) -> list[Prose]:
+def judged_prose(study: MotionEstimate) -> list[Prose]:
     """Return what is said of the sensor that was judged, if one was."""
     one = study.judged
     if one is None:
@@ -160,10 +160,14 @@ _HEALTH = {
 }  # fmt: skip
 
 
-def health_table(study: Study) -> Table:
+_DOUBTED = "A question mark: another cause is nearly as likely; see above."
+
+
+def health_table(study: MotionEstimate) -> Table:
     """Return what is wrong with each sensor: a dash where nothing is."""
-    found: dict[str, dict[str, str]] = {label: {} for label in study.fit}
-    for one in study.diagnosis:
+    found: dict[str, dict[str, str]] = {label: {} for label in study.sensors}
+    faults = [*study.faults(of_line=False)]
+    for one in faults:
         text = one.other or format(one.value, ".3f" if one.kind == "gain" else "+.2f")
         found.setdefault(one.label, {})[one.kind] = text + ("" if one.certain else " ?")
 
@@ -176,7 +180,7 @@ def health_table(study: Study) -> Table:
         words("sensor", 0),
         *(number(heading, of(kind), unit) for kind, (heading, unit) in _HEALTH.items()),
         words("exchanged with", of("exchanged")),
-        note="A question mark: another cause is nearly as likely; see above.",
+        note="" if all(one.certain for one in faults) else _DOUBTED,
     )
 
 
@@ -209,9 +213,9 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
     return table_of("", rows, *fields, note=note)
 
 
-def sensors_table(study: Study) -> Table:
+def sensors_table(study: MotionEstimate) -> Table:
     """Return how sensors in use agree with the currents alone, and with what is estimated."""
-    rows = [(alone, label) for label, alone in (study.plain or study.fit).items()]
+    rows = [(alone, label) for label, alone in (study.plain or study.sensors).items()]
     alone = blocks.of_first(
         _figure("alone: bias", "bias"), _figure("rms", "rms"),
         _figure("r", "r", "", 3), _figure("slope", "slope", "", 3),
@@ -222,11 +226,11 @@ def sensors_table(study: Study) -> Table:
         words("sensor", 1),
         *blocks.of_first(number("times", "count")),
         *(alone if study.plain else ()),
-        number("estimated: rms", lambda row: _said(study.fit[row[1]].rms), "m"),
+        number("estimated: rms", lambda row: _said(study.sensors[row[1]].rms), "m"),
     )
 
 
-def held_out_table(held_out: Sequence[HeldOut]) -> Table:
+def held_out_table(held_out: Iterable[HeldOut]) -> Table:
     """Return how well the depths of hidden sensors were estimated."""
     return table_of(
         "",
@@ -249,7 +253,7 @@ def _said(value: float, decimals: int = 2) -> str:
     return f"{value:.{decimals}f}" if isfinite(value) else "-"
 
 
-def motion_document(study: Study, name: str) -> dict[str, Any]:
+def motion_document(study: MotionEstimate, name: str) -> dict[str, Any]:
     """The JSON object: factors with their intervals of 95 %, and how well depths agree [m].
 
     `sensors` has for each sensor that was used the agreement of what is estimated, and as `plain`
@@ -258,7 +262,9 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
     sensors = [
         {"label": label, **_agreement(fit), "offset": float(offset)}
         | ({"plain": _agreement(study.plain[label])} if label in study.plain else {})
-        for (label, fit), offset in zip(study.fit.items(), study.task.common.offset, strict=True)
+        for (label, fit), offset in zip(
+            study.sensors.items(), study.task.common.offset, strict=True
+        )
     ]
     return {
         "calm": __version__,
@@ -266,9 +272,9 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
         "factors": factors_document(study.factors),
         "datum": study.task.common.datum,
         "sensors": sensors,
-        "held_out": held_out_document(study.held_out),
-        "diagnosis": diagnosis_document(study.diagnosis),
-        "line": {"fits": study.fits, "causes": diagnosis_document(study.line)},
+        "held_out": held_out_document(study.held_out.values()),
+        "diagnosis": diagnosis_document(study.faults(of_line=False)),
+        "line": {"fits": study.fits, "causes": diagnosis_document(study.faults(of_line=True))},
         **({} if study.judged is None else {"judge": asdict(study.judged)}),
         "doubts": list(study.remarks),
     }
@@ -280,7 +286,7 @@ def factors_document(factors: Mapping[str, tuple[float, float, float]]) -> dict[
     return {name: dict(zip(keys, three, strict=True)) for name, three in factors.items()}
 
 
-def held_out_document(held_out: Sequence[HeldOut]) -> list[dict[str, Any]]:
+def held_out_document(held_out: Iterable[HeldOut]) -> list[dict[str, Any]]:
     """The hidden sensors."""
     names = ("bias", "rms", "linear_rms", "pchip_rms")
     return [
@@ -321,7 +327,8 @@ def depth_figure(series: Sequence[SensorSeries]) -> str:
             axes.plot(time, one.plain, "--", color="#d55e00", linewidth=0.7)
         axes.plot(time, one.estimated, color=_ESTIMATED, linewidth=0.9)
         axes.plot(time, one.measured, color="#111111", linewidth=0.8)
-        title = f"{one.label}{', hidden' if one.hidden else ''}"
+        hidden = one.hidden and np.isfinite(one.measured).any()
+        title = f"{one.label}{', hidden: not used' if hidden else ''}"
         axes.set_title(title, fontsize=_FONT_SIZE, loc="left", pad=2, parse_math=False)
         _frame(axes)
     return figure_svg(figure)

@@ -76,9 +76,13 @@ def input_hash(files: Sequence[MooringFile]) -> str:
     file of currents, too. Where the files lie does not count.
     """
     digest = hashlib.sha256((source_text(files[0]) or "").encode("utf-8", "replace"))
+    line = canonical(files[0].pieces)
     for file in files:
-        resolved = [file.name, file.pieces, file.tow, file.environment, file.solver, file.checks]
-        digest.update(canonical(resolved).encode("utf-8", "replace"))
+        if file.pieces != files[0].pieces:
+            line = canonical(file.pieces)
+        others = map(canonical, (file.tow, file.environment, file.solver, file.checks))
+        resolved = ",".join([canonical(file.name), line, *others])
+        digest.update(f"[{resolved}]".encode("utf-8", "replace"))
     return digest.hexdigest()
 
 
@@ -224,10 +228,11 @@ def degrees_text(degrees: float, sides: str, digits: int) -> str:
 def inputs_part(inputs: Sequence[tuple[str, MooringFile, Water]]) -> ReportPart:
     """Return the environments, the mooring file, the currents, the hash and the versions.
 
-    The inputs are one mooring or tow as read in each of its environments: the name of that, the
-    file, and its water.
+    The inputs are one mooring or tow, or each leg of a net, as read in each of its environments:
+    the name of that, the file, and its water.
     """
-    files, waters = [file for _, file, _ in inputs], [(name, water) for name, _, water in inputs]
+    files = [file for _, file, _ in inputs]
+    waters = list({name: water for name, _, water in reversed(inputs)}.items())[::-1]
     text = source_text(files[0])
     said = "The file could not be read again." if text is None else text.rstrip()
     origin = (f"SHA-256 of the inputs: {input_hash(files)}", f"Computed with {made_by()}")

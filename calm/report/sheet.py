@@ -70,7 +70,8 @@ def summary_of(result: Result | TowResult) -> tuple[Prose, ...]:
 def quality_of(result: Result | TowResult) -> Prose:
     """Return how good the solution is, and how it was reached."""
     good, end = result.accuracy, "anchor" if _anchored(result) else "lower end"
-    end = "tow point" if isinstance(result, TowResult) else end
+    if isinstance(result, TowResult):
+        end = "tow point"
     pull = "" if good.anchor is None else f", at the {end} {good.anchor:.2g} N"
     return Prose(
         (

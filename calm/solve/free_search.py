@@ -138,8 +138,9 @@ def _closed(moving: Moving, place: FreePlace, angle_step: float) -> tuple[FreePl
 
     x, slopes = values[unknown] / units, None
     for step, small in ((COARSE * angle_step, NEAR), (angle_step, CLOSE)):
+        here = at(x)
         try:
-            cuts = moving.meet(moving.flow(at(x).velocity), at(x).depth, step).cuts
+            cuts = moving.meet(moving.flow(here.velocity), here.depth, step).cuts
         except MarchError:
             return None
         root = system_root(partial(left, step, cuts), x, small, slopes)

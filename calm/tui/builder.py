@@ -12,7 +12,7 @@ from calm.tui.catalogue_pane import Purpose
 from calm.tui.cell_editor import CellEditor
 from calm.tui.comparing import ComparingScreen
 from calm.tui.component_screen import Defined
-from calm.tui.dialogs import ask, choose, numbered
+from calm.tui.dialogs import Question, ask, choose, numbered
 from calm.tui.key_table import bindings, hints
 from calm.tui.mooring_sheet import (
     SHEETS,
@@ -140,7 +140,7 @@ class BuilderScreen(ComparingScreen):
             (f"{kind}: {meaning}", partial(begin, kind)) for kind, meaning in TEMPLATES.items()
         )
         text = "Each stands as given: change depth, current and pieces to yours."
-        choose(self.app, "Begin with", text, answers)
+        choose(self.app, Question("Begin with", text, answers))
 
     def action_history(self) -> None:
         """Show what was done, and go back to before any of it."""
@@ -161,7 +161,7 @@ class BuilderScreen(ComparingScreen):
         text = f"Go back to before one of the last {len(answers)} changes; U does them again."
         if (more := len(steps.steps) - _MOST_STEPS) > 0:
             text += f" {more} are older; u goes back one by one."
-        choose(self.app, "What was done", text, answers)
+        choose(self.app, Question("What was done", text, answers))
 
     def action_search(self, purpose: Purpose) -> None:
         """Search the catalogue."""

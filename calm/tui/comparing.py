@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from calm.errors import CalmError
 from calm.files.editing import Draft, WorkingFile
 from calm.tui import checking, line_screen
-from calm.tui.dialogs import Answer, LongText, choose, enter, numbered
+from calm.tui.dialogs import Answer, LongText, Question, choose, enter, numbered
 from calm.tui.field import Asked
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ class ComparingScreen(line_screen.LineScreen):
             if shape is not None and now and type(before.result) is type(now.result):
                 self.pictures.put_beside((name, shape))
             answers = [Answer("b", "back to the line")]
-            choose(self.app, f"Beside {name}", "\n".join(lines), answers)
+            choose(self.app, Question(f"Beside {name}", "\n".join(lines), answers))
 
         self.tell("Comparing …")
         self.run_worker(work, thread=True, group="advice", exclusive=True)
@@ -123,7 +123,7 @@ class ComparingScreen(line_screen.LineScreen):
             text = "No finding has a remedy that can be computed here. " + text
         if isinstance(result, Result) and not view.complete:
             text += " Launch, recovery, breaks and waves are still being judged."
-        choose(self.app, "Advice", text, answers)
+        choose(self.app, Question("Advice", text, answers))
 
     def _ask_for_target(self, view: View, mooring: Mooring | net.Net) -> None:
         from calm.tui.advice import sized
@@ -171,7 +171,7 @@ class ComparingScreen(line_screen.LineScreen):
 
             self.workspace.tell("")
             answers, back = [Answer("y", "take it", take)], partial(self.tell, "Not taken")
-            choose(self.app, offer.title, "\n".join(lines), answers, back=back)
+            choose(self.app, Question(offer.title, "\n".join(lines), answers, back=back))
 
         self.tell(f"Working out {offer.label} …")
         self.run_worker(work, thread=True, group="advice", exclusive=True)
@@ -199,7 +199,7 @@ class ComparingScreen(line_screen.LineScreen):
             Answer("r", "report of the design check: page, PDF, tables", report),
             Answer("d", "sheets for the deck: diagram, logs, cutting list, anchor drop", deck),
         ]
-        choose(self.app, "On paper", "", answers)
+        choose(self.app, Question("On paper", "", answers))
 
     def _ask_where(self, what: str) -> None:
         path = self.session.file.path

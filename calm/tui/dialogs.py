@@ -45,17 +45,8 @@ def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) ->
     app.push_screen(screen, taken)
 
 
-def choose(
-    app: App[Any],
-    title: str,
-    text: str,
-    answers: Sequence[Answer],
-    *,
-    back: Then | None = None,
-    must: bool = False,
-) -> None:
-    """Ask a `Question`, and do what the answer stands for."""
-    question = Question(title, text, answers, back=back, must=must)
+def choose(app: App[Any], question: Question) -> None:
+    """Ask a question, and do what the answer stands for."""
     ask(app, question, lambda then: then())
 
 

@@ -11,7 +11,7 @@ from calm.tui.catalogue_pane import Purpose
 from calm.tui.cell_editor import Then
 from calm.tui.checking import count
 from calm.tui.component_screen import id_check
-from calm.tui.dialogs import Answer, ask, choose, enter
+from calm.tui.dialogs import Answer, Question, ask, choose, enter
 from calm.tui.field import Asked
 from calm.tui.key_table import bindings
 from calm.tui.line_rows import ColumnFilling, LineCell, table_rows
@@ -138,7 +138,7 @@ class LinePane(LineSearch):
             return
         text = "\n".join(f"{each.sign} {each.heading}  {each.text}" for each in found)
         called = row.texts.get("label") or row.texts["component"]
-        choose(self.app, called, text, [Answer("b", "back to the row")])
+        choose(self.app, Question(called, text, [Answer("b", "back to the row")]))
 
     # rows
 
@@ -202,7 +202,7 @@ class LinePane(LineSearch):
             Answer("c", "codes of releases that have serial numbers", partial(fill, "codes")),
         ]
         text = f"Of {len(spots)} rows, one below the other; a list copied elsewhere can be pasted."
-        choose(self.app, "Fill a column", text, answers)
+        choose(self.app, Question("Fill a column", text, answers))
 
     def action_repeat(self) -> None:
         """Repeat what is chosen several times."""
@@ -229,7 +229,7 @@ class LinePane(LineSearch):
                 Answer("o", "the one that is there; the copy stands for itself", duplicate),
                 Answer("b", "both (`NAME *`) in what is accepted", partial(duplicate, named)),
             ]
-            choose(self.app, "Is the copy meant, too?", text, answers)
+            choose(self.app, Question("Is the copy meant, too?", text, answers))
         elif chosen:
             duplicate()
 

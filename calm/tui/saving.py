@@ -116,7 +116,7 @@ class Saving:
             title = f"{path.name} was changed by another program"
             text = "The file on the disk differs from your line. "
             text += f"It was written {moment(stamp[0] / 1e9)}."
-        choose(self._app, title, text, answers)
+        choose(self._app, Question(title, text, answers))
 
     # the file on the disk
 
@@ -184,14 +184,14 @@ class Saving:
         def ask_again() -> None:
             yes = [Answer("y", "yes, throw it away for good", throw_away)]
             told = f"It was kept {moment(kept.at)}."
-            choose(app, "Throw the work away?", told, yes, back=partial(self.offer, kept))
+            choose(app, Question("Throw the work away?", told, yes, back=partial(self.offer, kept)))
 
         answers = [
             Answer("r", "recover it; undo goes back to the file", recover),
             Answer("k", "keep it for later; go on with the file", go_on),
             Answer("d", "throw it away", ask_again),
         ]
-        choose(app, "Work that was not saved", text, answers, must=True)
+        choose(app, Question("Work that was not saved", text, answers, must=True))
 
     # the way out
 
@@ -215,7 +215,7 @@ class Saving:
         name, file = self._session.name, self._session.file
         is_gone = file.stamp is None and file.changed_on_disk()
         told = "is gone from the disk" if is_gone else "has changes that are not saved"
-        choose(self._app, "Not saved", f"{name} {told}.", answers)
+        choose(self._app, Question("Not saved", f"{name} {told}.", answers))
 
 
 def chosen_path(text: str) -> Path:

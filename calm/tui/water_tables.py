@@ -23,7 +23,7 @@ from calm.records.headings import heading
 from calm.records.profile_tables import QuantityTable, speed_and_direction
 from calm.tui import field, theme
 from calm.tui.checking import Check, Reading, number, quantity
-from calm.tui.dialogs import InputSheet, choose, numbered
+from calm.tui.dialogs import InputSheet, Question, choose, numbered
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ class Currents:
             down = f"{USUAL_DEPTH:g} m, as no depth is given" if depth is None else f"{depth:g} m"
             answers = numbered((name, partial(take, speed)) for name, speed in _PRESETS.items())
             text = f"A table down to {down}, towards the east, for you to change."
-            choose(self._screen.app, "A current to start from", text, answers)
+            choose(self._screen.app, Question("A current to start from", text, answers))
 
     def ask_for_file(self) -> None:
         """A current from CSV or NetCDF: referred to, or its profile copied."""

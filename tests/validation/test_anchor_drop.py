@@ -225,7 +225,7 @@ def test_a_heavy_sphere_on_a_thin_line_falls_as_if_alone(loaded):
     mooring = loaded(
         """
         name: alone
-        environment: {depth: 500 m}
+        environment: {depth: 500 m, density: 1200 kg/m^3}
         line: [{use: cork}, {use: thread, length: 300 m}, {use: ball}]
         components:
           cork: {kind: sphere, diameter: 50 mm, buoyancy: 1 N, cx: 0.001}
@@ -234,7 +234,7 @@ def test_a_heavy_sphere_on_a_thin_line_falls_as_if_alone(loaded):
         """
     )
     _, drop, _ = dropped(mooring, fineness=Fineness(50, 100))
-    speed = sqrt(10_000.0 / 100.0)
+    speed = sqrt(mooring.anchor_weight / (100.0 * 1200.0 / 1025.0))
     assert -drop.states[-1].velocity[-1, 2] == pytest.approx(speed, rel=1e-3)
     assert drop.states[-1].time == pytest.approx(500.0 / speed, rel=5e-3)
 
@@ -248,6 +248,22 @@ def test_a_uniform_current_only_carries_it_along(loaded):
     assert there.time == pytest.approx(here.time, rel=2e-3)
     drift = there.node[-1, 0] - here.node[-1, 0]
     assert drift == pytest.approx(0.4 * here.time, rel=5e-3)
+
+
+@pytest.mark.thorough
+def test_a_current_across_the_course_carries_it_aside(loaded):
+    """A ship northwards at 1 m/s in 0.4 m/s to the east goes (-0.4, 1) through the water: the line
+    streams (0.4, -1), and the drift of 0.4 m/s is 0.371 of itself along and 0.928 to the left.
+    """
+    still = drop_plan(loaded(LEAN.format(depth=200, length=120, current=0.0)),
+                      ship_speed=sqrt(1.16), fineness=FEW)  # fmt: skip
+    across = drop_plan(loaded(LEAN.format(depth=200, length=120, current=0.4)),
+                       course=0.0, fineness=FEW)  # fmt: skip
+    along, left = 0.4 / sqrt(1.16), 1.0 / sqrt(1.16)
+    drift = 0.4 * still.fall_time
+    assert still.aside == pytest.approx(0.0, abs=1e-3)
+    assert across.fall_back == pytest.approx(still.fall_back + along * drift, rel=5e-3)
+    assert across.aside == pytest.approx(-left * drift, rel=5e-3)
 
 
 def test_turned_with_the_current_it_is_the_same(loaded):

@@ -12,7 +12,7 @@ import pytest
 
 from calm.grid.field import estimate, field_of, posterior
 from calm.grid.samples import MooringDepths, Samples, gather
-from calm.motion.line_places import LinePlaces, points_of
+from calm.motion.matching import LinePlaces, points_of
 from calm.records.instrument_series import read_series
 
 FIELD = Path(__file__).parents[2] / "docs" / "field" / "dune2"

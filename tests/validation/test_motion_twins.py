@@ -94,7 +94,6 @@ def twin(mooring, seed, used=USED, slip=None):
         depth=pressure,
         level_depth=np.full(u.shape, np.nan),
         level_point=at,
-        level_sensor=np.array([used.index(label) if label in used else -1 for label in LEVELS]),
         u=flow.real,
         v=flow.imag,
         flag=np.ones(u.shape, np.int8),
@@ -225,7 +224,7 @@ def test_a_right_pressure_is_seldom_judged_wrong_where_no_current_was_measured(m
         measured, _, _ = twin(mooring, seed, THREE)
         none, empty = np.zeros((TIMES, 0)), np.zeros(0, np.int64)
         alone = replace(
-            measured, u=none, v=none, level_depth=none, level_point=empty, level_sensor=empty,
+            measured, u=none, v=none, level_depth=none, level_point=empty,
             flag=none.astype(np.int8),
         )  # fmt: skip
         wrong = replace(alone, depth=alone.depth + np.array([0.0, 15.0, 0.0]))

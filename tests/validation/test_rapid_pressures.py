@@ -17,8 +17,7 @@ from scipy.interpolate import PchipInterpolator
 import calm
 from calm.motion.correction import estimate_in_memory
 from calm.motion.line_response import Forward
-from calm.motion.matching import read_measured
-from calm.motion.motion_estimate import fitted
+from calm.motion.motion_estimate import RecoveredMooring, fitted
 from calm.motion.remarks import calm_times, coverage, difference, rms
 from calm.motion.study import prepare
 
@@ -29,8 +28,7 @@ SEABED = 3880.0
 @cache
 def measured():
     mooring = calm.load(FOLDER / "mooring.yaml")
-    one, _, _ = read_measured(mooring, [str(FOLDER / "pressures.csv")])
-    return mooring, one
+    return mooring, RecoveredMooring(mooring, [str(FOLDER / "pressures.csv")]).measured
 
 
 def both(given):

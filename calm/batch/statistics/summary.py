@@ -131,6 +131,12 @@ class Summary:
     stops: tuple[StopDepths, ...] = ()
 
     @property
+    def known_responses(self) -> Sequence[Response]:
+        """Those that are known in some profile, as the offset of most nets is not; else all."""
+        known = [one for one in self.responses if one.distribution is not None]
+        return known or self.responses
+
+    @property
     def solved(self) -> int:
         """Profiles that all figures are of."""
         return self.endings[Ending.SOLVED]

@@ -58,6 +58,9 @@ def test_figures_hang_together_in_a_current(solve):
     result = solve()
     c, top, anchor = result.components, result.top, result.anchor
     assert (top.depth, top.x, top.y) == (c.depth_top[0], c.x_top[0], c.y_top[0])
+    logger = result.clamps[0]  # 108.5 m deep in still water
+    assert logger.knockdown == pytest.approx(logger.depth - 108.5, abs=1e-4)
+    assert logger.knockdown > 0.1
     assert top.x > 5
     assert abs(top.y) < 1e-9
     assert c.knockdown[0] == pytest.approx(c.depth_top[0] - 77.5, abs=1e-4)

@@ -17,7 +17,7 @@ from calm.case.draws import (
     draws_of,
     normals_of,
 )
-from calm.case.uncertain import uncertain
+from calm.case.uncertain import sobol_indices, uncertain
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Spread, Uncertainty
 from calm.physics.stretch import ElongationCurve
@@ -294,3 +294,23 @@ def test_samples_are_a_power_of_two(samples, near):
 def test_the_pairs_are_of_logarithms():
     assert Spread(between=(-0.15, 0.3)) == Uncertainty().cable_drag
     assert log(1.3) - log(0.85) == pytest.approx(0.4249, abs=1e-4)
+
+
+def test_shares_of_a_polynomial_are_those_of_its_squared_coefficients():
+    """y = 3 z₁ + 0.5 (z₁³ - 3 z₁) + 2 z₁ z₂ + (z₂² - 1): the variances of the terms are 9, 6/4, 4
+    and 2, and their sum is 16.5. With z₁⁴ - 6 z₁² + 3, at a right angle to all terms, 24 more are
+    not explained.
+
+    Tolerance: the square root of the number of samples.
+    """
+    normals = np.random.default_rng(3).standard_normal((200_000, 2))
+    one, two = normals.T
+    values = 3.0 * one + 0.5 * (one**3 - 3.0 * one) + 2.0 * one * two + two**2 - 1.0
+    found = sobol_indices(normals, values)
+    assert found.first == pytest.approx([10.5 / 16.5, 2.0 / 16.5], abs=0.01)
+    assert found.total == pytest.approx([14.5 / 16.5, 6.0 / 16.5], abs=0.01)
+    assert found.unexplained == pytest.approx(0.0, abs=1e-12)
+    fourth = one**4 - 6.0 * one**2 + 3.0
+    more = sobol_indices(normals, values + fourth)
+    assert more.unexplained == pytest.approx(24.0 / 40.5, abs=0.02)
+    assert more.first == pytest.approx([10.5 / 40.5, 2.0 / 40.5], abs=0.02)

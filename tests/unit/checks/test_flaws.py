@@ -818,7 +818,7 @@ FLAWS = (
         "figures",
         "wire 1",
         "fail",
-        "wire 1 breaks at 4.8e+07 N; no cable of its diameter at",
+        "wire 1 bears 4.8e+07 N; no cable of its diameter bears",
     ),
     Flaw(
         "a wire that floats",

@@ -20,6 +20,11 @@ GOOD_ROPE = {"kind": "cable", "diameter": "10 mm", "weight": "0.2 N/m", "source"
 GOOD_CHAIN = {"kind": "chain", "diameter": "10 mm", "source": "a list"}
 GOOD_BODY = {"kind": "body", "length": "1 m", "mass": "70 kg", "buoyancy": "0 N", "cd": 0.7,
              "drag_area": "0.35 m^2", "source": "a list"}  # fmt: skip
+GOOD_SHACKLE = {"kind": "body", "role": "connector", "length": "60 mm", "mass": "0.8 kg",
+                "buoyancy": "-6.9 N", "cd": 1, "drag_area": "0.004 m^2", "material": "steel",
+                "breaking_load": "150 kN", "source": "a list"}  # fmt: skip
+GOOD_ANCHOR = {"kind": "anchor", "mass": "1100 kg", "material": "steel", "kt": "1.2 kN/(m/s)^2",
+               "source": "a list"}  # fmt: skip
 
 
 def findings(definition, known=()):
@@ -27,14 +32,17 @@ def findings(definition, known=()):
     return [finding.message for finding in check_catalogue({"x": model}, known)]
 
 
-@pytest.mark.parametrize("good", [GOOD_SPHERE, GOOD_ROPE, GOOD_CHAIN, GOOD_BODY])
+@pytest.mark.parametrize(
+    "good", [GOOD_SPHERE, GOOD_ROPE, GOOD_CHAIN, GOOD_BODY, GOOD_SHACKLE, GOOD_ANCHOR]
+)
 def test_good_components_pass(good):
     assert findings(good) == []
 
 
 # Water displaced by a sphere of 1 m: 1025 pi/6 = 536.7 kg, 5263 N. A bar of 10 mm: steel
 # 0.6165 kg/m, nylon 0.0895 kg/m. The body displaces 70/1025 m³: 0.02 of that to the power 2/3 is
-# 0.003342 m², 0.7 times 0.004774 m².
+# 0.003342 m², 0.7 times 0.004774 m². Two bars of 10 mm at 2 GPa bear 314.2 kN; the anchor weighs
+# 9379 N in water, 0.2166² times 200 kN/(m/s)²; 0.8 kg of steel weigh 6.821 N there.
 @pytest.mark.parametrize(
     ("good", "change", "told"),
     [
@@ -62,6 +70,18 @@ def test_good_components_pass(good):
         (GOOD_CHAIN, {"cn": 0.0}, "no drag across it"),
         (GOOD_CHAIN, {"mass": "0.8 kg/m"}, "steel bars"),
         (GOOD_CHAIN, {"mass": "3.2 kg/m"}, "steel bars"),
+        (
+            GOOD_CHAIN,
+            {"breaking_load": "700 kN"},
+            "its diameter bears more than 3.142e+05",
+        ),
+        (GOOD_ANCHOR, {"kt": "200 kN/(m/s)^2"}, "falls at 0.22 m/s"),
+        (
+            GOOD_SHACKLE,
+            {"breaking_load": "15 MN"},
+            "no body of its mass and length bears",
+        ),
+        (GOOD_SHACKLE, {"buoyancy": "-0.7 N"}, "its material weighs 6.821 N there"),
         (GOOD_BODY, {"drag_area": "0.00477 m^2"}, "of its 0.068 m³ has 0.0033 m²"),
     ],
 )

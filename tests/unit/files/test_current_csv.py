@@ -3,12 +3,13 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from calm.errors import InputError
 from calm.files import CurrentTable, MooringFile
 from calm.records.current_file import read_current_file
-from calm.records.current_terms import Terms, TimeChoiceError
+from calm.records.current_terms import Terms, TimeChoiceError, parse_time
 from calm.records.delimited import MOST_PROBLEMS
 
 from .conftest import GOOD, Place
@@ -85,12 +86,22 @@ def test_record_of_one_time_needs_no_choice(csv: Path) -> None:
             "2026-03-02T00:00 is outside the record, 2026-03-01T06:00 to 2026-03-01T12:00",
         ),
         ("noon", "`noon` is not a time; write 2026-03-01T06:00"),
+        ("2026-03-01T06.30", "`2026-03-01T06.30` is not a time; write 2026-03-01T06:00"),
+        ("2026-03-01T06:30.5", "`2026-03-01T06:30.5` is not a time; write 2026-03-01T06:00"),
+        ("20260301T06,5+02:00", "`20260301T06,5+02:00` is not a time; write 2026-03-01T06:00"),
     ],
 )
 def test_times_that_cannot_be_chosen(csv: Path, time: str | None, message: str) -> None:
     with pytest.raises(TimeChoiceError) as caught:
         profile(csv, RECORD, time)
     assert str(caught.value) == message
+
+
+@pytest.mark.parametrize(
+    "text", ["2026-03-01T06:00:15.5", "2026-03-01 060015,5", "20260301T060015.5Z"]
+)
+def test_parts_of_a_second(text: str) -> None:
+    assert parse_time(text) == np.datetime64("2026-03-01T06:00:15.5")
 
 
 def test_time_where_there_is_none(csv: Path) -> None:

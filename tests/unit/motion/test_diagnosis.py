@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from calm.motion.common_unknowns import Common
+from calm.motion.common_unknowns import ROBUST, Common, LinearLaw
 from calm.motion.diagnosis import GAIN, Diagnosis
 from calm.motion.measurements import interpolated
 from calm.motion.remarks import ALL
-from calm.motion.whole_record import ROBUST, LinearLaw
 
 TIMES = 240
 TIME = np.datetime64("2026-01-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h")
@@ -54,7 +53,7 @@ def diagnosis(change=lambda depth: depth, seed=3):
         0.0 * expected,
     )
     none, never = np.zeros(3), np.full(3, "NaT", "M8[ns]")
-    common = Common({"cable_drag": 1.0}, 0.0, none, none, never, none, np.eye(8), 1.0, np.eye(1))
+    common = Common({"cable_drag": 1.0}, 0.0, none, none, never, np.eye(8), 1.0, np.eye(1))
     water = SimpleNamespace(water=SimpleNamespace(depth=300.0))
     measured = SimpleNamespace(time=TIME, label=LABELS, depth=depth)
     return Diagnosis(SimpleNamespace(measured=measured, common=common, mooring=water), law)

@@ -24,7 +24,7 @@ def common(scale=1.0):
     none, never = np.zeros(2), np.full(2, "NaT", "M8[ns]")
     covariance = np.diag([1.5, 0.6, 0.6, 0.0, 0.0]) ** 2  # datum, offsets, moves
     gap = np.array([[0.2, 0.25, 0.3], [0.25, 0.2, 0.3], [0.3, 0.25, 0.2]])
-    return Common({}, 0.4, np.array([0.2, -0.1]), none, never, none, covariance, scale, gap)
+    return Common({}, 0.4, np.array([0.2, -0.1]), none, never, covariance, scale, gap)
 
 
 def at_times(depth, flag=None, u=None):
@@ -34,7 +34,7 @@ def at_times(depth, flag=None, u=None):
     return MooringMeasurements(
         np.datetime64("2026-03-01", "ns") + np.arange(n) * np.timedelta64(1, "h"), ("a", "c"),
         SENSORS, depth, np.tile([20.0, 60.0, np.nan], (n, 1)), np.array([-1, -1, 1]),
-        np.full(3, -1), u, 0.0 * u, np.ones(u.shape, np.int8) if flag is None else flag,
+        u, 0.0 * u, np.ones(u.shape, np.int8) if flag is None else flag,
     )  # fmt: skip
 
 
@@ -118,7 +118,7 @@ def test_without_sensors_the_currents_are_all_that_is_known():
     one = replace(one, label=(), point=np.zeros(0, np.int64))
     none = np.zeros(0)
     known = replace(
-        common(), offset=none, moved=none, since=none.astype("M8[ns]"), elsewhere=none,
+        common(), offset=none, moved=none, since=none.astype("M8[ns]"),
         covariance=np.array([[1.5**2]]),
     )  # fmt: skip
     moments = LineResponse(one, SimpleNamespace(depths=linear, still=STILL), {})

@@ -7,7 +7,7 @@ import xarray
 
 from calm.errors import InputError, UsageError
 from calm.motion.instrument_file import read_instruments, write_depths
-from calm.motion.line_places import LinePlaces
+from calm.motion.matching import LinePlaces
 
 LABELS = ("upper", "middle", "float")  # two clamps, then a component
 HOUR = np.timedelta64(1, "h")

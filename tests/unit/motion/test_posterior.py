@@ -8,8 +8,8 @@ import pytest
 
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
-from calm.motion.estimate import Linear, between, posterior
-from calm.motion.line_response import LineResponse, own_errors
+from calm.motion.estimate import posterior
+from calm.motion.line_response import Linear, LineResponse, between, own_errors
 from calm.motion.measurements import MooringMeasurements
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
@@ -25,13 +25,13 @@ SINCE = "2026-02-28"  # it has moved before the time
 def given(tide=None):
     one = MooringMeasurements(
         np.array(["2026-03-01"], "M8[ns]"), ("a", "c"), np.array([0, 2]), READ[None],
-        np.zeros((1, 2)), np.array([-1, -1]), np.array([-1, -1]), np.zeros((1, 2)),
+        np.zeros((1, 2)), np.array([-1, -1]), np.zeros((1, 2)),
         np.zeros((1, 2)), np.zeros((1, 2), np.int8), tide,
     )  # fmt: skip
     covariance = np.diag([0.1, 0.8, 0.5, 0.6, 0.0, 0.9]) ** 2  # factor, datum, offsets, steps
     common = Common(
         {"cable_drag": 1.1}, 0.4, np.array([0.3, -0.2]), np.array([0.0, 0.7]),
-        np.array(["NaT", SINCE], "M8[ns]"), np.zeros(2), covariance, 1.0, np.eye(2),
+        np.array(["NaT", SINCE], "M8[ns]"), covariance, 1.0, np.eye(2),
     )  # fmt: skip
     at = Linear(np.array([[0.05, -0.02]]), THERE[None], SLOPE[None], COMMON[None])
     return one, at, common
@@ -139,7 +139,7 @@ def test_the_errors_of_the_currents_are_those_of_the_table():
 def test_of_several_levels_the_shear_is_linear_and_the_worst_gap_counts():
     speed = np.array([[0.3, 0.4, 0.5]])
     one = replace(given()[0], u=speed, v=0.0 * speed, flag=np.ones((1, 3), np.int8),
-                  level_point=np.full(3, -1), level_sensor=np.full(3, -1),
+                  level_point=np.full(3, -1),
                   level_depth=np.array([[20.0, 20.0, 90.0]]))  # fmt: skip
     gap = np.array([[0.11, 0.12, 0.15], [0.13, 0.14, 0.16], [0.17, 0.18, 0.19]])
     moments, common = LineResponse(one, SimpleNamespace(), {}), replace(given()[2], gap=gap)
@@ -155,7 +155,7 @@ def test_of_several_levels_the_shear_is_linear_and_the_worst_gap_counts():
 
 def test_a_current_meter_hangs_at_its_pressure_and_else_where_the_line_has_it():
     one = replace(given()[0], depth=np.array([[93.0, np.nan]]), u=np.zeros((1, 3)),
-                  level_point=np.array([0, 2, 1]), level_sensor=np.array([0, 1, -1]),
+                  level_point=np.array([0, 2, 1]),
                   level_depth=np.full((1, 3), np.nan))  # fmt: skip
     level = LineResponse(one, SimpleNamespace(), {}).levels(THERE[None])
     assert level[0] == pytest.approx([93.0, THERE[2], THERE[1]], abs=1e-5)

@@ -72,7 +72,7 @@ def test_the_uppermost_knot_is_where_the_top_is_in_strong_currents(monkeypatch):
     one = MooringMeasurements(
         time=np.arange(len(down)).astype("M8[h]").astype("M8[ns]"), label=("low", "high"),
         point=np.array([1, 0]), depth=depth, level_depth=nothing,
-        level_point=np.zeros(0, np.int64), level_sensor=np.zeros(0, np.int64), u=nothing,
+        level_point=np.zeros(0, np.int64), u=nothing,
         v=nothing, flag=nothing.astype(np.int8),
     )  # fmt: skip
     mooring = SimpleNamespace(water=SimpleNamespace(depth=1000.0))

@@ -38,7 +38,7 @@ def measured():
     return MooringMeasurements(
         np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h"),
         ("a", "b", "c"), np.arange(3), READ, np.full((TIMES, 1), 20.0), np.array([-1]),
-        np.array([-1]), u, 0.0 * u, np.ones(u.shape, np.int8),
+        u, 0.0 * u, np.ones(u.shape, np.int8),
     )  # fmt: skip
 
 
@@ -46,7 +46,7 @@ def common(offset):
     count = len(offset)
     never, none = np.full(count, "NaT", "M8[ns]"), np.zeros(count)
     covariance = np.diag([0.1, 0.2, 0.5, *[1.0] * count, *none]) ** 2
-    return Common({"cable_drag": 1.1, "rigid_drag": 0.9}, 0.4, offset, none, never, none,
+    return Common({"cable_drag": 1.1, "rigid_drag": 0.9}, 0.4, offset, none, never,
                   covariance, 1.0, np.eye(1))  # fmt: skip
 
 
@@ -125,7 +125,7 @@ def test_used_sensors_are_judged_without_their_offsets_and_hidden_ones_too(line)
         there = np.isfinite(READ[:, column])
         rest = calmest(knockdown(used), there)
         for found, computed in (
-            (study.fit, estimated[:, column]),
+            (study.sensors, estimated[:, column]),
             (study.plain, plain[:, j]),
         ):
             mine = found[used.label[j]]
@@ -134,7 +134,7 @@ def test_used_sensors_are_judged_without_their_offsets_and_hidden_ones_too(line)
             assert mine.bias == pytest.approx(np.nanmean(off))
             assert mine.rms == pytest.approx(rms(off - off[rest].mean()))
     expected = judge_hidden(measured(), used, "b", estimated[:, 1], np.full(TIMES, 0.4), STILL)
-    assert study.held_out == (expected,)
+    assert study.held_out == {"b": expected}
     assert study.false == {"20.0 m": used.time[[3]]}
     assert len(study.remarks) == 1 and "20.0 m" in study.remarks[0]
     far = replace(task, common=replace(task.common, datum=10.0))

@@ -54,7 +54,7 @@ def measured(**more):
     one = MooringMeasurements(
         np.datetime64("2026-03-01", "ns") + np.arange(4) * np.timedelta64(1, "h"), ("a", "d"),
         np.array([0, 3]), READ, np.array([[20.0, np.nan]] * 4), np.array([-1, 0]),
-        np.array([-1, 0]), U, V, np.ones((4, 2), np.int8),
+        U, V, np.ones((4, 2), np.int8),
     )  # fmt: skip
     return replace(one, **more)
 
@@ -62,7 +62,7 @@ def measured(**more):
 def common():
     never = np.full(2, "NaT", "M8[ns]")
     none = np.zeros(2)
-    return Common({"cable_drag": 1.2}, 2.0, np.array([0.5, -0.4]), none, never, none,
+    return Common({"cable_drag": 1.2}, 2.0, np.array([0.5, -0.4]), none, never,
                   np.eye(6), 1.0, np.eye(2))  # fmt: skip
 
 
@@ -110,17 +110,17 @@ def test_a_block_has_the_estimated_depths_and_what_is_known_besides(monkeypatch)
 
 def test_the_currents_alone_hang_where_they_have_the_line():
     """Not at a pressure of a sensor that is not used; twice, which a line settles in."""
-    one = measured(level_point=np.array([0, 1]), level_sensor=np.array([-1, -1]))
+    one = without(measured(level_point=np.array([0, 1])), ["a"])
     depth = STILL[0]
     for _ in range(2):
         depth = STILL[0] + 10.0 * U[0, 0] + depth / 20.0
     assert plain(Line(), one)[0, 0] == pytest.approx(depth, abs=1e-5)
-    at = measured(level_point=np.array([0, 1]), level_sensor=np.array([0, -1]))
+    at = measured(level_point=np.array([0, 1]))
     assert plain(Line(), at)[0, 0] == pytest.approx(STILL[0] + 3.0 + READ[0, 0] / 20.0, abs=1e-5)
 
 
 def test_a_hidden_sensor_is_hidden_everywhere():
-    one = measured(level_point=np.array([3, 0]), level_sensor=np.array([1, 0]))
+    one = measured(level_point=np.array([3, 0]))
     upper, lower = without(one, ["d"]), without(one, ["a"])
     assert (upper.label, lower.label) == (("a",), ("d",))
     assert upper.depth.tolist() == READ[:, :1].tolist()
@@ -141,7 +141,7 @@ def test_the_digest_is_of_all_that_was_measured():
     assert MeasuredRecord(measured(tide=np.zeros(4)), source, ()).digest() == first
     others = {"label": ("a", "e"), "point": np.array([0, 2]), "depth": READ + 1e-9,
               "time": one.time + np.timedelta64(1, "ns"), "level_depth": one.level_depth + 1e-9,
-              "level_point": np.array([-1, 1]), "level_sensor": np.array([-1, 1]), "u": U + 1e-9,
+              "level_point": np.array([-1, 1]), "u": U + 1e-9,
               "v": V + 1e-9, "flag": one.flag + np.int8(1), "tide": np.full(4, 1e-9)}  # fmt: skip
     digests = {
         MeasuredRecord(replace(one, **{name: value}), source, ()).digest()
@@ -153,7 +153,7 @@ def test_the_digest_is_of_all_that_was_measured():
 def test_a_mooring_is_asked_at_its_factors_and_a_step_from_each(monkeypatch):
     asked = []
     record = SimpleNamespace(Forward=lambda mooring, factors: asked.append(factors) or len(asked))
-    monkeypatch.setattr("calm.motion.whole_record.Forward", record.Forward)
+    monkeypatch.setattr("calm.motion.line_response.Forward", record.Forward)
     here, shifted = module.forwards_of(None, replace(common(), factors={"a": 1.2, "b": 0.9}))
     assert (here, list(shifted)) == (3, ["a", "b"])
     step = np.exp(0.05)

@@ -1,13 +1,14 @@
 """Which readings cannot be from where a sensor hangs, and which sensors cannot be used."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
+import calm
 from calm.errors import UsageError
-from calm.motion.matching import plausible, unusable
-from calm.motion.sensors import Sensor
+from calm.motion.remarks import Fault
+from calm.motion.sensors import plausible, unusable
+from calm.motion.suspects import distances_of
+from calm.records.instrument_series import InstrumentSeries
 
 SEABED = 300.0
 
@@ -15,14 +16,14 @@ SEABED = 300.0
 def sensor(*depth, again=()):
     time = np.datetime64("2026-03-01", "ns") + np.arange(len(depth)) * np.timedelta64(1, "h")
     time[list(again)] = time[[i - 1 for i in again]]
-    return Sensor("a", time, np.array(depth), "p.csv")
+    return InstrumentSeries("a", "", np.nan, "p.csv", time, np.array(depth))
 
 
 @pytest.mark.parametrize(("place", "least"), [(60.0, 30.0), (30.0, 10.0), (10.0, -10.0)])
 def test_readings_far_above_the_place_or_below_the_seabed_are_left_out(place, least):
     good = [place + 5.0] * 7
     found, said = plausible(sensor(*good, least - 0.1, least, 330.0, 330.1), place, SEABED)
-    assert np.isnan(found.depth).tolist() == [False] * 7 + [True, False, False, True]
+    assert np.isnan(found.value).tolist() == [False] * 7 + [True, False, False, True]
     assert said == [
         f"a: 2 of its readings cannot be from its place, {place:.1f} m, and are left out: the "
         f"first is {least - 0.1:.1f} m, at 2026-03-01T07:00:00"
@@ -30,19 +31,27 @@ def test_readings_far_above_the_place_or_below_the_seabed_are_left_out(place, le
     shallow, _ = plausible(
         sensor(*[95.0] * 7, 119.9, 120.1), 90.0, 100.0
     )  # 20 m below, not a tenth
-    assert np.isnan(shallow.depth).tolist() == [False] * 8 + [True]
+    assert np.isnan(shallow.value).tolist() == [False] * 8 + [True]
+
+
+def test_several_depths_at_one_time_are_those_of_several_instruments():
+    with pytest.raises(UsageError, match="`a` has several depths at 2 of its times"):
+        plausible(sensor(60.0, 95.0, 60.0, 95.0, again=(1, 3)), 60.0, SEABED)
+    found, said = plausible(sensor(60.0, 60.5, 61.0, 61.5, again=(1, 3)), 60.0, SEABED)
+    assert found.value.tolist() == [60.0, 61.0]
+    assert "2 of its times stand twice" in said[0]
 
 
 def test_where_half_are_wrong_the_sensor_is_and_nothing_is_left_out():
     for count, left_out in ((2, True), (3, False)):
         found, said = plausible(sensor(*[60.0] * 3, np.nan, *[-999.0] * count), 60.0, SEABED)
-        assert np.isnan(found.depth).sum() == 1 + count * left_out
+        assert np.isnan(found.value).sum() == 1 + count * left_out
         assert bool(said) == left_out
 
 
 def test_of_readings_at_one_time_the_first_counts():
     found, said = plausible(sensor(60.0, 61.0, 99.0, 62.0, again=(2,)), 60.0, SEABED)
-    assert found.depth.tolist() == [60.0, 61.0, 62.0] and len(found.time) == 3
+    assert found.value.tolist() == [60.0, 61.0, 62.0] and len(found.time) == 3
     assert said == [
         "a: 1 of its times stand twice, the first 2026-03-01T01:00:00: the first reading of each "
         "counts"
@@ -59,8 +68,7 @@ def test_of_readings_at_one_time_the_first_counts():
     ],
 )
 def test_a_sensor_that_measures_nothing_is_named(depth, place, reason):
-    measured = SimpleNamespace(label=("a",), depth=np.array(depth)[:, None], point=np.array([1]))
-    found = unusable(measured, np.array([0.0, place]))
+    found = unusable(("a",), np.array(depth)[:, None], np.array([place]))
     assert list(found) == ["a"] * (reason is not None)
     assert reason is None or reason in found["a"]
 
@@ -78,11 +86,51 @@ def test_a_sensor_that_measures_nothing_is_named(depth, place, reason):
 )
 def test_a_sensor_far_from_its_place_at_its_least_is_refused(least, place, refused):
     depth = np.linspace(least, least + 40.0, 41) - 2.0  # a twentieth is less than the least
-    measured = SimpleNamespace(label=("a",), depth=depth[:, None], point=np.array([0]))
+    given = ("a",), depth[:, None], np.array([place])
     if refused:
         with pytest.raises(
             UsageError, match=rf"`a` is at {least:.1f} m at its least.* {place:.1f}"
         ):
-            unusable(measured, np.array([place]))
+            unusable(*given)
     else:
-        assert unusable(measured, np.array([place])) == {}
+        assert unusable(*given) == {}
+
+
+def test_points_are_as_far_down_the_line_as_it_was_cut(tmp_path):
+    clamps = "[{use: sbe37, at: 60 m}, {use: sbe37, at: 5 m}]"
+    line = f"{{use: wire-jacketed-8, length: 100 m, clamps: {clamps}}}"
+    (tmp_path / "m.yaml").write_text(
+        "environment: {depth: 300 m}\ncomponents:\n"
+        "  ball: {kind: sphere, diameter: 2 m, buoyancy: 5 kN}\nline:\n"
+        f"  - {{use: ball}}\n  - {line}\n  - {{use: anchor-wheels-3}}\n"
+    )
+    mooring = calm.load(tmp_path / "m.yaml")
+    assert distances_of(mooring).tolist() == [7.0, 62.0, 0.0, 2.0, 102.0]
+
+
+NEVER = np.datetime64("NaT")
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "since", "until", "read"),
+    [
+        ("gain", 1.1, NEVER, NEVER, [66.0, 88.0, 110.0]),
+        ("offset", 3.0, NEVER, NEVER, [63.0, 83.0, 103.0]),
+        ("drift", 4.0, "2026-03-01T00", "2026-03-01T02", [60.0, 82.0, 104.0]),
+    ],
+)
+def test_what_a_fault_adds_is_taken_off(kind, value, since, until, read):
+    """Of 60, 80 and 100 m, read as the words of `Fault` say."""
+    fault = Fault("a", kind, value, value, value, 9.0, np.datetime64(since), np.datetime64(until))
+    one = sensor(*read)
+    time, depth = fault.taken_off(one.time, one.value)
+    assert depth == pytest.approx([60.0, 80.0, 100.0])
+    assert (time == one.time).all()
+
+
+def test_times_that_are_late_are_set_back():
+    late = Fault("a", "clock", 0.5, 0.5, 0.5, 9.0, NEVER, NEVER)
+    one = sensor(60.0, 80.0)
+    time, depth = late.taken_off(one.time, one.value)
+    assert time[0] == np.datetime64("2026-02-28T23:30")
+    assert depth.tolist() == [60.0, 80.0]

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 
 from calm.errors import UsageError
-from calm.motion.matching import unusable
 from calm.motion.measurements import MooringMeasurements
+from calm.motion.sensors import unusable
+from calm.motion.suspects import torn
 from calm.motion.whole_record import _widened
 
-HOURS = np.datetime64("2026-01-01", "ns") + np.arange(240) * np.timedelta64(1, "h")
 STILL = np.array([50.0, 120.0, 250.0])
 LABELS = ("upper", "middle", "lower")
+HOURS = np.datetime64("2026-03-01", "ns") + np.arange(240) * np.timedelta64(1, "h")
 RANDOM = np.random.default_rng(3)
 
 
@@ -21,14 +22,6 @@ def knocked(shift=0):
     return STILL + np.square(speed)[:, None] * np.array([60.0, 35.0, 5.0])
 
 
-def measured(depth):
-    count = depth.shape[1]
-    return MooringMeasurements(
-        HOURS, LABELS[:count], np.arange(count), depth, np.zeros((240, 1)), np.zeros(1, int),
-        np.zeros(1, int), np.ones((240, 1)), np.ones((240, 1)), np.ones((240, 1), np.int8),
-    )  # fmt: skip
-
-
 @pytest.mark.parametrize(
     ("factor", "unit"), [(1.45038, "psi for dbar?"), (0.68948, "dbar for psi")]
 )
@@ -37,23 +30,23 @@ def test_psi_and_dbar_are_told_apart(factor, unit, count):
     depth = factor * (knocked()[:, 3 - count :] if count == 3 else knocked()[:, 1:2])
     still = STILL if count == 3 else STILL[1:2]
     with pytest.raises(UsageError) as refused:
-        unusable(measured(depth), still)
+        unusable(LABELS[: len(still)], depth, still)
     assert str(refused.value).count(f"its unit ({unit}") == count
 
 
 def test_pressures_that_count_down_have_the_wrong_sign():
     with pytest.raises(UsageError) as refused:
-        unusable(measured(-knocked()), STILL)
+        unusable(LABELS[: len(STILL)], -knocked(), STILL)
     said = str(refused.value)
     assert said.count("its sign or its label is wrong") == 3 and "exchanged" not in said
 
 
 def test_exchanged_labels_are_refused_by_their_names():
     with pytest.raises(UsageError) as refused:
-        unusable(measured(knocked()[:, [1, 0, 2]] + 8.0), STILL)
+        unusable(LABELS[: len(STILL)], knocked()[:, [1, 0, 2]] + 8.0, STILL)
     said = str(refused.value)
     assert said.startswith("--pressures: `upper` is at 12") and said.endswith("are exchanged")
-    assert unusable(measured(knocked() + 8.0), STILL) == {}
+    assert unusable(LABELS[: len(STILL)], knocked() + 8.0, STILL) == {}
 
 
 def test_bands_widen_with_the_misfit_of_usual_times():
@@ -64,3 +57,26 @@ def test_bands_widen_with_the_misfit_of_usual_times():
     assert _widened(5.0 * left, expected, known) == pytest.approx(5.0, rel=0.1)
     spikes = np.where(RANDOM.random((400, 1)) < 0.08, 30.0 * left, left)
     assert _widened(spikes, expected, known) == 1.0
+
+
+def measured(depth):
+    count = depth.shape[1]
+    return MooringMeasurements(
+        HOURS, LABELS[:count], np.arange(count), depth, np.zeros((240, 1)), np.zeros(1, int),
+        np.zeros(1, int), np.ones((240, 1)), np.ones((240, 1)), np.ones((240, 1), np.int8),
+    )  # fmt: skip
+
+
+def test_depths_farther_apart_than_the_line_is_long_are_left_out():
+    depth = np.tile([60.0, 150.0, 290.0], (240, 1))
+    depth[4, 1] = 60.0 + 1.25 * 100.0 + 20.1  # 100 m of line to the first: the second is wrong
+    depth[5, 1] = 60.0 + 1.25 * 100.0 + 19.9
+    depth[6, 0] = -100.0
+    found, said = torn(measured(depth), np.array([0.0, 100.0, 250.0]))
+    assert np.argwhere(np.isnan(found.depth)).tolist() == [[4, 1], [6, 0]]
+    assert said[1] == (
+        f"{LABELS[1]}: 1 of its readings are farther from those of others than the line is long, "
+        f"and are left out: the first is 205.1 m, at {HOURS[4]!s:.19}"
+    )
+    depth[:, 0] = -100.0  # the sensor is wrong, not its readings
+    assert torn(measured(depth), np.array([0.0, 100.0, 250.0]))[1] == []

@@ -7,8 +7,8 @@ import pytest
 from scipy.stats import multivariate_t, norm
 
 from calm.motion.line_response import with_factors
-from calm.motion.measurements import MooringMeasurements
-from calm.motion.whole_record import MOST_TIMES, SCALES, _scale, _worst, chosen_times, repeated
+from calm.motion.measurements import MOST_TIMES, MooringMeasurements, chosen_times
+from calm.motion.whole_record import SCALES, _scale, _worst, repeated
 from calm.physics.line import Line
 
 
@@ -74,7 +74,7 @@ def test_times_with_a_current_and_a_pressure_are_taken_evenly():
     u[0], depth[-1] = np.nan, np.nan
     one = MooringMeasurements(
         np.arange(count).astype("M8[s]"), ("a", "b"), np.array([0, 1]), depth, u,
-        np.array([-1]), np.array([-1]), u, 0.0 * u, np.ones(u.shape, np.int8),
+        np.array([-1]), u, 0.0 * u, np.ones(u.shape, np.int8),
     )  # fmt: skip
     taken = chosen_times(one)
     assert (taken[0], taken[-1], len(taken)) == (1, count - 2, MOST_TIMES)

@@ -60,3 +60,18 @@ def test_measured_drag_of_the_aanderaa_meters():
     speeds = (0.51, 1.03, 1.54, 2.06, 2.57)
     forces = [9.80665 * kgf for kgf in (1.03, 2.45, 4.98, 10.56, 20.60)]
     assert drag.measured_drag(speeds, forces) == pytest.approx(26.4, abs=0.05)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_friction_of_each_law_goes_with_the_current_whichever_way_the_axis_is_named(side):
+    """Kt 2, a current of (3, 4, 0) m/s and an axis along x: 3 m/s along it, 5 m/s in all."""
+    expected = {
+        drag.Friction.BERTEAUX: (18.0, 0.0, 0.0),
+        drag.Friction.HOERNER: (30.0, 40.0, 0.0),
+        drag.Friction.CONSTANT: (50.0, 0.0, 0.0),
+    }
+    for friction, force in expected.items():
+        there = drag.friction_force(friction.law, 2.0, 3.0, 4.0, 0.0, side, 0.0, 0.0)
+        back = drag.friction_force(friction.law, 2.0, -3.0, -4.0, 0.0, side, 0.0, 0.0)
+        assert there == pytest.approx(force)
+        assert back == pytest.approx([-each for each in force])

@@ -161,6 +161,19 @@ def test_the_table_gives_each_reason_once(short):
     assert "! no return levels by GEV: annual maxima of 10 whole years are needed" in text
 
 
+def test_a_response_that_is_known_in_no_profile_is_neither_drawn_nor_excused(short, nothing):
+    """As the offset of a net whose free end hangs from a node."""
+    responses = [
+        one if one.name != "offset" else replace(absent, name="offset")
+        for one, absent in zip(short.responses, nothing.responses, strict=True)
+    ]
+    without = replace(short, responses=tuple(responses))
+    assert [one.name for one in without.known_responses] == ["knockdown", "anchor_tension", "tilt"]
+    assert "there are 0 values" not in table(without)
+    drawn = [page.count("offset of the top [") for page in map(summary_html, (short, without))]
+    assert drawn[0] > drawn[1] == 0
+
+
 def test_nothing_solved_can_be_shown(nothing):
     text = table(nothing)
     assert "4 no-equilibrium" in text

@@ -42,6 +42,14 @@ def test_an_anchor_of_three_tonnes_of_steel(area, speed):
     assert -motion.velocity[2] == pytest.approx(speed, abs=0.005)  # two digits are published
 
 
+@pytest.mark.parametrize("density", [1000.0, 1200.0])
+def test_an_anchor_falls_by_the_density_of_the_water_at_the_seabed(density):
+    """K is that in reference water: V = sqrt(W 1025 / (K ρ))."""
+    fall = solve_fall(line(rigid(0.0, 0.0)), water(1000.0, density=density), ANCHOR)
+    speed = sqrt(9000.0 * 1025.0 / (500.0 * density))
+    assert fall.velocity == pytest.approx([0.0, 0.0, -speed], rel=CLOSED)
+
+
 def test_ten_glass_balls_that_lift_80_kg():
     """17 in balls of 25.4 kgf each, Cd A 2.4 m² together: 1.18 m/s."""
     balls = line(rigid(0.0, (254.0 - 80.0) * 9.80665, drag=0.5 * 1025.0 * 2.4))

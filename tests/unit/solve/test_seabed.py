@@ -1,10 +1,12 @@
 """A line whose lower part lies on the seabed."""
 
+from dataclasses import replace
 from math import asinh, radians, sqrt
 
 import numpy as np
 import pytest
 
+from calm.files.definition import STANDARD_GRAVITY
 from calm.solve import Settings, solve_mooring
 from tests.unit.solve.simple import line, rigid, rope, water
 
@@ -64,6 +66,27 @@ def test_the_part_on_the_seabed_lies_along_the_pull_and_friction_eats_it():
     assert held.tension[-1] == pytest.approx(free.tension[-1] - 0.05 * weight, abs=1e-3)
     much = landed(line(FLOAT, rope(40, weight=0.5), CHAIN), water(70, CURRENT), seabed_friction=0.6)
     assert much.tension[-1] == 0
+
+
+@pytest.mark.parametrize("density", [1000.0, 1025.0, 1200.0])
+def test_what_lies_weighs_by_the_density_of_its_water(density):
+    """60 N/m in water of 1025 kg/m³ and 8 litres per metre, a clamp of 300 N and 10 litres: with
+    friction the tension falls by 0.05 of the weight in the water that is there.
+    """
+    chain = (*CHAIN[:3], 8e-3, *CHAIN[4:])
+    pieces = line(FLOAT, rope(40, weight=0.5), chain, clamps=[(2, 50.0, -300.0, 0.0)])
+    pieces = replace(pieces, clamp_volume=np.array([0.01]))
+    current = water(70, CURRENT, density=density)
+    solution = landed(pieces, current, seabed_friction=0.05)
+    per_metre, clamp = (
+        weight - (density - 1025.0) * STANDARD_GRAVITY * volume
+        for weight, volume in ((60.0, 8e-3), (300.0, 0.01))
+    )
+    first, last = solution.hanging, len(solution.tension) - 1
+    weight = per_metre * solution.grounded_length + clamp
+    assert solution.tension[last] == pytest.approx(
+        np.hypot(*solution.force[first, :2]) - 0.05 * weight, abs=1e-3
+    )
 
 
 def test_a_heavy_piece_stands_on_the_seabed():
