@@ -27,7 +27,7 @@ from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.files.legs import nodes_of
 from calm.files.mooring_file import clamps_down
-from calm.physics.compiled import by_address, entry
+from calm.physics.compiled import by_address, outcome
 from calm.physics.line import Floats, Water
 from calm.physics.profile import Sea
 from calm.physics.track import head_count
@@ -295,7 +295,7 @@ class NetProfiles:
         how = search.marching(step, CHOSEN, FINE, given=False)
         ask = by_address(ask_net, AskedNet(net_closing.CLOSE, search.net, paper.x, how, 0.0, True))
         given = (ask, search.net, step, paper, *current, rows, endings)
-        entry(solve_net_rows, *given)(*given)
+        outcome(solve_net_rows, True, *given)
 
     def _columns(self, rows: NetRows) -> dict[str, Floats]:
         """The columns that the rows lead to."""

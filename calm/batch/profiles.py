@@ -23,7 +23,7 @@ from calm.case.net import Net
 from calm.dataset import netcdf
 from calm.files import CurrentTable
 from calm.files.mooring_file import clamps_down
-from calm.physics.compiled import by_address, entry
+from calm.physics.compiled import by_address, outcome
 from calm.physics.line import Floats, Integers, Water
 from calm.solve import Status
 from calm.solve.audit import referee_of
@@ -290,7 +290,7 @@ class Batch:
         )
         find = by_address(find_asked, AskedSearch(search, referee))
         given = (find, search, referee, paper, first, depth, *parts, rows, endings)
-        entry(solving.solve_rows, *given)(*given)
+        outcome(solving.solve_rows, True, *given)
         if first:
             vars(self).update(_starts=problem.starts)
         again = np.flatnonzero(endings == LACKS_ROOM)

@@ -47,15 +47,6 @@ def set_row(rows: Any, i: int, row: Any) -> None:
     rows[i] = row
 
 
-@cache
-def compiled(law: Law) -> Any:
-    """A law and all that it calls, compiled when first called, and kept for the next process."""
-    import numba
-
-    options = {**OPTIONS, "pipeline_class": _law_compiler()}
-    return kept(numba.njit, clone(law), cache_folder(), **options)
-
-
 _entries: dict[Law, Any] = {}
 
 
@@ -67,11 +58,17 @@ def entry(law: Law, *arguments: Any) -> Any:
     found = _entries.get(law)
     if found is None:
         numba: Any = __import__("numba")
-        dispatcher = compiled(law)
+        options = {**OPTIONS, "pipeline_class": _law_compiler()}
+        dispatcher = kept(numba.njit, clone(law), cache_folder(), **options)
         types = tuple(numba.typeof(argument) for argument in arguments)
         dispatcher.compile(types)
         found = _entries[law] = dispatcher.overloads[types].entry_point
     return found
+
+
+def outcome(law: Law, compiled: bool, *given: Any) -> Any:
+    """Return what a law makes of what it is given, as it stands or compiled by `entry`."""
+    return (entry(law, *given) if compiled else law)(*given)
 
 
 def by_address(law: Law, *arguments: Any) -> Any:

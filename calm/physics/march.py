@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from calm.physics.compiled import entry
+from calm.physics.compiled import outcome
 from calm.physics.drag import Vector
 from calm.physics.line import (
     COLUMNS,
@@ -116,7 +116,7 @@ def march(
         most = room + 3 * len(course.loads) + 2 * len(course.stages) + 1 if record else 1
         lengths, counts, columns, left = _paper(course, cuts, room, most, compiled)
         given = (course, sea, how, depth, 0.0, lengths, counts, columns, left)
-        (entry(pass_line, *given) if compiled else pass_line)(*given)
+        outcome(pass_line, compiled, *given)
         if left[FAILURE] != NO_ROOM:
             break
         room *= 8

@@ -36,9 +36,10 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
     def taken(column: Floats) -> Any:
         return np.array(column) if compiled else column.tolist()
 
-    moored = Moored(
+    records: Any = np.array(knots, record_type(Knot))
+    return Moored(
         bodies if compiled else list(map(RefereeBody._make, bodies.tolist())),
-        knots,
+        records if compiled else knots,
         len(line.length),
         head_count(line),
         line.friction.law,
@@ -53,10 +54,6 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
         taken(water.viscosity_level),
         taken(water.viscosity),
     )
-    if not compiled:
-        return moored
-    records: Any = np.array(knots, record_type(Knot))
-    return moored._replace(knots=records)
 
 
 def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Referee:
@@ -111,23 +108,12 @@ def shape_of(solution: Solution) -> RefereeShape:
     """The shape of a solution as the referee takes it."""
     nodes = len(solution.position)
     none = np.zeros(1)
-    columns = (
-        *solution.position.T,
-        *solution.force.T,
-        *(
-            np.concatenate([none, column])
-            for column in (
-                solution.element_piece,
-                solution.element_clamp,
-                solution.cut,
-                solution.strain,
-            )
-        ),
-    )
+    of_elements = solution.element_piece, solution.element_clamp, solution.cut, solution.strain
+    columns = [*solution.position.T, *solution.force.T]
+    columns += [np.concatenate([none, column]) for column in of_elements]
     first, last = solution.piece_nodes.T.tolist()
-    return RefereeShape(
-        [column.tolist() for column in columns], nodes, solution.hanging, first, last
-    )
+    record = [column.tolist() for column in columns]
+    return RefereeShape(record, nodes, solution.hanging, first, last)
 
 
 def amplification(solution: Solution) -> Floats:
@@ -157,7 +143,5 @@ def flow_across(solution: Solution) -> Floats:
 
 def _flow(solution: Solution) -> Floats:
     """Current (k, 3) at the middle of every element [m/s]."""
-    current = solution.water.current_at(
-        -0.5 * (solution.position[:-1] + solution.position[1:])[:, 2]
-    )
-    return current
+    heights = solution.position[:, 2]
+    return solution.water.current_at(-0.5 * (heights[:-1] + heights[1:]))

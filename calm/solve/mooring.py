@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from calm.physics.compiled import by_address, entry
+from calm.physics.compiled import by_address, outcome
 from calm.physics.line import NO_ROOM, Floats, Line, Trace, Water
 from calm.physics.passing import FAILURE
 from calm.physics.track import Track
@@ -108,7 +108,7 @@ def find_compiled(search: Search, referee: Referee) -> FoundShape:
     """`find_shape`, compiled."""
     asked = AskedSearch(search, referee)
     find = by_address(find_asked, asked)
-    entry(find_now, find, asked)(find, asked)
+    outcome(find_now, True, find, asked)
     return as_told(list(search.problem.work.found))
 
 
@@ -233,8 +233,7 @@ class Nearby:
         self._compiled = compiled = runs_compiled(settings, line)
         problem = problem_of(line, water, settings, compiled=compiled, room=self._room)
         search = search_of(problem, compiled)
-        close = entry(close_coarsely, search, True) if compiled else close_coarsely
-        closed: Closed = close(search, self.solution.landed)
+        closed: Closed = outcome(close_coarsely, compiled, search, self.solution.landed)
         if closed.ending != FOUND:
             raise closing_refusal(closed, False)
         self._root, work = closed.root, problem.work
@@ -291,10 +290,8 @@ class Nearby:
         referee = referee_of(line, water, 0.0, compiled)
         refined = Refined(closed, len(self._cuts), errors)
         problem = search.problem
-        audit = entry(audited, problem, referee, refined) if compiled else audited
-        return solution_found(
-            audit(problem, referee, refined), problem, line, water, self._settings
-        )
+        found = outcome(audited, compiled, problem, referee, refined)
+        return solution_found(found, problem, line, water, self._settings)
 
     def _closed(self, line: Line, water: Water, track: Track | None) -> tuple[Search, Closed]:
         compiled = self._compiled
@@ -309,8 +306,8 @@ class Nearby:
         for row in range(2):
             work.shares[row][:] = self._shares[row].tolist()
         search = search_of(problem, compiled)
-        close = entry(polish, search, self._root, CHOSEN, FINE) if compiled else polish
-        closed: Closed = close(search, self._moved(water, problem), CHOSEN, FINE)
+        moved = self._moved(water, problem)
+        closed: Closed = outcome(polish, compiled, search, moved, CHOSEN, FINE)
         if closed.ending != FOUND:
             raise closing_refusal(closed, False)
         return search, closed

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import by_address, entry
+from calm.physics.compiled import by_address, outcome
 from calm.physics.line import FAILURES, GOES_ON, Floats, Line, Trace, Water
 from calm.physics.profile import Profile
 from calm.solve import net_closing, net_march
@@ -112,7 +112,7 @@ class NetSearch:
         asked = AskedNet(task, self.net, own, how, enough, False)
         if self.compiled:
             ask = by_address(ask_net, asked)
-            ending = entry(ask_now, ask, asked)(ask, asked)
+            ending = outcome(ask_now, True, ask, asked)
         else:
             ending = ask_net(asked, 0.0)
         if task >= net_closing.CLOSE and ending == net_closing.NEEDS_ROOM:

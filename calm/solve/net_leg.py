@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import entry, record_type
+from calm.physics.compiled import outcome, record_type
 from calm.physics.hull import HullRow, SurfaceFloat
 from calm.physics.line import Bed, Floats, Line, Water, off_bed
 from calm.physics.referee import RefereeShape
@@ -242,7 +242,7 @@ def leg_found(
     asked = (
         referee.moored, shape, loads if compiled else loads.tolist(), landed, problem.limits
     )  # fmt: skip
-    closure, moment = (entry(residuals, *asked) if compiled else residuals)(*asked)
+    closure, moment = outcome(residuals, compiled, *asked)
     line = laid.leg.line if first else found.line
     return replace(
         found,

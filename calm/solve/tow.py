@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import compiled
+from calm.physics.compiled import outcome
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, MarchError, Water
 from calm.solve.finish import refuse_unbalanced, solution_of
@@ -95,12 +95,10 @@ def solve_tow(
             raise half_out(tow) or failure from failure
         raise
     problem = tow.search.problem
-    state = compiled(stated_errors) if tow.compiled else stated_errors
-    audit = compiled(audit_shape) if tow.compiled else audit_shape
-    errors = state(problem, refined)
+    errors = outcome(stated_errors, tow.compiled, problem, refined)
     solution = solution_of(problem, towed, water, tow.settings, refined, errors, tow.frequency)
     _refuse_misplaced(solution, towing)
-    closure, moment = audit(problem, tow.referee, refined.closed)
+    closure, moment = outcome(audit_shape, tow.compiled, problem, tow.referee, refined.closed)
     refuse_unbalanced(closure, moment)
     return replace(solution, closure=closure, moment_residual=moment, other_depth=other_depth)
 

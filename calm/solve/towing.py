@@ -2,13 +2,12 @@
 
 from collections.abc import Callable
 from math import isnan, sqrt
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import entry
+from calm.physics.compiled import outcome
 from calm.physics.drag import Vector
 from calm.physics.line import FAILURES, NO_ROOM, Line, MarchError, Trace, Water
 from calm.physics.passing import FAILURE, FX, FY, FZ, NODES
@@ -121,13 +120,13 @@ class Towed:
     def coarse_root(self, a: float, miss_a: float, b: float, miss_b: float) -> Root:
         """Root of the coarse miss between two depths [m]."""
         unknown = self.root.unknown
-        root: Root = self._law(coarse_root)(self.search, unknown, a, miss_a, b, miss_b)
+        root: Root = outcome(coarse_root, self.compiled, self.search, unknown, a, miss_a, b, miss_b)
         self._refuse_stopped(root.miss)
         return root
 
     def find_coarser(self) -> None:
         """Seek the coarse root near the last one."""
-        self.root = self._law(coarser)(self.search, self.root)
+        self.root = outcome(coarser, self.compiled, self.search, self.root)
         self._refuse_stopped(self.root.miss)
 
     def strum(self, frequency: float) -> None:
@@ -147,7 +146,7 @@ class Towed:
         ------
         NoEquilibrium, MarchError
         """
-        self.closed = self._law(polish)(self.search, self.root, cuts, record)
+        self.closed = outcome(polish, self.compiled, self.search, self.root, cuts, record)
         if self.closed.ending == MARCH_STOPPED:
             self._refuse_stopped(self.closed.root.miss)
         if self.closed.ending != FOUND:
@@ -164,25 +163,25 @@ class Towed:
         step, problem = self.settings.angle_step, self.search.problem
         for _ in range(MOST_ROUNDS):
             self.root = self._planned(2.0 * step)
-            segments: int = self._law(halve)(self.search.problem)
+            segments: int = outcome(halve, self.compiled, self.search.problem)
             polish(CHOSEN, COARSE)
             coarse = self.closed
             polish(HALVED, FINE)
             problem = self.search.problem
-            errors: Errors = self._law(errors_of)(problem, coarse, self.closed)
+            errors: Errors = outcome(errors_of, self.compiled, problem, coarse, self.closed)
             refined = Refined(self.closed, segments, errors)
             excess = excess_of(problem, errors, False)
             if excess <= 1.0 or segments > MOST_SEGMENTS:
                 break
             step *= max(0.8 / sqrt(excess), 0.2)
-        bent: Refined = self._law(with_bends)(problem, refined)
+        bent: Refined = outcome(with_bends, self.compiled, problem, refined)
         return bent
 
     def _planned(self, step: float) -> Root:
-        root: Root = self._law(planned)(self.search, self.root, step)
+        root: Root = outcome(planned, self.compiled, self.search, self.root, step)
         while self._lacks_room():
             self._lay_out(MORE_ROOM * len(self.search.problem.work.chosen))
-            root = self._law(planned)(self.search, self.root, step)
+            root = outcome(planned, self.compiled, self.search, self.root, step)
         self._refuse_stopped(root.miss)
         return root
 
@@ -196,7 +195,7 @@ class Towed:
 
     def _miss(self, x: float, step: float, record: int) -> float:
         about = About(self.search.problem, self.root.unknown, step, CHOSEN, False, record)
-        miss: float = self._law(miss_now)(self.search.miss, about, x)
+        miss: float = outcome(miss_now, self.compiled, self.search.miss, about, x)
         return miss
 
     def _lay_out(self, room: int) -> None:
@@ -214,16 +213,6 @@ class Towed:
     def _refuse_stopped(self, miss: float) -> None:
         if isnan(miss):
             raise MarchError(FAILURES[int(self.search.problem.work.left[FAILURE])])
-
-    def _law(self, law: Callable[..., Any]) -> Callable[..., Any]:
-        """A law as it stands, or compiled."""
-        if not self.compiled:
-            return law
-
-        def compiled(*given: Any) -> Any:
-            return entry(law, *given)(*given)
-
-        return compiled
 
 
 MOST_MOVES = 6
