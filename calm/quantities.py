@@ -6,6 +6,7 @@ the same and carries the same unit wherever it is shown. A second one has what i
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from math import atan2, ceil, degrees, floor, log10
 
 from calm.errors import UsageError, unknown
@@ -44,7 +45,7 @@ class Quantity:
     @property
     def display_unit(self) -> str:
         """The unit people read: that chosen by `show_in`, else the usual one."""
-        return self._chosen or self.usual_unit
+        return _layout(self.unit, self.display, self.decimals)[0]
 
     @property
     def usual_unit(self) -> str:
@@ -59,23 +60,7 @@ class Quantity:
     @property
     def scale(self) -> float:
         """Return how many of the unit displayed make one `unit`."""
-        if not self._chosen:
-            return self.usual_scale
-        return 1.0 / SHOWN_UNITS[_CHOICES[self.unit]][self._chosen]
-
-    @property
-    def places(self) -> int:
-        """Digits after the point that mean as much in the unit displayed as in the usual one.
-
-        Feet have as many as metres.
-        """
-        return max(0, self.decimals - round(log10(0.95 * self.scale / self.usual_scale)))
-
-    @property
-    def _chosen(self) -> str:
-        """The unit chosen for what this is a kind of; none for what has a small unit of its own."""
-        own = self.display and _CHOICES.get(self.unit) != "force"
-        return "" if own else _shown.get(_CHOICES.get(self.unit, ""), "")
+        return _layout(self.unit, self.display, self.decimals)[1]
 
     @property
     def header(self) -> str:
@@ -94,7 +79,8 @@ class Quantity:
         """
         if value is None or value != value:
             return "-"
-        return f"{value * self.scale:z.{self.places}f}"
+        _, scale, places = _layout(self.unit, self.display, self.decimals)
+        return f"{value * scale:z.{places}f}"
 
     def say(self, value: float | None) -> str:
         """A value [`unit`] with the unit displayed, for a sentence, e.g. ``113.2 m``."""
@@ -107,8 +93,8 @@ class Quantity:
         return self._with_unit(f"{float(f'{value * self.scale:.4g}'):.10g}")
 
     def _with_unit(self, text: str) -> str:
-        space = "" if self.display_unit in ("", "°") else " "
-        return f"{text}{space}{self.display_unit}"
+        unit = self.display_unit
+        return f"{text}{'' if unit in ('', '°') else ' '}{unit}"
 
 
 _USUAL = {
@@ -214,6 +200,21 @@ _CHOICES = {next(iter(units)): dimension for dimension, units in SHOWN_UNITS.ite
 _shown: dict[str, str] = {}
 
 
+@cache
+def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
+    """Return the unit that people read, how many of it make one of results, and digits.
+
+    What has a small unit of its own keeps it; a unit that is chosen has digits that mean as much as
+    the usual ones, feet as many as metres.
+    """
+    dimension, usual = _CHOICES.get(unit, ""), _USUAL.get(display, 1.0)
+    chosen = "" if display and dimension != "force" else _shown.get(dimension, "")
+    if not chosen:
+        return display or unit, usual, decimals
+    scale = 1.0 / SHOWN_UNITS[dimension][chosen]
+    return chosen, scale, max(0, decimals - round(log10(0.95 * scale / usual)))
+
+
 def show_in(units: Mapping[str, str]) -> None:
     """Show quantities to people in these units from now on, in this process.
 
@@ -225,6 +226,7 @@ def show_in(units: Mapping[str, str]) -> None:
     units : by dimension of `SHOWN_UNITS`, one of its units; what is not named is shown as usual
     """
     _shown.clear()
+    _layout.cache_clear()
     _shown.update({name: unit for name, unit in units.items() if unit not in _CHOICES})
 
 

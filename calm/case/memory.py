@@ -7,6 +7,7 @@ import pickle
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
+from functools import cache
 from threading import Lock
 from types import FunctionType
 from typing import Any, ParamSpec, TypeVar
@@ -82,12 +83,18 @@ class _Describing(pickle.Pickler):
     def reducer_override(self, thing: Any) -> Any:
         """As `pickle.Pickler`."""
         if is_dataclass(thing) and not isinstance(thing, type):
-            values = [getattr(thing, each.name) for each in fields(thing)]
+            values = [getattr(thing, name) for name in _names(type(thing))]
             return tuple, ((type(thing).__qualname__, values),)
         if not isinstance(thing, FunctionType):
             return NotImplemented
         enclosed = [cell.cell_contents for cell in thing.__closure__ or ()]
         return tuple, ((thing.__module__, thing.__qualname__, thing.__defaults__, enclosed),)
+
+
+@cache
+def _names(record: type) -> tuple[str, ...]:
+    """The fields of a data class."""
+    return tuple(each.name for each in fields(record))
 
 
 def _digits(given: object) -> bytes:

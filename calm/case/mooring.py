@@ -10,7 +10,7 @@ import numpy as np
 
 from calm.assemble import assemble_floating, assemble_line, assemble_water
 from calm.case import parts
-from calm.case.measure import anchor_weight_of, result_of
+from calm.case.measure import anchor_weight_of, clamps_of, result_of
 from calm.case.memory import Forgetful, Memory
 from calm.case.result import Result
 from calm.errors import NoEquilibrium
@@ -283,7 +283,7 @@ def _found(mooring: Mooring, clamp: Clamp, at: float) -> ProfilerPlace:
     try:
         file = held(parts.cut_like(mooring.file, mooring), clamp.place, at)
         other = Mooring(file, mooring.for_surface, mooring.memory, water=mooring.water)
-        clamps = other.solve().clamps
+        clamps = clamps_of(file.pieces[:-1], other.equilibrium(other.water))
     except NoEquilibrium as failure:
         message = f"With {clamp.label} {at:.0f} m down its wire: {failure.message}"
         raise NoEquilibrium(failure.status, message, failure.advice) from None
@@ -305,4 +305,5 @@ def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> Moor
     def stays(clamp: Clamp) -> Clamp:
         return replace(clamp, at=at if clamp.place == place else clamp.at, travel=None)
 
-    return replace(file, pieces=tuple(piece.with_clamps(stays) for piece in file.pieces))
+    pieces = (piece.with_clamps(stays) if piece.clamps else piece for piece in file.pieces)
+    return replace(file, pieces=tuple(pieces))

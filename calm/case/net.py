@@ -19,11 +19,12 @@ from calm.case.mooring import Mooring, refuse_in_the_slope
 from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, as_read, naming_the_piece
 from calm.case.result import Accuracy, AnchorLoad, EndLoad, NetResult, NodePlace, Result
 from calm.case.tow import Tow
-from calm.errors import NoEquilibrium
+from calm.errors import InputError, NoEquilibrium, Problem
 from calm.files import MooringFile, Piece
 from calm.files.environment import Environment
 from calm.files.legs import EndKeys, Leg, leg_numbers, nodes_of
 from calm.files.mooring_file import STAND_IN
+from calm.files.reader import MooringReader
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
 from calm.quantities import say
@@ -348,9 +349,35 @@ def load(
     InputError
         With every mistake of the file, each with its line and column.
     """
-    origin = Origin(path, environment, tuple(map(Path, catalogs)), text)
-    file = origin.read(net=True)
-    return as_read(Net, file, origin) if file.legs else _line_of(file, origin)
+    return load_in(path, (environment,), catalogs, text)[0]
+
+
+def load_in(
+    path: str | Path,
+    environments: Sequence[str | Path | None] | None,
+    catalogs: Sequence[str | Path] = (),
+    text: str | None = None,
+) -> list[Mooring | Tow | Net]:
+    """Read a file as `load` does in several environments; None is its own and all that it names.
+
+    InputError: with the mistakes of all.
+    """
+    reader = MooringReader(path, catalogs=catalogs, text=text, net=True)
+    asked, read = [*(environments or (None,))], []
+    problems: dict[Problem, None] = {}
+    for name in asked:
+        try:
+            file = reader.in_environment(name)
+        except InputError as error:
+            problems |= dict.fromkeys(error.problems)
+            continue
+        if environments is None and name is None and file.tow is None:
+            asked += file.variants
+        origin = Origin(path, name, tuple(map(Path, catalogs)), text)
+        read.append(as_read(Net, file, origin) if file.legs else _line_of(file, origin))
+    if problems:
+        raise InputError(list(problems))
+    return read
 
 
 def load_line(

@@ -237,16 +237,14 @@ _HOLDS = "Take a clamp that holds more, two of them, or a stopper below it."
 @rule("clamp-grip")
 def clamp_grip(result: Result) -> Iterator[Verdict]:
     """Pull of what is clamped on the line: its weight in water and the drag of the current."""
-    water = result.mooring.water
+    water, depth = result.mooring.water, np.asarray(result.clamps.depth)
+    flows, densities = water.current_at(depth), water.density_at(depth).tolist()
     for part in _clamps(result.mooring):
         assert part.clamp is not None
-        depth = np.array(float(result.clamps.depth[part.clamp]))
-        flow, density = water.current_at(depth), water.density_at(depth)
-        flow = np.asarray(flow, float).reshape(3)
-        across = drag_of(part.component)[0]
-        drag = across * float(density) / REFERENCE_DENSITY
+        flow, density = flows[part.clamp], densities[part.clamp]
+        drag = drag_of(part.component)[0] * density / REFERENCE_DENSITY
         force = drag * float(np.linalg.norm(flow)) * flow
-        force[2] += _lift(part, result.mooring, float(density))
+        force[2] += _lift(part, result.mooring, density)
         yield _verdict(part, float(np.linalg.norm(force)), "")
 
 

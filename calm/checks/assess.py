@@ -12,8 +12,9 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from datetime import date
-from functools import partial
+from functools import lru_cache, partial
 from itertools import chain
+from typing import Any
 
 import numpy as np
 
@@ -166,13 +167,22 @@ def findings_of(
         for verdict in equilibrium.judge(situation.failure):
             yield equilibrium.find(verdict, mooring, environment, situation.name)
     if situation.result is not None:
-        file, result = situation.result.file, estimated_result(situation.result)
-        end, anchored = file.pieces[-1].place, file.pieces[-1].use != STAND_IN
-        acceptance = Acceptance.of_file(file, day)
-        for rule in STANDING:
-            if is_judged(file, rule):
-                verdicts = (one for one in rule.judge(result) if anchored or one.place != end)
-                yield from acceptance.findings(rule, verdicts, mooring, environment, situation.name)
+        acceptance = Acceptance.of_file(situation.result.file, day)
+        for rule, verdicts in _verdicts_of(situation):
+            yield from acceptance.findings(rule, verdicts, mooring, environment, situation.name)
+
+
+@lru_cache(maxsize=16)
+def _verdicts_of(situation: Situation) -> list[tuple[Rule, list[Any]]]:
+    """Return what each rule says of a situation, which several environments may have."""
+    assert situation.result is not None
+    file, result = situation.result.file, estimated_result(situation.result)
+    end, anchored = file.pieces[-1].place, file.pieces[-1].use != STAND_IN
+    return [
+        (rule, [one for one in rule.judge(result) if anchored or one.place != end])
+        for rule in STANDING
+        if is_judged(file, rule)
+    ]
 
 
 def is_judged(file: MooringFile, rule: Rule, piece: int = 0) -> bool:

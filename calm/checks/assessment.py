@@ -23,11 +23,11 @@ from calm.files.rule_texts import RULES
 _Part = TypeVar("_Part", Piece, Clamp)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Situation:
     """A mooring solved in an environment, as given or with something changed.
 
-    Either `result` or `failure` is None.
+    Either `result` or `failure` is None. Environments may have one in common.
     """
 
     name: str
@@ -211,12 +211,14 @@ class Acceptance:
 def estimated(mooring: Mooring) -> Mooring:
     """Return the mooring with the low bounds of estimates for figures that are not given."""
     file = mooring.file
-    if not any(part.component.estimates for part in parts_of(file.pieces)):
-        return mooring
     pieces = tuple(
-        replace(_filled(piece), clamps=tuple(_filled(clamp) for clamp in piece.clamps))
+        _filled(piece.with_clamps(_filled))
+        if any(part.component.estimates for part in parts_of([piece]))
+        else piece
         for piece in file.pieces
     )
+    if pieces == file.pieces:
+        return mooring
     file = replace(file, pieces=pieces)
     return Mooring(file, mooring.for_surface, mooring.memory, mooring.line, mooring.water)
 

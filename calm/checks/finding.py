@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import partial
 from math import inf
@@ -215,7 +215,7 @@ class Finding(Verdict):
     def to_dict(self) -> dict[str, Any]:
         """The finding in JSON."""
         first = ("mooring", "environment", "situation", "rule", "component")
-        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        values = dict(vars(self))
         accept = values.pop("accept")
         del values["place"], values["probability"]
         said = {"reason": None if accept is None else accept.reason}

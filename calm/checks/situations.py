@@ -4,6 +4,7 @@ The currents: how strong they are, and whether they cover the line. Changed: sti
 growth, strumming; and as deployed.
 """
 
+from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import hypot
@@ -61,8 +62,23 @@ def situations_of(mooring: Mooring) -> tuple[Situation, ...]:
 
 def solved(name: str, mooring: Mooring) -> Situation:
     """The situation of that name, with the result or the failure of a mooring."""
+
+    # all environments of a mooring that are as deep and dense have still water in common
+    environment = replace(mooring.file.environment, name=None)
+    given = name, replace(mooring.file, environment=environment), mooring.for_surface
+    for known, situation in list(_STILL):
+        if known == given:
+            return situation
     found = or_why_not(mooring.solve)
-    return Situation(name, *((None, found) if isinstance(found, NoEquilibrium) else (found, None)))
+    failed = isinstance(found, NoEquilibrium)
+    situation = Situation(name, *((None, found) if failed else (found, None)))
+    if name in (STILL, STILL_LOW):
+        _STILL.append((given, situation))
+    return situation
+
+
+_STILL: deque[tuple[object, Situation]] = deque(maxlen=4)
+"""The latest situations in still water, and what they are of."""
 
 
 def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import gc
 import os
 import re
@@ -242,6 +243,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # to look for them takes time
     if arguments is None:
         gc.set_threshold(_SELDOM)
+        atexit.register(gc.freeze)  # what is left needs no last search for cycles
         if not sys.warnoptions:
             warnings.simplefilter("ignore")  # what libraries say to programmers
     words = sys.argv[1:] if arguments is None else list(arguments)

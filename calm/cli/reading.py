@@ -70,20 +70,28 @@ def read_designs(
     UsageError
         Nothing but tows; a file given twice; two environments of one name.
     """
+    from calm.case import Tow
+
     given = Counter([*map(str, files), *(environments or ())])
     twice = [word for word, count in given.items() if count > 1]
     if twice:
         raise UsageError(f"given twice: {', '.join(twice)}")
-    names: Sequence[str | None] = environments or [None]
-    asked = [(file, name) for file in files for name in names]
-    read, tows = _loaded(asked, catalogs, workers, meanwhile)
-    moored = [file for file in files if file not in tows]
-    if not moored:
+    problems: dict[Problem, None] = {}
+    stands: dict[Path, list[Mooring | Net]] = {}
+    tows: list[Path] = []
+    tasks = [(file, environments, catalogs) for file in files]
+    loaded = mapped(_load, tasks, workers, "files read", meanwhile)
+    for file, read in zip(files, loaded, strict=True):
+        if isinstance(read, tuple):
+            problems |= dict.fromkeys(read)  # what files share has its mistakes told once
+        elif any(isinstance(one, Tow) for one in read):
+            tows.append(file)
+        else:
+            stands[file] = [one for one in read if not isinstance(one, Tow)]
+    if problems:
+        raise InputError(list(problems))
+    if not stands:
         raise UsageError(f"{command} is for moorings; these are tows: {', '.join(map(str, tows))}")
-    if environments is None:
-        others = [(file, name) for file in moored for name in read[file, None].file.variants]
-        read |= _loaded(others, catalogs, workers)[0]
-    stands = {file: [one for (path, _), one in read.items() if path == file] for file in moored}
     for its in stands.values():
         _refuse_one_name(its)
     called = _told_apart({path: its[0].file.name for path, its in stands.items()})
@@ -120,40 +128,14 @@ def _cut_alike(moorings: Sequence[Mooring | Net]) -> tuple[Mooring | Net, ...]:
         return first, *others  # the first is reported not to stand, and why
 
 
-def _loaded(
-    asked: Sequence[tuple[Path, str | None]],
-    catalogs: Sequence[Path],
-    workers: int | None,
-    meanwhile: Callable[[], object] | None = None,
-) -> tuple[dict[tuple[Path, str | None], Mooring | Net], list[Path]]:
-    """The moorings, and which of the files are tows."""
-    from calm.case import Tow
-
-    tasks = [(file, name, catalogs) for file, name in asked]
-    problems: dict[Problem, None] = {}
-    moorings: dict[tuple[Path, str | None], Mooring | Net] = {}
-    tows: dict[Path, None] = {}
-    loaded = mapped(_load, tasks, workers, "files read", meanwhile)
-    for (file, name), read in zip(asked, loaded, strict=True):
-        if isinstance(read, tuple):
-            problems |= dict.fromkeys(read)  # what files share has its mistakes told once
-        elif isinstance(read, Tow):
-            tows[file] = None
-        else:
-            moorings[file, name] = read
-    if problems:
-        raise InputError(list(problems))
-    return moorings, list(tows)
-
-
 def _load(
-    task: tuple[Path, str | None, Sequence[Path]],
-) -> Mooring | Net | Tow | tuple[Problem, ...]:
+    task: tuple[Path, Sequence[str] | None, Sequence[Path]],
+) -> list[Mooring | Net | Tow] | tuple[Problem, ...]:
     """Return what was read, or what is wrong with it."""
-    from calm.case.net import load
+    from calm.case.net import load_in
 
     try:
-        return load(*task)
+        return load_in(*task)
     except InputError as error:
         return error.problems
 

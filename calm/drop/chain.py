@@ -6,11 +6,12 @@ equilibrium a bar then lies along the mean of the forces at its ends, as everywh
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
+from calm.physics.hull import Floating
 from calm.physics.line import Booleans, Floats, Integers, Line
 from calm.physics.reynolds import DragCurve
 from calm.physics.stretch import ElongationCurve
@@ -263,15 +264,23 @@ def afloat_of(line: Line, elements: Elements) -> FloatOnChain | None:
         return None
     first = np.flatnonzero(~line.flexible & (line.buoyancy > 0.0))[0]
     element = int(np.flatnonzero(elements.piece == first)[0])
+    return _afloat(floating, element, float(elements.height[element]) or floating.hull.height)
+
+
+@lru_cache(maxsize=4)
+def _afloat(floating: Floating, element: int, height: float) -> FloatOnChain:
+    """Return how a float with a hull rides that is a load of a height [m]."""
+    hull = floating.hull
+    assert hull is not None
     # by the share immersed, finer where a hull is thin: at its keel and at its top
     share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, _DRAFTS))
     net = share * (floating.weight + floating.lift) - floating.weight
     ridings = [floating.riding(used) for used in (net / floating.lift).tolist()]
-    draft = np.array([floating.hull.curve(one)[0] for one in share.tolist()])
+    draft = np.array([hull.curve(one)[0] for one in share.tolist()])
     growing = np.append(True, np.diff(np.maximum.accumulate(draft)) > 0.0)
     return FloatOnChain(
         element=element,
-        height=float(elements.height[element]) or floating.hull.height,
+        height=height,
         weight=floating.weight,
         draft=draft[growing],
         immersed=share[growing],

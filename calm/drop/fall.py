@@ -176,8 +176,9 @@ def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState
 def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> ChainState:
     """A step, or a shorter one where it is not found; NoEquilibrium: ``not-converged``."""
     shortest = _SHORTEST * depth
+    ways = (False, True) if state.velocity.any() else (True,)
     while step > shortest:
-        for gently in (False, True):
+        for gently in ways:
             with suppress(NoStep):
                 return mover.stepped(state, step, gently)
         step *= 0.4

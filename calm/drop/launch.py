@@ -12,10 +12,9 @@ import numpy as np
 
 from calm.assemble import with_axial_clamps
 from calm.case import Mooring
-from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Motion, Ship, fall, nothing_limits, towed
 from calm.drop.fall_record import piece_tensions
-from calm.drop.motion import Mover, NoStep
+from calm.drop.motion import NoStep
 from calm.errors import UsageError
 from calm.physics.line import Floats, Line, Water
 from calm.physics.track import head_count
@@ -87,16 +86,15 @@ def launch_of(mooring: Mooring, fineness: Fineness = IN_SHORT) -> Launch:
     fastest = -float(landed.velocity[-1, 2])
     if not known:
         try:
-            bare = _at_last(drop, line, replace(anchor, drag=0.0), fineness)
+            bare = _at_last(drop, fineness, 1.0, 0.0)
         except NoStep as failure:
             raise nothing_limits() from failure
         fastest = max(fastest, -float(bare.states[-1].velocity[-1, 2]))
         greatest = np.maximum(greatest, piece_tensions(bare)[1][-1])
 
     def speed(drag: float) -> float:
-        changed = replace(line, tangential_drag=drag * line.tangential_drag)
         try:
-            last = _at_last(drop, changed, replace(anchor, drag=drag * anchor.drag), fineness)
+            last = _at_last(drop, fineness, drag, drag)
         except NoStep:
             return nan
         return -float(last.states[-1].velocity[-1, 2])
@@ -168,17 +166,21 @@ def ship_of(mooring: Mooring, speed: float, course: float, streamed: float | Non
     return Ship(east, north, streamed)
 
 
-def _at_last(drop: Motion, line: Line, anchor: FallingAnchor, fineness: Fineness) -> Motion:
-    """Return the last step of a fall, of a line of other drag, or behind another anchor."""
-    landed, depth = drop.states[-1], drop.mover.sea.water.depth
+def _at_last(drop: Motion, fineness: Fineness, along: float, of_anchor: float) -> Motion:
+    """Return the last step of a fall with the drag along the line, and of the anchor, so many times
+    as great.
+    """
+    landed, falling = drop.states[-1], drop.mover
     # the step in which it landed ends there, and may be very short
+    least = 0.5 * falling.sea.water.depth / fineness.steps
     before = next(
-        state
-        for state in reversed(drop.states)
-        if state.node[-1, 2] - landed.node[-1, 2] > 0.5 * depth / fineness.steps
+        state for state in reversed(drop.states) if state.node[-1, 2] - landed.node[-1, 2] > least
     )
-    chain = chain_of(line, fineness.bars)
-    mover = Mover(chain, drop.mover.sea, anchor, bedded=False)
+    loads = falling.chain.elements
+    dragged = replace(loads, tangential_drag=along * loads.tangential_drag)
+    chain = replace(falling.chain, elements=dragged)
+    anchor = replace(falling.anchor, drag=of_anchor * falling.anchor.drag)
+    mover = replace(falling, chain=chain, anchor=anchor, bedded=False)
     return Motion(mover, (before, mover.stepped(before, landed.time - before.time)))
 
 

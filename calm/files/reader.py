@@ -6,7 +6,7 @@ import math
 import os.path
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from pydantic import BeforeValidator, Field
@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field
 from calm.errors import InputError, Problem, unknown
 from calm.files import mooring_file
 from calm.files.catalogue import Catalogue
-from calm.files.check_limits import Checks, read_accepts
+from calm.files.check_limits import Accept, Checks, LimitKey, read_accepts
 from calm.files.components import Anchor, Flexible
 from calm.files.definition import Model, Text, described, optional
 from calm.files.environment import Position, Seabed, read_environment
@@ -91,110 +91,153 @@ class MooringKeys(Model):
 
 
 def read_mooring(
-    path: str | Path,
-    *,
-    environment: str | Path | None = None,
-    catalogs: Sequence[str | Path] = (),
-    text: str | None = None,
-    stand_in: bool = False,
-    net: bool = False,
+    path: str | Path, *, environment: str | Path | None = None, **how: Any
 ) -> MooringFile:
-    """Read a mooring file and all it refers to.
+    """Read a mooring file and all it refers to, in an environment as of `MooringReader`.
+
+    InputError: with every mistake found, each at its place. `how` are `catalogs` and all else that
+    a `MooringReader` takes.
+    """
+    return MooringReader(path, **how).in_environment(environment)
+
+
+class _ReadLine(NamedTuple):
+    """The line of a file and what refers to its pieces, and the mistakes in them."""
+
+    pieces: tuple[Piece, ...]
+    legs: tuple[Leg, ...]
+    looser: tuple[LimitKey, ...]
+    accepts: tuple[Accept, ...]
+    notices: tuple[str, ...]
+    problems: tuple[Problem, ...]
+
+
+class MooringReader:
+    """A mooring file, whose line is read once for all the environments that it is read in.
+
+    InputError: it, or a catalogue, cannot be read at all.
 
     Parameters
     ----------
-    path : the mooring file
-    environment : a variant named in the file, or an environment file; its keys replace those of the
-        file's own `environment`
     catalogs : catalogue files that come before the user's own and the shipped ones, the last first
     text : in place of the file's content. The file need not exist; what the text refers to is
         looked for beside it
     stand_in : let a line that has no anchor yet stand on one that holds anything, of the id
         `STAND_IN`
     net : let the file have legs
-
-    Raises
-    ------
-    InputError
-        With every mistake found, each at its place.
     """
-    problems: list[Problem] = []
-    notices: list[str] = []
-    catalogue = Catalogue.load(catalogs)
-    document = read_document(Path(path)) if text is None else compose(str(path), text)
-    top = SourceMapping.of(document, problems)
-    towed, legged = "tow" in top.data, "legs" in top.data
-    if legged and not net:
-        top.refuse(("legs",), NET_REFUSED, key=True)
-    given = top
-    if legged:  # one with legs has no line, and its legs are read one by one
-        ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}
-        given = top.holding({"line": ["legs"], **ours})
-    keys = validate(MooringKeys, given, context={"towed": towed})
-    definitions = _child(top, "components")
-    if definitions is not None:
-        catalogue = catalogue.under(definitions)
-    chosen = choose_environment(top, environment, towed=towed)
-    stands_in = chosen[0] if chosen else _child(top, "environment")
-    in_air = stands_in is not None and stands_in.data.get("fluid") == "air"
-    reader = LineReader(catalogue, top, notices, towed=towed, in_air=in_air)
-    reader.check(definitions.data if definitions is not None else ())
-    before = len(problems)
-    legs: tuple[Leg, ...] = ()
-    pieces = reader.read(top, "line") if isinstance(top.data.get("line"), list) else ()
-    line_is_whole = bool(pieces) and len(problems) == before
-    if stand_in and not towed and pieces and not _anchored(pieces):
-        pieces = (*pieces, stand_in_anchor(0, len(top.data["line"])))
-    if legged:
-        legs, pieces = read_legs(top, reader, keys.position if keys else None)
-        line_is_whole = bool(pieces) and len(problems) == before
-    else:
-        (_check_tow if towed else _check_anchor)(pieces, top)
-        _check_one_fit(pieces, top)
-        pieces = (
-            mooring_file.travelling(numbered(pieces), top) if line_is_whole else numbered(pieces)
+
+    def __init__(
+        self,
+        path: str | Path,
+        *,
+        catalogs: Sequence[str | Path] = (),
+        text: str | None = None,
+        stand_in: bool = False,
+        net: bool = False,
+    ) -> None:
+        self._path, self._stand_in = str(path), stand_in
+        self._problems: list[Problem] = []
+        self._lines: dict[bool, _ReadLine] = {}
+        catalogue = Catalogue.load(catalogs)
+        document = read_document(Path(path)) if text is None else compose(str(path), text)
+        self._top = top = SourceMapping.of(document, self._problems)
+        self._towed, self._legged = "tow" in top.data, "legs" in top.data
+        if self._legged and not net:
+            top.refuse(("legs",), NET_REFUSED, key=True)
+        given = top
+        if self._legged:  # one with legs has no line, and its legs are read one by one
+            ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}
+            given = top.holding({"line": ["legs"], **ours})
+        self._keys = validate(MooringKeys, given, context={"towed": self._towed})
+        self._definitions = _child(top, "components")
+        if self._definitions is not None:
+            catalogue = catalogue.under(self._definitions)
+        self._catalogue = catalogue
+
+    def in_environment(self, environment: str | Path | None = None) -> MooringFile:
+        """Return the file in a variant that it names, or an environment file; else its own.
+
+        InputError: with every mistake found, each at its place.
+        """
+        keys, problems = self._keys, [*self._problems]
+        top = self._top.into(problems)
+        chosen = choose_environment(top, environment, towed=self._towed)
+        stands_in = chosen[0] if chosen else _child(top, "environment")
+        in_air = stands_in is not None and stands_in.data.get("fluid") == "air"
+        if in_air not in self._lines:
+            self._lines[in_air] = self._line(in_air)
+        line = self._lines[in_air]
+        problems += line.problems
+        notices = [*line.notices]
+        checks, surroundings = (keys and keys.checks) or Checks(), None
+        if chosen:
+            position = keys.position if keys else None
+            surroundings = read_environment(*chosen, notices, towed=self._towed, position=position)
+        if surroundings is not None:
+            depth = surroundings.depth
+            if surroundings.seabed is not None:
+                _check_slides(surroundings.seabed, line.pieces, line.legs, checks, top, depth)
+            if self._legged:
+                check_held_depths(line.legs, top, depth)
+            else:
+                _check_fit(line.pieces, depth, keys.tow if keys else None, top)
+        if problems or keys is None or surroundings is None:
+            raise InputError(_in_order(problems, self._path))
+        return MooringFile(
+            path=self._path,
+            name=keys.name or Path(self._path).stem,
+            description=keys.description or "",
+            position=keys.position,
+            tow=keys.tow,
+            environment=surroundings,
+            pieces=line.pieces,
+            legs=line.legs,
+            solver=keys.solver or Solver(),
+            checks=checks,
+            uncertainty=keys.uncertainty or Uncertainty(),
+            looser=line.looser,
+            notices=tuple(notices),
+            variants=keys.environments or {},
+            accepts=line.accepts,
+            document=keys.document,
+            releases=keys.releases or (),
+            deployed=keys.deployed,
+            units=keys.units.chosen if keys.units else {},
         )
-    checks = (keys and keys.checks) or Checks()
-    labels = mooring_file.labels_of(pieces) if line_is_whole else None
-    accepts = read_accepts(checks.accept, labels, top)
-    if keys and keys.deployed and labels is not None:
-        cut = [p.label for p in pieces if isinstance(p.component, Flexible)]
-        check_deployed(keys.deployed, labels, cut, top)
-    if keys and keys.releases and labels is not None:
-        notices += mooring_file.unknown_releases(keys.releases, pieces, keys.deployed)
-    surroundings = None
-    if chosen:
-        position = keys.position if keys else None
-        surroundings = read_environment(*chosen, notices, towed=towed, position=position)
-    if surroundings is not None and surroundings.seabed is not None:
-        _check_slides(surroundings.seabed, pieces, legs, checks, top, surroundings.depth)
-    if surroundings is not None and legged:
-        check_held_depths(legs, top, surroundings.depth)
-    elif surroundings is not None:
-        _check_fit(pieces, surroundings.depth, keys.tow if keys else None, top)
-    if problems or keys is None or surroundings is None:
-        raise InputError(_in_order(problems, str(path)))
-    return MooringFile(
-        path=str(path),
-        name=keys.name or Path(path).stem,
-        description=keys.description or "",
-        position=keys.position,
-        tow=keys.tow,
-        environment=surroundings,
-        pieces=pieces,
-        legs=legs,
-        solver=keys.solver or Solver(),
-        checks=checks,
-        uncertainty=keys.uncertainty or Uncertainty(),
-        looser=tuple(reader.looser),
-        notices=tuple(notices),
-        variants=keys.environments or {},
-        accepts=accepts,
-        document=keys.document,
-        releases=keys.releases or (),
-        deployed=keys.deployed,
-        units=keys.units.chosen if keys.units else {},
-    )
+
+    def _line(self, in_air: bool) -> _ReadLine:
+        """Read the line, in air or in water, and what refers to its pieces."""
+        problems: list[Problem] = []
+        notices: list[str] = []
+        top, keys, towed = self._top.into(problems), self._keys, self._towed
+        reader = LineReader(self._catalogue, top, notices, towed=towed, in_air=in_air)
+        reader.check(self._definitions.data if self._definitions is not None else ())
+        before = len(problems)
+        legs: tuple[Leg, ...] = ()
+        pieces = reader.read(top, "line") if isinstance(top.data.get("line"), list) else ()
+        line_is_whole = bool(pieces) and len(problems) == before
+        if self._stand_in and not towed and pieces and not _anchored(pieces):
+            pieces = (*pieces, stand_in_anchor(0, len(top.data["line"])))
+        if self._legged:
+            legs, pieces = read_legs(top, reader, keys.position if keys else None)
+            line_is_whole = bool(pieces) and len(problems) == before
+        else:
+            (_check_tow if towed else _check_anchor)(pieces, top)
+            _check_one_fit(pieces, top)
+            pieces = numbered(pieces)
+            if line_is_whole:
+                pieces = mooring_file.travelling(pieces, top)
+        labels = mooring_file.labels_of(pieces) if line_is_whole else None
+        accepts = read_accepts(((keys and keys.checks) or Checks()).accept, labels, top)
+        if keys and keys.deployed and labels is not None:
+            cut = [p.label for p in pieces if isinstance(p.component, Flexible)]
+            check_deployed(keys.deployed, labels, cut, top)
+        if keys and keys.releases and labels is not None:
+            notices += mooring_file.unknown_releases(keys.releases, pieces, keys.deployed)
+        return _ReadLine(
+            pieces, legs, tuple(reader.looser), accepts, tuple(notices), tuple(problems)
+        )
 
 
 def _child(section: SourceMapping, key: str) -> SourceMapping | None:

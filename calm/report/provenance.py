@@ -76,9 +76,13 @@ def input_hash(files: Sequence[MooringFile]) -> str:
     file of currents, too. Where the files lie does not count.
     """
     digest = hashlib.sha256((source_text(files[0]) or "").encode("utf-8", "replace"))
+    line = canonical(files[0].pieces)
     for file in files:
-        resolved = [file.name, file.pieces, file.tow, file.environment, file.solver, file.checks]
-        digest.update(canonical(resolved).encode("utf-8", "replace"))
+        if file.pieces != files[0].pieces:
+            line = canonical(file.pieces)
+        others = map(canonical, (file.tow, file.environment, file.solver, file.checks))
+        resolved = ",".join([canonical(file.name), line, *others])
+        digest.update(f"[{resolved}]".encode("utf-8", "replace"))
     return digest.hexdigest()
 
 

@@ -194,6 +194,7 @@ def respond(
     afloat = None if buoy is None else _Afloat.of(line.position[0], buoy, waves)
     axes, rate = _axes(line), 1j * omega[:, None, None]
     pitch, held = np.zeros(len(omega), complex), None
+    undamped = _undamped(line, omega)
     for _ in range(MOST_ITERATIONS):
         damping = drag_factor * _linearised(line, buoy, flow[:-1])
         if afloat is not None:
@@ -203,7 +204,7 @@ def respond(
             lever = whole[:, :3, 3] / whole[:, 3, 3, None]
             bail = whole[:, :3, :3] - lever[:, :, None] * whole[:, 3, None, :3]
             held = bail, pushed[:, :3] - lever * pushed[:, 3, None]
-        motion = _solved(line, held, waves, water, forced, damping)
+        motion = _solved(undamped, held, omega, water, forced, damping)
         found = np.zeros_like(flow)
         found[:-1] = _deviations(axes, water - rate * motion, weight)
         if afloat is not None:
@@ -298,10 +299,25 @@ _BAND = 5
 """Diagonals beside the main one: a node of three directions is held by its neighbours."""
 
 
+def _undamped(line: LumpedLine, omega: Floats) -> Floats:
+    """Return the banded matrix of springs and masses (f, 3n-3, 16), of each frequency."""
+    eye, t, s = np.eye(3), line.tangent, line.spring
+    outer = t[:, :, None] * t[:, None, :]
+    mass = line.mass[:, None, None] * eye + line.added_across[:, None, None] * (eye - outer)
+    mass = mass + line.added_along[:, None, None] * outer
+    axial = s[:, :, None] * s[:, None, :]
+    sideways = line.tension / line.span
+    springs = line.stiffness[:, None, None] * axial + sideways[:, None, None] * (eye - axial)
+    held = springs.copy()
+    held[1:] += springs[:-1]
+    inertia = _banded(mass[:-1], None)
+    return np.asarray(_banded(held, springs) - omega[:, None, None] ** 2 * inertia)
+
+
 def _solved(
-    line: LumpedLine,
+    undamped: Floats,
     top: tuple[Complexes, Complexes] | None,
-    waves: Waves,
+    omega: Floats,
     water: Complexes,
     forced: Complexes,
     damping: Floats,
@@ -312,33 +328,19 @@ def _solved(
     """
     from scipy.linalg.lapack import zgbsv
 
-    omega, free = waves.omega, len(line.mass) - 1
-    eye, t, s = np.eye(3), line.tangent, line.spring
-    outer = t[:, :, None] * t[:, None, :]
-    mass = line.mass[:, None, None] * eye + line.added_across[:, None, None] * (eye - outer)
-    mass = mass + line.added_along[:, None, None] * outer
-    axial = s[:, :, None] * s[:, None, :]
-    sideways = line.tension / line.span
-    springs = line.stiffness[:, None, None] * axial + sideways[:, None, None] * (eye - axial)
-    held = springs.copy()
-    held[1:] += springs[:-1]
-    stiffness, inertia, resistance = (
-        _banded(each[:free], beside)
-        for each, beside in ((held, springs), (mass, None), (damping, None))
-    )
+    matrix = np.empty(undamped.shape, complex)
+    matrix.real = undamped
+    matrix.imag = omega[:, None, None] * _banded(damping[:-1], None)
     push = forced + np.einsum("ncd,fnd->fnc", damping, water)
     if top is not None:
         push[:, 0] += top[1]
+        for row, column in np.ndindex(3, 3):
+            matrix[:, column, 2 * _BAND + row - column] += top[0][:, row, column]
     motion = np.zeros(push.shape, complex)
-    for one, each in enumerate(omega):
-        matrix = np.empty(stiffness.shape, complex)
-        matrix.real, matrix.imag = stiffness - each**2 * inertia, each * resistance
-        if top is not None:
-            for row, column in np.ndindex(3, 3):
-                matrix[column, 2 * _BAND + row - column] += top[0][one, row, column]
-        pushed = push[one, :free].ravel()
-        *_, found, singular = zgbsv(_BAND, _BAND, matrix.T, pushed, overwrite_ab=True)
-        motion[one, :free] = np.nan if singular else found.reshape(free, 3)
+    for one, each in enumerate(matrix):
+        pushed = push[one, :-1].ravel()
+        *_, found, singular = zgbsv(_BAND, _BAND, each.T, pushed, overwrite_ab=True)
+        motion[one, :-1] = np.nan if singular else found.reshape(-1, 3)
     return motion
 
 
