@@ -78,9 +78,14 @@ class Store:
         return self.folder / WORK
 
     @property
+    def times(self) -> int:
+        """Return how many times there are, be their dimension called in capitals or not."""
+        return self.layout.sizes[self.layout.in_blocks[0].dimensions[0]]
+
+    @property
     def count(self) -> int:
         """Return how many blocks there are."""
-        return -(-self.layout.sizes["time"] // self.block)
+        return -(-self.times // self.block)
 
     @cached_property
     def arrays(self) -> Mapping[str, zarr.Array[Any]]:
@@ -97,7 +102,7 @@ class Store:
     def span(self, number: int) -> tuple[int, int]:
         """First profile of a block, and the one after its last."""
         start = number * self.block
-        return start, min(start + self.block, self.layout.sizes["time"])
+        return start, min(start + self.block, self.times)
 
     def write(self, number: int, arrays: Arrays) -> None:
         """Write a block, then its flag."""

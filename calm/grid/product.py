@@ -2,7 +2,6 @@
 
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.dataset import laid_out, time_axis
+from calm.batch.work_store import open_store
 from calm.dataset import netcdf
 from calm.dataset.discovery import coverage, in_capitals, kept, with_flags, written
 from calm.errors import UsageError
@@ -160,7 +160,7 @@ def write_grid(
     levels: NDArray[np.float64],
     names: Mapping[str, str],
     output: Path,
-    shown: Callable[[list[tuple[str, int]]], Iterable[tuple[str, int]]] = lambda each: each,
+    shown: Callable[[Sequence[int]], Iterable[int]] = lambda each: each,
 ) -> None:
     """Write a gridded file, block by block; it has its name only once it is whole.
 
@@ -175,42 +175,17 @@ def write_grid(
         There is no room for it.
     """
     time = next(iter(fields.values())).samples.time
-    kinds = {one.name: one for one in layout.in_blocks}
     capitals = all(one.isupper() for one in names.values())
     deviation, flag = ("_SD", "_QC") if capitals else ("_sd", "_qc")
     with tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name[:40]}.") as folder:
-        chunks: list[netcdf.Chunk] = []
-
-        def keep(name: str, start: int, values: NDArray[Any]) -> None:
-            variable = kinds[name]
-            shape = netcdf.chunk_shape(layout, variable, BLOCK)
-            whole = np.zeros(shape, variable.dtype)
-            whole[: len(values)] = values
-            path = Path(folder, str(len(chunks)))
-            path.write_bytes(_packed(whole))
-            chunks.append((name, (start, *(0 for _ in shape[1:])), path))
-
-        clock = layout.variables[0].name
-        alone = replace(layout, variables=layout.variables[:1])
-        for start in range(0, len(time), BLOCK):
-            keep(clock, start, laid_out(alone, time[start : start + BLOCK], {})[clock])
-        blocks = [(name, start) for name in fields for start in range(0, len(time), BLOCK)]
-        for name, start in shown(blocks):
-            times = np.arange(start, min(start + BLOCK, len(time)))
-            found = estimate(fields[name], levels, times)
-            keep(names[name], start, found.value)
-            keep(names[name] + deviation, start, found.deviation)
-            keep(names[name] + flag, start, found.flag)
+        store = open_store(Path(folder), layout, BLOCK, "")
+        for number in shown(range(store.count)):
+            times = np.arange(*store.span(number))
+            columns: dict[str, NDArray[Any]] = {}
+            for name, field in fields.items():
+                found, called = estimate(field, levels, times), names[name]
+                columns |= {called: found.value, called + deviation: found.deviation}
+                columns[called + flag] = found.flag
+            store.write(number, laid_out(layout, time[times], columns))
         with beside(output) as part:
-            netcdf.write_netcdf(layout, BLOCK, chunks, part, lambda: None)
-
-
-def _packed(values: NDArray[Any]) -> bytes:
-    """Return a chunk as `calm.dataset.netcdf.netcdf_of` lays it out: shuffled, then deflated."""
-    from numcodecs import Shuffle, Zlib
-
-    size = values.dtype.itemsize
-    plain = np.ascontiguousarray(values)
-    if size > 1:
-        plain = np.asarray(Shuffle(size).encode(plain))
-    return bytes(Zlib(netcdf.LEVEL).encode(plain))
+            netcdf.write_netcdf(layout, BLOCK, store.chunks(), part, lambda: None)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.finished import labels_of
 from calm.errors import UsageError
 from calm.motion.matching import LinePlaces
 from calm.motion.measurements import interpolated
@@ -69,10 +70,9 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
                 f"has no `{spread}`: the depths of a result of calm motion are wanted, which have "
                 "their uncertainty"
             )
-        mine = [str(one) for one in dataset[f"{dimension}_label"].values.tolist()]
+        mine = labels_of(dataset, f"{dimension}_label")
         labels += mine
-        told = dataset.variables.get(f"{dimension}_serial")
-        serials += [""] * len(mine) if told is None else [str(one) for one in told.values]
+        serials += labels_of(dataset, f"{dimension}_serial") or [""] * len(mine)
         depth.append(np.asarray(dataset[name].values, np.float64))
         deviation.append(np.asarray(dataset[spread].values, np.float64))
         clamps = len(mine) if dimension == "clamp" else clamps

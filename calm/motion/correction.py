@@ -90,30 +90,55 @@ class MotionWork(BatchWork):
 
 
 def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
-    """Return the result of a batch, with what is estimated besides."""
-    layout = layout_of(task.mooring, record, None)
-    known = dict(layout.sizes)
-    known["sensor"] = len(task.measured.label)
+    """Return the result of a batch, with what is estimated besides, as archives want it.
+
+    Flags of depths, serial numbers, and attributes. Its date is that of SOURCE_DATE_EPOCH, and only
+    that: the same input gives the same bytes.
+    """
+    layout, mooring, measured = layout_of(task.mooring, record, None), task.mooring, task.measured
     alone = task.common.inferred
-    names = () if alone else level_names(task.measured, labels_of(task.mooring))
-    known["level"] = len(names)
-    added = {name: known[name] for name in ("sensor", "level")}
+    names = () if alone else level_names(measured, labels_of(mooring))
+    added = {"sensor": len(measured.label), "level": len(names)}
+    known = {**layout.sizes, **added}
     variables = [*layout.variables, *down_the_line(added)]
     if names:
         variables.append(labels("level_label", "level", names, "levels of the currents"))
-    if known["sensor"]:
+    if measured.label:
         meaning = "sensors whose pressures are used, from the top down"
-        variables.append(labels("sensor_label", "sensor", task.measured.label, meaning))
+        variables.append(labels("sensor_label", "sensor", measured.label, meaning))
     for name, (dimensions, quantity) in OF_MOTION.items():
         if all(known.get(each) for each in dimensions) and not (alone and name in OF_CURRENTS):
             beside = "".join(f"{dimension}_label" for dimension in dimensions)
             variables += numbers(("time", *dimensions), {name: quantity}, beside)
+    serials, clamps = serials_of(mooring), len(clamps_down(mooring.file.pieces))
+    for dimension, mine in (("clamp", serials[:clamps]), ("component", serials[clamps:])):
+        if any(mine):
+            variables.append(labels(f"{dimension}_serial", dimension, mine, "serial number"))
+    position, deployed = mooring.file.position, mooring.file.deployed
+    if deployed is not None and deployed.position is not None:
+        position = deployed.position
+    place = () if position is None else (position.latitude, position.longitude)
+    name = str(layout.attributes["title"]).partition(": ")[0]
+    history = str(layout.attributes["history"]).replace(" batch", " motion")
+    attributes: Attributes = {
+        **layout.attributes,
+        "title": f"{name}: where its parts were",
+        **coverage(measured.time, (0.0, float(mooring.water.depth)), place),
+        **about(mooring),
+        "id": f"OS_{''.join(c if c.isalnum() else '-' for c in name)}_"
+        f"{np.datetime_as_string(measured.time[0], 'M').replace('-', '')}_D_DEPTHS",
+        "keywords": "EARTH SCIENCE > OCEANS > OCEAN PRESSURE",
+        "processing_level": "Data interpolated",
+        "comment": "Depths of a mooring line, estimated from its statics; x, y from the anchor",
+        "instrument": ", ".join(measured.label),
+        "history": f"{history}: {'; '.join(filter(None, record.source.values()))}",
+    }
+    if not attributes.get("summary"):
+        attributes["summary"] = f"Depths of every part of the mooring {name} over time"
+    if os.environ.get("SOURCE_DATE_EPOCH"):
+        attributes["date_created"] = attributes["date_modified"] = written()
     sizes = {name: size for name, size in known.items() if size}
-    attributes = dict(layout.attributes)
-    attributes["title"] = attributes["title"].partition(": ")[0] + ": where its parts were"
-    attributes["history"] = attributes["history"].replace(" batch", " motion")
-    whole = replace(layout, sizes=sizes, variables=tuple(variables), attributes=attributes)
-    return archived(whole, task.mooring, task.measured, record.source)
+    return ResultLayout(sizes, with_flags(variables, FLAGGED), attributes)
 
 
 def about(mooring: Mooring) -> Attributes:
@@ -132,48 +157,6 @@ def about(mooring: Mooring) -> Attributes:
         said["platform_deployment_date"] = str(file.deployed.date)
     said["water_depth"] = float(mooring.water.depth)
     return said
-
-
-def archived(
-    layout: ResultLayout, mooring: Mooring, measured: MooringMeasurements, source: Mapping[str, str]
-) -> ResultLayout:
-    """Return a layout of motion with flags of depths, serial numbers, and attributes.
-
-    Its date is that of SOURCE_DATE_EPOCH, and only that: the same input gives the same bytes.
-
-    Parameters
-    ----------
-    source : what the record is from
-    """
-    variables = list(layout.variables)
-    serials, clamps = serials_of(mooring), len(clamps_down(mooring.file.pieces))
-    for dimension, mine in (("clamp", serials[:clamps]), ("component", serials[clamps:])):
-        if any(mine):
-            variables.append(labels(f"{dimension}_serial", dimension, mine, "serial number"))
-    position = mooring.file.position
-    deployed = mooring.file.deployed
-    if deployed is not None and deployed.position is not None:
-        position = deployed.position
-    place = () if position is None else (position.latitude, position.longitude)
-    name = str(layout.attributes["title"]).partition(": ")[0]
-    inputs = "; ".join(filter(None, source.values()))
-    attributes: Attributes = {
-        **layout.attributes,
-        **coverage(measured.time, (0.0, float(mooring.water.depth)), place),
-        **about(mooring),
-        "id": f"OS_{''.join(c if c.isalnum() else '-' for c in name)}_"
-        f"{np.datetime_as_string(measured.time[0], 'M').replace('-', '')}_D_DEPTHS",
-        "keywords": "EARTH SCIENCE > OCEANS > OCEAN PRESSURE",
-        "processing_level": "Data interpolated",
-        "comment": "Depths of a mooring line, estimated from its statics; x, y from the anchor",
-        "instrument": ", ".join(measured.label),
-        "history": f"{layout.attributes['history']}: {inputs}",
-    }
-    if not attributes.get("summary"):
-        attributes["summary"] = f"Depths of every part of the mooring {name} over time"
-    if os.environ.get("SOURCE_DATE_EPOCH"):
-        attributes["date_created"] = attributes["date_modified"] = written()
-    return replace(layout, variables=with_flags(variables, FLAGGED), attributes=attributes)
 
 
 def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArray[np.int8]]:

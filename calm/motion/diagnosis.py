@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import DATUM, ROBUST, LinearLaw
 from calm.motion.correction import Task
-from calm.motion.estimate import best_state, posterior
+from calm.motion.estimate import measured_state, posterior
 from calm.motion.line_response import LineResponse
 from calm.motion.measurements import chosen_times, interpolated
 from calm.motion.remarks import ALL, LIKELY, NO_TIME, Fault
@@ -91,15 +91,15 @@ def law_near(task: Task, whole: Task) -> tuple[LinearLaw | None, list[Suspect]]:
         return None, []
     moments = LineResponse(task.measured.at(times), *task.forwards)
     fixed = replace(common, covariance=np.zeros_like(common.covariance))
-    here = unknown_state(moments, fixed) if alone else best_state(moments, fixed)
-    at, found = here.begin, here.before
+    here = unknown_state(moments, fixed) if alone else measured_state(moments, fixed)
     if whole is not task:
         moments = LineResponse(whole.measured.at(times), *task.forwards)
         common = whole.common
         fixed = replace(common, covariance=np.zeros_like(common.covariance))
-        found = posterior(moments.measured, at, here.way.spread, fixed, moments.forward.still)
-    law = linear_law(moments, common, at, found, here.way.spread, task.measured.time[[0, -1]])
-    return law, [] if alone else list(line_suspects(task, moments, here.way, at))
+        still, spread = moments.forward.still, here.way.spread
+        here = replace(here, found=posterior(moments.measured, here.at, spread, fixed, still))
+    law = linear_law(moments, common, here, task.measured.time[[0, -1]])
+    return law, [] if alone else list(line_suspects(task, moments, here.way, here.at))
 
 
 class Diagnosis:

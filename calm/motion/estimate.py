@@ -360,33 +360,29 @@ def posterior(
 
 @dataclass(frozen=True)
 class CurrentsState:
-    """The currents as measured, at the levels where the line has them.
-
-    Attributes
-    ----------
-    way : the currents
-    begin, before : the line in them as they are, and what the pressures make of it by its slopes;
-        of inferred currents at the best state, too
-    at, found : the same at the best state
-    """
+    """Some currents, the line in them, and what the pressures make of it by its slopes there."""
 
     way: ReadCurrents
-    begin: Linear
-    before: Posterior
     at: Linear
     found: Posterior
 
 
-def best_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Hang the currents where the line is, and find the best state."""
+def measured_state(moments: LineResponse, common: Common) -> CurrentsState:
+    """Hang the currents where the line is, and take them as they were measured."""
     one, still = moments.measured, moments.forward.still
     none = np.zeros((len(one.time), moments.groups))
     there = line_response.between(one, np.tile(still, (len(one.time), 1)), still)
     there = moments.depths(moments.way(moments.levels(there), common), none)
     way = moments.way(moments.levels(line_response.between(one, there, still)), common)
-    begin = at = moments.linear(way, none)
-    before = found = posterior(one, at, way.spread, common, still)
+    at = moments.linear(way, none)
+    return CurrentsState(way, at, posterior(one, at, way.spread, common, still))
+
+
+def best_state(moments: LineResponse, common: Common) -> CurrentsState:
+    """Return the best state of currents that were measured."""
+    state = measured_state(moments, common)
+    way, at, found = state.way, state.at, state.found
     for _ in range(2):
         at = at.moved(found.logs, moments.depths(way, found.logs))
-        found = posterior(one, at, way.spread, common, still)
-    return CurrentsState(way, begin, before, at, found)
+        found = posterior(moments.measured, at, way.spread, common, moments.forward.still)
+    return CurrentsState(way, at, found)

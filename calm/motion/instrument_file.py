@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from calm.batch.finished import labels_of
 from calm.dataset.discovery import FLAGS, written
-from calm.errors import UsageError
+from calm.errors import UsageError, refused
 from calm.motion.correction import ESTIMATED, MEASURED, MISSING
 from calm.motion.matching import LinePlaces, points_of
 from calm.motion.measurements import interpolated
@@ -95,6 +95,8 @@ def read_instruments(
 
 
 def _read(path: Path, seabed: float, replacing: bool) -> Instruments:
+    if path.is_dir():
+        raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
     with cf_files.opened(path) as dataset:
         if groups := cf_files.groups_of(path):
             raise cf_files.UnreadableError(

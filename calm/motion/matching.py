@@ -13,7 +13,6 @@ from calm.errors import UsageError, nearest
 from calm.files.mooring_file import clamps_down
 from calm.motion import line_response
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.sensors import Sensor
 from calm.physics.line import Floats
 from calm.records.instrument_series import Identity
 
@@ -70,7 +69,9 @@ CERTAIN = 2.0
 """An order of sensors counts as the only one where any other is off by so much more [m]."""
 
 
-def matched_by_label(given: Sequence[Sensor], line: LinePlaces) -> tuple[dict[int, int], list[str]]:
+def matched_by_label(
+    given: Sequence[Identity], line: LinePlaces
+) -> tuple[dict[int, int], list[str]]:
     """Return the point of each sensor whose label or serial number a part has, and what is said of
     the others.
 
@@ -98,7 +99,7 @@ def matched_by_label(given: Sequence[Sensor], line: LinePlaces) -> tuple[dict[in
 
 
 def matched_by_place(
-    given: Sequence[Sensor], line: LinePlaces, places: Sequence[int]
+    given: Sequence[Identity], line: LinePlaces, places: Sequence[int]
 ) -> tuple[dict[int, int], list[str]]:
     """Return the point of each sensor by its nominal depth, in their order down the line.
 

@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 from calm.batch.statuses import implausible
 from calm.errors import UsageError, unknown
 from calm.motion.common_unknowns import NOISE, NORMAL
-from calm.motion.sensors import Sensor
 from calm.physics.line import Floats, Integers
 from calm.records.current_file import open_record
 from calm.records.current_terms import Terms
-from calm.records.instrument_series import split_label
+from calm.records.instrument_series import InstrumentSeries, split_label
 from calm.records.record import RULES
 from calm.records.velocity import MISSING
 
@@ -78,17 +77,9 @@ class MooringMeasurements:
 
     def at(self, times: slice | Integers) -> MooringMeasurements:
         """Return what was measured at some of the times."""
-        return replace(
-            self,
-            time=self.time[times],
-            depth=self.depth[times],
-            level_depth=self.level_depth[times],
-            u=self.u[times],
-            v=self.v[times],
-            flag=self.flag[times],
-            tide=None if self.tide is None else self.tide[times],
-            false=None if self.false is None else self.false[times],
-        )
+        columns = ("time", "depth", "level_depth", "u", "v", "flag", "tide", "false")
+        known = {name: getattr(self, name) for name in columns}
+        return replace(self, **{name: one[times] for name, one in known.items() if one is not None})
 
 
 def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
@@ -116,14 +107,16 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
 Times = NDArray[np.datetime64]
 
 
-def common_times(currents: Sequence[CurrentMeasurements], sensors: Sequence[Sensor]) -> Times:
+def common_times(
+    currents: Sequence[CurrentMeasurements], sensors: Sequence[InstrumentSeries]
+) -> Times:
     """Return those of the first current, or of the first sensor without; of the others, and then of
     the sensors, what is far from these.
 
     Far is more than half of the median step of what is there already; of readings less than a
     quarter apart, as those of a burst, the first is taken.
     """
-    everything: list[CurrentMeasurements | Sensor] = [*currents, *sensors]
+    everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time
     for other in everything[1:]:
         step = np.median(np.diff(times)) if len(times) > 1 else np.timedelta64(1, "h")
@@ -169,7 +162,7 @@ def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64)
     return np.where(near, result, np.nan)
 
 
-def measured_at(one: Sensor, wanted: Times, gap: np.timedelta64) -> Floats:
+def measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Floats:
     """Return depths of a sensor at other times; where it has a reading of its own, that one or
     none.
 
@@ -179,9 +172,9 @@ def measured_at(one: Sensor, wanted: Times, gap: np.timedelta64) -> Floats:
     wanted : (n,) other times
     gap : between known neighbours, at most
     """
-    result = interpolated(one.time, one.depth, wanted, gap)
+    result = interpolated(one.time, one.value, wanted, gap)
     at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
-    own: Floats = np.where(one.time[at] == wanted, one.depth[at], result)
+    own: Floats = np.where(one.time[at] == wanted, one.value[at], result)
     return own
 
 
@@ -220,7 +213,7 @@ FAR_NEIGHBOURS = 4.0
 
 def joined(
     currents: Sequence[CurrentMeasurements],
-    sensors: Sequence[Sensor],
+    sensors: Sequence[InstrumentSeries],
     points: Sequence[int],
     labels: Sequence[str],
     still: Floats,

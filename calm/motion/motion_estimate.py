@@ -148,18 +148,18 @@ class RecoveredMooring:
         notes += dict.fromkeys(f"{one.source}: {one.note}" for one in given if one.note)
         used, absolute = [], "air" in self.correct
         for i, at in points.items():
-            depth = given[i].depth - sensors.AIR * absolute
-            one = replace(given[i], label=line.label[at], depth=depth)
+            depth = given[i].value - sensors.AIR * absolute
+            one = replace(given[i], label=line.label[at], value=depth)
             for fault in self._faults:
                 if fault.label in (ALL, one.label):
-                    time, depth = fault.taken_off(one.time, one.depth)
-                    one = replace(one, time=time, depth=depth)
+                    time, depth = fault.taken_off(one.time, one.value)
+                    one = replace(one, time=time, value=depth)
             one, said = sensors.plausible(one, float(line.still[at]), seabed)
             used.append(one)
             notes += said
             if one.dropped:
                 notes.append(f"{one.label}: {one.dropped} pressures left out for their flag")
-        if not any(np.isfinite(one.depth).any() for one in used):
+        if not any(np.isfinite(one.value).any() for one in used):
             raise UsageError("--pressures: no sensor has a good pressure: " + "; ".join(notes))
         level = None if self.sea_level is None else sensors.read_sea_level(self.sea_level)
         where = list(points.values())

@@ -339,15 +339,14 @@ def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats
 
     Beyond the sensors the slope of the two nearest goes on; a single one moves everything alike.
     """
-    order = np.argsort(still[point], kind="stable")
-    place, values = still[point][order], depth[:, order]
+    from scipy.interpolate import make_interp_spline
+
+    place, first = np.unique(still[point], return_index=True)
+    values = depth[:, first]
     if len(place) == 1:
-        alike: Floats = values[:, 0] + still[wanted] - place[0]
-        return alike
-    upper = int(np.clip(np.searchsorted(place, still[wanted]) - 1, 0, len(place) - 2))
-    share = (still[wanted] - place[upper]) / (place[upper + 1] - place[upper])
-    between: Floats = values[:, upper] * (1.0 - share) + values[:, upper + 1] * share
-    return between
+        return np.asarray(values[:, 0] + still[wanted] - place[0])
+    line = make_interp_spline(place, values, k=1, axis=1, check_finite=False)
+    return np.asarray(line(still[wanted]))
 
 
 def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,6 +22,7 @@ from calm.records import cf_files, instrument_series, instrument_text
 from calm.records.attributes import words_of
 from calm.records.cf_files import UnreadableError, factor_of, find_times
 from calm.records.headings import read_time_columns
+from calm.records.instrument_series import InstrumentSeries
 from calm.records.velocity import MISSING, flag_variable
 
 if TYPE_CHECKING:
@@ -36,31 +37,13 @@ _NOT_MEASURED = re.compile(
 )
 
 
-@dataclass(frozen=True)
-class Sensor(instrument_series.Identity):
-    """Hold what one sensor measured.
-
-    Attributes
-    ----------
-    time : (n,) to the nanosecond, rising
-    depth : (n,) below the surface [m]; NaN where nothing was measured, or the flag is not wanted
-    dropped : readings that were left out for their flag
-    note : what a person should know before trusting it
-    """
-
-    time: NDArray[np.datetime64]
-    depth: Floats
-    dropped: int = 0
-    note: str = ""
-
-
 def read_sensors(
     given: Sequence[str], flags: frozenset[int], latitude: float, seabed: float
-) -> list[Sensor]:
-    """Return the sensors of some files, each given by its path, or as ``LABEL=PATH`` where it has
-    one.
+) -> list[InstrumentSeries]:
+    """Return the depths that the sensors of some files measured, by instrument [m].
 
-    Pressures are turned into depths by TEOS-10.
+    A file is given by its path, or as ``LABEL=PATH`` where it has one. Pressures are turned into
+    depths by TEOS-10.
 
     Parameters
     ----------
@@ -75,7 +58,7 @@ def read_sensors(
     UsageError
         A label is given for a file of several sensors; two sensors are called the same.
     """
-    found: list[Sensor] = []
+    found: list[InstrumentSeries] = []
     for label, path in instrument_series.files_given(given):
         if cf_files.holds_arrays(path):
             with cf_files.opened(path) as dataset:
@@ -107,7 +90,7 @@ def depth_of(dbar: Floats, latitude: float) -> Floats:
 
 def _from_arrays(
     dataset: xr.Dataset, path: Path, flags: frozenset[int], latitude: float, seabed: float
-) -> list[Sensor]:
+) -> list[InstrumentSeries]:
     name, is_pressure = _find(dataset)
     variable = dataset[name]
     found = instrument_series.readings(dataset, [name], flags)
@@ -124,19 +107,9 @@ def _from_arrays(
     factor = factor_of(variable, unit) / (PASCALS_PER_DBAR if is_pressure else 1.0)
     values = np.where(found.dropped, np.nan, found.values[0] * factor)
     depth = depth_of(values, latitude) if is_pressure else values
-    return [
-        Sensor(
-            **vars(who),
-            time=found.time,
-            depth=depth[:, j],
-            dropped=int(found.dropped[:, j].sum()),
-            note=note,
-        )
-        for j, who in enumerate(
-            instrument_series.who_along(dataset, found.along, seabed, path.name)
-        )
-        if not note or np.isfinite(depth[:, j]).any()
-    ]
+    who = instrument_series.who_along(dataset, found.along, seabed, path.name)
+    each = [replace(one, note=note) for one in found.series(depth, who)]
+    return [one for one in each if not note or np.isfinite(one.value).any()]
 
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
@@ -157,11 +130,11 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
     )
 
 
-def _from_csv(path: Path, latitude: float) -> list[Sensor]:
+def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
     """Return a table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
     table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
     return [
-        Sensor(
+        InstrumentSeries(
             label,
             "",
             float("nan"),
@@ -253,7 +226,9 @@ BELOW = 1.1
 """No reading is deeper than the seabed by this factor, and by `MISPLACED`."""
 
 
-def plausible(sensor: Sensor, place: float, seabed: float) -> tuple[Sensor, list[str]]:
+def plausible(
+    sensor: InstrumentSeries, place: float, seabed: float
+) -> tuple[InstrumentSeries, list[str]]:
     """Return a sensor without the readings that cannot be from its place, and what is said of them.
 
     Those far above its place in still water (on deck, a fill value), those far below the seabed,
@@ -274,7 +249,7 @@ def plausible(sensor: Sensor, place: float, seabed: float) -> tuple[Sensor, list
     again = np.zeros(len(sensor.time), bool)
     again[1:] = sensor.time[1:] == sensor.time[:-1]
     if again.any():
-        differ = np.abs(np.diff(sensor.depth))[again[1:]] > 1.0
+        differ = np.abs(np.diff(sensor.value))[again[1:]] > 1.0
         if 3 * again.sum() >= again.size and 2 * differ.sum() > differ.size:
             raise UsageError(
                 f"--pressures: `{sensor.label}` has several depths at {again.sum()} of its times: "
@@ -285,25 +260,25 @@ def plausible(sensor: Sensor, place: float, seabed: float) -> tuple[Sensor, list
             f"{sensor.label}: {again.sum()} of its times stand twice, the first {when}: the first "
             "reading of each counts"
         )
-        sensor = replace(sensor, time=sensor.time[~again], depth=sensor.depth[~again])
+        sensor = replace(sensor, time=sensor.time[~again], value=sensor.value[~again])
     least = min(0.5 * place, place - MISPLACED)
     greatest = max(BELOW * seabed, seabed + MISPLACED)
-    deck = sensor.depth[sensor.depth < min(least, 2.0 * AIR)]
+    deck = sensor.value[sensor.value < min(least, 2.0 * AIR)]
     if len(deck) >= FEWEST and np.percentile(np.abs(deck - AIR), 75.0) < ON_DECK:
         notes.append(
             f"{sensor.label}: reads {np.median(deck):.1f} m on deck: its pressures are absolute, "
             "and 10.13 dbar, the air's, are taken off"
         )
-        sensor = replace(sensor, depth=sensor.depth - AIR)
-    wrong = (sensor.depth < least) | (sensor.depth > greatest)
-    if wrong.any() and 2 * wrong.sum() < np.isfinite(sensor.depth).sum():
+        sensor = replace(sensor, value=sensor.value - AIR)
+    wrong = (sensor.value < least) | (sensor.value > greatest)
+    if wrong.any() and 2 * wrong.sum() < np.isfinite(sensor.value).sum():
         first = int(wrong.argmax())
         notes.append(
             f"{sensor.label}: {wrong.sum()} of its readings cannot be from its place, "
-            f"{place:.1f} m, and are left out: the first is {sensor.depth[first]:.1f} m, at "
+            f"{place:.1f} m, and are left out: the first is {sensor.value[first]:.1f} m, at "
             f"{np.datetime_as_string(sensor.time[first], 's')}"
         )
-        sensor = replace(sensor, depth=np.where(wrong, np.nan, sensor.depth))
+        sensor = replace(sensor, value=np.where(wrong, np.nan, sensor.value))
     return sensor, notes
 
 

@@ -345,4 +345,4 @@ def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
         lost = np.isnan(there).any(axis=1, keepdims=True)
         at = at.moved(np.where(lost, at.logs, logs), np.where(lost, at.depth, there))
         found = posterior(one, at, way.spread, common, still, furthest=np.inf)
-    return CurrentsState(way, at, found, at, found)
+    return CurrentsState(way, at, found)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from calm.case import Mooring
 from calm.motion import common_unknowns, line_response
 from calm.motion.common_unknowns import RAMPS, ROBUST, Common, LinearLaw
-from calm.motion.estimate import Posterior, best_state
-from calm.motion.line_response import Linear, LineResponse
+from calm.motion.estimate import CurrentsState, measured_state
+from calm.motion.line_response import LineResponse
 from calm.motion.measurements import MooringMeasurements, chosen_times
 from calm.physics.line import Floats
 from calm.solve import expect_many
@@ -91,8 +91,8 @@ def estimate_common(
     common, sensors, span = known, len(part.label), measured.time[[0, -1]]
     for _ in range(TURNS):
         moments = LineResponse(part, *line_response.forwards_of(mooring, common))
-        here = best_state(moments, replace(common, covariance=np.zeros_like(known.covariance)))
-        law = linear_law(moments, common, here.begin, here.before, here.way.spread, span)
+        fixed = replace(common, covariance=np.zeros_like(known.covariance))
+        law = linear_law(moments, common, measured_state(moments, fixed), span)
         if not len(law.time):
             return known
         left, expected, currents, bent = law.left, law.expected, law.currents, law.bent
@@ -129,21 +129,16 @@ def estimate_common(
 
 
 def linear_law(
-    moments: LineResponse,
-    common: Common,
-    at: Linear,
-    found: Posterior,
-    spread: Floats,
-    span: NDArray[np.datetime64],
+    moments: LineResponse, common: Common, state: CurrentsState, span: NDArray[np.datetime64]
 ) -> LinearLaw:
     """Return what the times at which there is an equilibrium say.
 
     Parameters
     ----------
-    at, found : a state of the currents, and what the pressures make of it
-    spread : (n, g, g) prior covariance of the logarithms of the currents
+    state : of the currents
     span : first and last time of the record
     """
+    at, found, spread = state.at, state.found, state.way.spread
     part, still, sensors = moments.measured, moments.forward.still, len(moments.measured.label)
     good = np.isfinite(at.depth).all(axis=1)
     time, depth = part.time[good], at.depth[good]

@@ -23,6 +23,7 @@ from calm.errors import InputError, Problem, shown
 from calm.physics.line import Floats
 from calm.positions import HEMISPHERES, Frame, degrees_of
 from calm.records import delimited
+from calm.records.grids import kilometres_from
 from calm.records.headings import heading, read_named_columns
 from calm.units import DIMENSIONS
 from calm.whole_file import read_text
@@ -30,11 +31,10 @@ from calm.whole_file import read_text
 EXAMPLE = "latitude[deg],longitude[deg],range[m]"
 LONGEST = {"range": 25_000.0, "time": 35.0}
 """Beyond what the transponders of moorings answer [m], and there and back [s]."""
-WIDEST = 50_000.0
-"""How far from the middle of a survey its positions may be [m]."""
+WIDEST = 50.0
+"""How far from the middle of a survey its positions may be [km]."""
 _FILLS = frozenset({"-9999", "-999", "-99", "9999", "99999", "999999", "-99999", "1e35", "1e+35"})
 _COLUMNS = {"latitude": "latitude", "longitude": "longitude", "range": "length", "time": "time"}
-_EARTH = 111_200.0  # metres of a degree, about
 
 
 @dataclass(frozen=True)
@@ -176,10 +176,9 @@ def _misplaced(path: Path, values: list[tuple[int, float, float, float]]) -> lis
     if len(places) > 2:
         north, east = np.median([place[1:] for place in places], axis=0)
         for line, latitude, longitude in places:
-            turn = (longitude - east + 180.0) % 360.0 - 180.0
-            away = _EARTH * np.hypot(latitude - north, turn * np.cos(np.radians(north)))
+            away = kilometres_from(latitude, longitude, (float(north), float(east)))
             if away > WIDEST:
-                message = f"the position is {away / 1000.0:.0f} km from the others"
+                message = f"the position is {away:.0f} km from the others"
                 problems.append(Problem(str(path), line, 1, message))
     return problems
 

@@ -66,7 +66,7 @@ def holds_arrays(path: Path) -> bool:
     InputError: it is a folder of something else, or of a kind that is known, and not read.
     """
     if path.is_dir():
-        if not any((path / name).is_file() for name in _ZARR):
+        if not is_zarr(path):
             raise refused(path, "is a folder, and not a zarr store; join its files into one first")
         return True
     with path.open("rb") as file:
@@ -75,6 +75,11 @@ def holds_arrays(path: Path) -> bool:
         if signature.startswith(begin):
             raise refused(path, f"is {kind}; NetCDF, zarr or CSV is read")
     return bool(engine_of(path) or reader_of(path))
+
+
+def is_zarr(path: Path) -> bool:
+    """Return whether a folder is a zarr store."""
+    return any((path / name).is_file() for name in _ZARR)
 
 
 @contextmanager
@@ -100,11 +105,17 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
         raise refused(path, "no such file")
     if not holds_arrays(path):
         raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
-    with reading(path), open_current(path) as dataset:
-        try:
-            yield dataset
-        except UnreadableError as error:
-            raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
+    with reading(path), open_current(path) as dataset, saying_what_it_holds(dataset):
+        yield dataset
+
+
+@contextmanager
+def saying_what_it_holds(dataset: xr.Dataset) -> Iterator[None]:
+    """Add what a dataset holds to what is wrong with it."""
+    try:
+        yield
+    except UnreadableError as error:
+        raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
 
 
 def open_current(path: Path) -> xr.Dataset:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,10 +12,9 @@ from numpy.typing import NDArray
 from calm.errors import refused
 from calm.records import cf_files, velocity
 from calm.records.attributes import remarks_in_texts
-from calm.records.cf_files import holdings
 from calm.records.current_terms import Terms, current_notices
 from calm.records.grids import GridColumn, choose_column, is_regular
-from calm.records.level_depths import LevelDepths, find_levels
+from calm.records.level_depths import find_levels
 from calm.records.profile_tables import turned_by
 from calm.records.record import RULES, Index, Levels, Period, Record, choose_profiles, part
 
@@ -30,9 +28,11 @@ LOOKED_AT = 64_000_000
 """Bytes of a record that are looked at for what is odd, spread over it where it has more."""
 
 
-@dataclass(frozen=True)
 class CurrentDataset:
-    """A dataset whose current, levels, times and place have been found.
+    """A dataset whose current, levels, times and place have been found, its currents not read.
+
+    Its times are undecoded. UnreadableError: it holds no current that can be understood: why, and
+    what it holds.
 
     Attributes
     ----------
@@ -44,18 +44,44 @@ class CurrentDataset:
     labels : see `Record`
     """
 
-    times: NDArray[np.datetime64] | None
-    notices: tuple[str, ...]
-    turned: tuple[str, ...]
-    rules: tuple[str, ...]
-    source: dict[str, str]
-    labels: tuple[str, ...]
-    _parts: tuple[tuple[xr.DataArray, float], ...]
-    _flags: tuple[xr.DataArray, ...]
-    _velocity: velocity.Velocity
-    _terms: Terms
-    _levels: LevelDepths | None
-    _time: str | None
+    def __init__(self, dataset: xr.Dataset, terms: Terms) -> None:
+        with cf_files.saying_what_it_holds(dataset):
+            self._understand(velocity.with_components(dataset), terms)
+
+    def _understand(self, dataset: xr.Dataset, terms: Terms) -> None:
+        self._terms = terms
+        self._velocity = current = velocity.find_velocity(dataset, regular=is_regular(dataset))
+        velocity.refuse_ragged(dataset, current.names[0])
+        self.turned = _turned(current, terms.declination)
+        clock = cf_files.find_times(dataset, current.names[0])
+        self.times = None if clock is None else cf_files.read_times(dataset, clock)
+        self._time = None if clock is None else next(map(str, dataset[clock].dims), None)
+        column, self._levels, self.labels = GridColumn({}, None), None, tuple[str, ...]()
+        along = [str(dim) for dim in dataset[current.names[0]].dims if dim != self._time]
+        if terms.on_the_line and len(along) == 1:  # levels may be parts of a line
+            self.labels = cf_files.labels_along(dataset, along[0]) or ()
+        if not self.labels:
+            column = choose_column(dataset, current.names, self._time, terms.place)
+            level, dataset = _single_levels(dataset.isel(column.index), current, self._time)
+            self._levels = find_levels(dataset, level, self._time, terms.water_depth)
+        self.source, notices = {"velocity": ", ".join(current.all_names)}, [*column.notes]
+        if self._levels is not None:
+            self.source["levels"] = str(self._levels.variable.name)
+        if clock is not None:
+            self.source["time"] = clock
+            notices += cf_files.zone_notices(dataset, clock)
+        if column.place is not None:
+            latitude, longitude = (f"{degrees:.6g}" for degrees in column.place)
+            self.source |= {"latitude": latitude, "longitude": longitude}
+        self.notices = (*notices, *remarks_in_texts(dataset.attrs))
+        self.rules = (*current.notes, *(() if self._levels is None else self._levels.notes))
+        found = (velocity.flag_variable(dataset, name) for name in current.names)
+        self._flags = [*{str(one.name): one for one in found if one is not None}.values()]
+        dimensions = ("speed", "speed" if current.turn is None else "angle", "speed")
+        self._parts = [
+            (dataset[name], cf_files.factor_of(dataset[name], dimension))
+            for name, dimension in zip(current.all_names, dimensions, strict=False)
+        ]
 
     @property
     def moves(self) -> bool:
@@ -96,9 +122,8 @@ class CurrentDataset:
         if self._terms.declination:
             with np.errstate(invalid="ignore"):  # of what is infinite
                 first, second = turned_by(self._terms.declination, first, second)
-        depth = np.full(first.shape[1], np.nan)
-        if self._levels is not None:
-            depth = self._levels.depths(self._time, index)
+        none, levels = np.full(first.shape[1], np.nan), self._levels
+        depth = none if levels is None else levels.depths(self._time, index)
         return depth, first, second, up[0] if up else None
 
     def flags(self, index: Index) -> NDArray[np.int8] | None:
@@ -106,8 +131,7 @@ class CurrentDataset:
         if not self._flags:
             return None
         every = [self._along(one, index, velocity.flags_of) for one in self._flags]
-        worst: NDArray[np.int8] = np.maximum.reduce(every)
-        return worst
+        return np.asarray(np.maximum.reduce(every), np.int8)
 
     def remarks(self, index: Index) -> list[str]:
         """Return what is odd about the currents of some times; of a part where they are many."""
@@ -151,60 +175,6 @@ class CurrentDataset:
         return values.reshape(len(values), -1)
 
 
-def understand(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
-    """Return what a dataset, its times undecoded, holds under some terms, its currents not read.
-
-    UnreadableError: it holds no current that can be understood: why, and what it holds.
-    """
-    try:
-        return _understood(dataset, terms)
-    except cf_files.UnreadableError as error:
-        raise cf_files.UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
-
-
-def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
-    dataset = velocity.with_components(dataset)
-    current = velocity.find_velocity(dataset, regular=is_regular(dataset))
-    velocity.refuse_ragged(dataset, current.names[0])
-    turned = _turned(current, terms.declination)
-    name_of_time = cf_files.find_times(dataset, current.names[0])
-    times = None if name_of_time is None else cf_files.read_times(dataset, name_of_time)
-    time = None if name_of_time is None else next(map(str, dataset[name_of_time].dims), None)
-    column, levels, labels = GridColumn({}, None), None, tuple[str, ...]()
-    along = [str(dim) for dim in dataset[current.names[0]].dims if dim != time]
-    if terms.on_the_line and len(along) == 1:  # levels may be parts of a line
-        labels = cf_files.labels_along(dataset, along[0]) or ()
-    if not labels:
-        column = choose_column(dataset, current.names, time, terms.place)
-        level, dataset = _single_levels(dataset.isel(column.index), current, time)
-        levels = find_levels(dataset, level, time, terms.water_depth)
-    source, notices = {"velocity": ", ".join(current.all_names)}, [*column.notes]
-    if levels is not None:
-        source["levels"] = str(levels.variable.name)
-    if name_of_time is not None:
-        source["time"] = name_of_time
-        notices += cf_files.zone_notices(dataset, name_of_time)
-    if column.place is not None:
-        latitude, longitude = (f"{degrees:.6g}" for degrees in column.place)
-        source |= {"latitude": latitude, "longitude": longitude}
-    found = (velocity.flag_variable(dataset, name) for name in current.names)
-    flags = {str(one.name): one for one in found if one is not None}
-    return CurrentDataset(
-        times=times,
-        notices=(*notices, *remarks_in_texts(dataset.attrs)),
-        turned=turned,
-        rules=(*current.notes, *(() if levels is None else levels.notes)),
-        source=source,
-        labels=labels,
-        _parts=tuple(_parts(dataset, current)),
-        _flags=tuple(flags.values()),
-        _velocity=current,
-        _terms=terms,
-        _levels=levels,
-        _time=time,
-    )
-
-
 def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str, ...]:
     """Return what is reported of a current that is relative to magnetic north."""
     counted = current.names if current.turn is None else current.names[1:]
@@ -245,15 +215,6 @@ def _single_levels(
     return (levels[0] if levels else None), dataset
 
 
-def _parts(dataset: xr.Dataset, current: velocity.Velocity) -> list[tuple[xr.DataArray, float]]:
-    """Return the variables of the current, each with its factor to SI (angles: degrees)."""
-    dimensions = ("speed", "speed" if current.turn is None else "angle", "speed")
-    return [
-        (dataset[name], cf_files.factor_of(dataset[name], dimension))
-        for name, dimension in zip(current.all_names, dimensions, strict=False)
-    ]
-
-
 def _spread(variable: xr.DataArray) -> str:
     return ", ".join(f"{name} ({size})" for name, size in variable.sizes.items())
 
@@ -268,22 +229,18 @@ class ArrayRecord(Record):
         self._path = path
         with cf_files.reading(path):
             self._dataset = cf_files.open_current(path)
-        try:
-            with cf_files.reading(path):
-                self._current = understand(self._dataset, terms)
-            times = self._current.times
-            if times is None:
-                raise refused(path, "has no times: it is one profile, for `calm run`")
-            self._index, chosen = choose_profiles(times, period, every, path)
-            with cf_files.reading(path):
-                remarks = self._current.remarks(self._index)
-        except BaseException:
-            self._dataset.close()
-            raise
-        self.time, self.labels = times[self._index], self._current.labels
-        found = self._current
+            try:
+                self._current = found = CurrentDataset(self._dataset, terms)
+                if found.times is None:
+                    raise refused(path, "has no times: it is one profile, for `calm run`")
+                self._index, chosen = choose_profiles(found.times, period, every, path)
+                remarks = found.remarks(self._index)
+            except BaseException:
+                self._dataset.close()
+                raise
+        self.time, self.labels = found.times[self._index], found.labels
         self.notes = (*chosen, *found.notices, *found.turned, *remarks, *found.rules, *RULES)
-        self.source = {"file": path.name, **self._current.source}
+        self.source = {"file": path.name, **found.source}
         self._ahead: tuple[int, int, Levels] | None = None
 
     def profiles(self, start: int, stop: int) -> Levels:
@@ -305,8 +262,7 @@ class ArrayRecord(Record):
         self._ahead = None
         end = min(max(stop, self._end_of_chunk(start)), self.count)
         with cf_files.reading(self._path):
-            arrays = self._current.read(part(self._index, start, end))
-        window = start, end, arrays
+            window = start, end, self._current.read(part(self._index, start, end))
         if end > stop:
             self._ahead = window
         return window

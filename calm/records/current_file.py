@@ -21,7 +21,7 @@ from calm.physics.line import Floats, Integers
 from calm.records import current_terms, delimited
 from calm.records.attributes import refused_by_comments, remarks_in_comments
 from calm.records.cf_files import UnreadableError, holds_arrays, open_current, reading
-from calm.records.current_dataset import ArrayRecord, understand
+from calm.records.current_dataset import ArrayRecord, CurrentDataset
 from calm.records.current_terms import Terms, TimeChoiceError, choose_time, current_notices
 from calm.records.delimited import COMMENT, CellRow, NumberedLine, abridged, read_table
 from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
@@ -92,7 +92,7 @@ def open_record(path: Path, terms: Terms, time: Period | None = None, every: int
 
 def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
     with reading(path), open_current(path) as dataset:
-        current = understand(dataset, terms)
+        current = CurrentDataset(dataset, terms)
         notices = [*current.notices, *current.turned]
         index = 0
         if current.times is not None:
@@ -131,8 +131,7 @@ def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
 
 def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
     table = read_table(path, EXAMPLE)
-    header, rows = CurrentHeader(table.header), list(table.rows)
-    notices: list[str] = []
+    header, rows, notices = CurrentHeader(table.header), table.rows, list[str]()
     if header.timed:
         rows, notices = _rows_of(rows, time)
     elif time is not None:
@@ -154,7 +153,7 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
     return CurrentTable(*(tuple(each.tolist()) for each in (depth, u, v, w))), notices
 
 
-def _rows_of(rows: list[CellRow], time: str | None) -> tuple[list[CellRow], list[str]]:
+def _rows_of(rows: Sequence[CellRow], time: str | None) -> tuple[list[CellRow], list[str]]:
     """Return the rows of the time nearest to the one wanted, and the notice that says so."""
     problems: list[Problem] = []
     moments = np.array([_moment_of(row, problems) for row in rows], "datetime64[us]")
@@ -162,7 +161,7 @@ def _rows_of(rows: list[CellRow], time: str | None) -> tuple[list[CellRow], list
         raise InputError(abridged(problems))
     times = np.unique(moments)
     index, notice = choose_time(times, time)
-    chosen = np.flatnonzero(moments == times[index])
+    chosen = np.flatnonzero(moments == times[index]).tolist()
     return [rows[i] for i in chosen], [notice] if notice else []
 
 

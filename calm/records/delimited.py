@@ -90,11 +90,6 @@ class Dialect:
         found = _COMMA.fullmatch(cell) if self.decimal == "," else None
         return f"{found[1]}.{found[2]}{found[3]}" if found else cell
 
-    @property
-    def name(self) -> str:
-        """Return what the separator is called."""
-        return _SEPARATORS[self.separator]
-
     def _placed(self, line: str) -> list[tuple[int, str]]:
         """Return the cells of a line, each after its place in it."""
         if self.separator == " ":
@@ -157,13 +152,10 @@ class CellRow(NamedTuple):
 
 @dataclass(frozen=True)
 class TextTable:
-    """Hold a table of a file: its header, and the rows below it as they come.
-
-    `rows` is read once where a file is read as it is needed.
-    """
+    """Hold a table of a file: its header, and the rows below it."""
 
     header: CellRow
-    rows: Iterable[CellRow]
+    rows: Sequence[CellRow]
 
     def whole_rows(self, problems: list[Problem]) -> list[CellRow]:
         """Return the rows with as many cells as the header; mistakes are added for the others."""
@@ -242,7 +234,7 @@ def table_lines(
     skipped = int(not cells[0])
     header = CellRow(path, number, line, cells[skipped:], dialect, skipped)
     if len(cells) > 1 and not cells[-1]:
-        message = f"the line ends in a {dialect.name}; take it off every line"
+        message = f"the line ends in a {_SEPARATORS[dialect.separator]}; take it off every line"
         raise refused(path, message, line=number, column=len(line.rstrip(" ")))
     if all(NUMBER.fullmatch(cell) for cell in cells):
         raise refused(path, f"there is no header; did you mean `{example}`?", line=number)

@@ -74,6 +74,8 @@ def choose_column(
         There are several and no place is given, the place is outside the grid, or no column near
         it has water.
     """
+    import xarray as xr
+
     dims = dataset[velocity[0]].dims
     pair = _positions(dataset, set(dims) - {time})
     if pair is None:
@@ -94,12 +96,8 @@ def choose_column(
         )
     box = _box(latitude, longitude, horizontal, wanted)
     near = dataset[list(velocity)].isel(box)
-    shape = [near.sizes[dim] for dim in horizontal]
-    # each axis of a regular grid spread over the box
-    lat, lon = (
-        np.broadcast_to(_spread(near[str(one.name)], horizontal), shape).astype(np.float64)
-        for one in pair
-    )
+    spread = xr.broadcast(*(near[str(one.name)] for one in pair))
+    lat, lon = (one.transpose(*horizontal).values.astype(np.float64) for one in spread)
     distance = kilometres_from(lat, lon, wanted)
     nearest = np.unravel_index(np.nanargmin(distance), distance.shape)
     if len(horizontal) > 1 and distance[nearest] > _spacing(lat, lon, nearest):
@@ -176,13 +174,6 @@ def _nearest(away: Floats) -> NDArray[Any]:
     """
     near = np.argsort(np.abs(away), kind="stable")[: 2 * REACH + 1]
     return near[np.argsort(away[near], kind="stable")]
-
-
-def _spread(values: xr.DataArray, horizontal: list[str]) -> NDArray[Any]:
-    """Return values with an axis for every horizontal dimension, of length 1 where it is new."""
-    missing = [dim for dim in horizontal if dim not in values.dims]
-    values = values.isel({dim: 0 for dim in values.dims if dim not in horizontal})
-    return values.expand_dims(missing).transpose(*horizontal).values
 
 
 def _wet(

@@ -75,12 +75,14 @@ class InstrumentSeries(Identity):
     value : (n,) in the unit of its quantity; NaN where not measured, or the flag is not wanted
     dropped : readings that were left out for their flag
     below : depth of what is measured below the instrument, a profiler's [m]
+    note : what a person should know before trusting it
     """
 
     time: NDArray[np.datetime64]
     value: Floats
-    dropped: int
+    dropped: int = 0
     below: float = 0.0
+    note: str = ""
 
 
 def read_series(
@@ -129,7 +131,7 @@ def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
     for text in given:
         label, path = split_label(text)
         inside = [path]
-        if path.is_dir() and path.suffix != ".zarr":
+        if path.is_dir() and not cf_files.is_zarr(path):
             inside = sorted(one for one in path.iterdir() if one.suffix in _ENDINGS)
         if not path.exists():
             problems.append(Problem(str(path), 0, 0, "no such file"))
@@ -199,16 +201,8 @@ class _SeriesFile:
         if found.along is not None and not any(one.known for one in who):
             below = self._bins(found.along, found.axis)
             who = who_along(dataset, None, self.seabed, self.name) * len(who)
-        return [
-            InstrumentSeries(
-                **vars(who[j]),
-                time=found.time,
-                value=value[:, j],
-                dropped=int(found.dropped[:, j].sum()),
-                below=float(below[j]),
-            )
-            for j in range(value.shape[1])
-        ]
+        each = found.series(value, who)
+        return [replace(one, below=float(deep)) for one, deep in zip(each, below, strict=True)]
 
     def _velocity(self, quantity: MeasuredQuantity) -> velocity.Velocity | None:
         """Return the velocity of the file; None where it has none."""
@@ -269,6 +263,14 @@ class Readings:
     along: str | None
     values: list[Floats]
     dropped: NDArray[np.bool_]
+
+    def series(self, value: Floats, who: Sequence[Identity]) -> list[InstrumentSeries]:
+        """Return what each instrument measured, by values (n, k) that were made of these."""
+        counts = self.dropped.sum(axis=0).tolist()
+        return [
+            InstrumentSeries(**vars(one), time=self.time, value=column, dropped=count)
+            for one, column, count in zip(who, value.T, counts, strict=True)
+        ]
 
 
 def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -> Readings:

@@ -13,9 +13,8 @@ from calm.motion.matching import (
     matched_by_place,
     named_point,
 )
-from calm.motion.sensors import Sensor
+from calm.records.instrument_series import Identity
 
-NONE = np.array([], "M8[ns]"), np.array([])
 LABELS = ("ctd", "meter", "adcp", "float", "release")
 STILL = np.array([120.0, 60.0, 300.0, 50.0, 480.0])
 
@@ -25,7 +24,7 @@ def line(labels=LABELS, still=STILL, serials=None):
 
 
 def sensors(*nominal, label="", serial=""):
-    return [Sensor(label, serial, depth, "p.nc", *NONE) for depth in nominal]
+    return [Identity(label, serial, depth, "p.nc") for depth in nominal]
 
 
 def test_sensors_keep_their_order_down_the_line_and_lie_nearest():

@@ -46,7 +46,7 @@ def test_an_instrument_of_imos(tmp_path):
     (one,) = read(tmp_path, instrument())
     assert one.label == "ADCP" and one.nominal == 44.0 and one.dropped == 2
     depth = np.where(np.isin(np.arange(TIMES), (2, 3)), np.nan, depth_of(DBAR, -32.0))
-    assert one.depth == pytest.approx(depth, abs=1e-5, nan_ok=True)
+    assert one.value == pytest.approx(depth, abs=1e-5, nan_ok=True)
     (wide,) = read(tmp_path, instrument(), (1, 2, 4))
     assert wide.dropped == 1
 
@@ -56,7 +56,7 @@ def test_of_several_pressures_the_usual_one_counts(tmp_path):
     for name, by in (("PRES", 10.1325), ("PRES_REL_max", 3.0), ("PRES_HR", 5.0)):
         many[name] = ("TIME", np.float32(DBAR + by), dict(many["PRES_REL"].attrs))
     (one,) = read(tmp_path, many)
-    assert one.depth[0] == pytest.approx(depth_of(DBAR, -32.0)[0], abs=1e-4)
+    assert one.value[0] == pytest.approx(depth_of(DBAR, -32.0)[0], abs=1e-4)
 
 
 def test_an_instrument_of_oceansites(tmp_path):
@@ -75,7 +75,7 @@ def test_an_instrument_of_oceansites(tmp_path):
     )  # fmt: skip
     (found,) = read(tmp_path, one)
     assert found.nominal == 44.0
-    assert np.isfinite(found.depth).tolist() == [True, True, False, False, False, True]
+    assert np.isfinite(found.value).tolist() == [True, True, False, False, False, True]
 
 
 INFERRED = "depthPP: Depth inferred from 2 neighbouring pressure sensors SBE37 @24m and WQM @55m."
@@ -121,7 +121,7 @@ def test_what_is_no_pressure_of_one_instrument_is_refused(tmp_path, dataset, sai
 @pytest.mark.parametrize(("unit", "factor"), [("dbar", 1.0), ("bar", 0.1), ("kPa", 10.0)])
 def test_declared_units_of_netcdf_convert(tmp_path, unit, factor):
     (one,) = read(tmp_path, instrument(units=unit, values=DBAR * factor))
-    assert one.depth[0] == pytest.approx(depth_of(DBAR, -32.0)[0], abs=1e-4)
+    assert one.value[0] == pytest.approx(depth_of(DBAR, -32.0)[0], abs=1e-4)
 
 
 def test_the_worse_flag_of_both_components_of_a_profile_counts(tmp_path):
@@ -175,10 +175,10 @@ def test_each_instrument_has_its_own_depths_flags_and_place_in_the_order_of_time
         assert (b.label, b.nominal, b.dropped) == ("b", 104.0, 2)  # what is NaN is not left out
         expected = depth_of(DBAR, latitude)
         expected[0] = np.nan
-        assert a.depth == pytest.approx(expected, abs=1e-9, nan_ok=True)
+        assert a.value == pytest.approx(expected, abs=1e-9, nan_ok=True)
         expected = depth_of(100.0 + 2.0 * np.arange(TIMES), latitude)
         expected[[3, 4, 5]] = np.nan
-        assert b.depth == pytest.approx(expected, abs=1e-9, nan_ok=True)
+        assert b.value == pytest.approx(expected, abs=1e-9, nan_ok=True)
         assert (np.diff(a.time) > np.timedelta64(0)).all()
     # 9.8 N/kg at 32 degrees, 9.83 at 70: a third of a per cent
     assert depth_of(np.array([1000.0]), 70.0) == pytest.approx(
@@ -189,9 +189,9 @@ def test_each_instrument_has_its_own_depths_flags_and_place_in_the_order_of_time
 def test_depths_over_time_are_taken_as_they_are(tmp_path):
     one = instrument("DEPTH", "depth", "cm", values=100.0 * DBAR)
     (found,) = read(tmp_path, one)
-    assert found.depth[0] == pytest.approx(DBAR[0], abs=1e-4)
+    assert found.value[0] == pytest.approx(DBAR[0], abs=1e-4)
     (found,) = read(tmp_path, instrument().isel(TIME=[0]))  # of one time
-    assert found.depth == pytest.approx(depth_of(DBAR[:1], -32.0), abs=1e-4)
+    assert found.value == pytest.approx(depth_of(DBAR[:1], -32.0), abs=1e-4)
 
 
 def test_columns_of_a_table_are_pressures_or_depths_each_in_its_unit(tmp_path):
@@ -200,9 +200,9 @@ def test_columns_of_a_table_are_pressures_or_depths_each_in_its_unit(tmp_path):
     path.write_text("time,a[bar],b [cm],c[dbar]\n" + rows)
     found = read_sensors([str(path)], frozenset({1}), 48.0, 300.0)
     assert [one.label for one in found] == ["a", "b", "c"]
-    assert found[0].depth == pytest.approx(depth_of(np.array([50.0, 60.0]), 48.0))
-    assert found[1].depth == pytest.approx([10.0, 20.0])
-    assert np.isnan(found[2].depth).all()
+    assert found[0].value == pytest.approx(depth_of(np.array([50.0, 60.0]), 48.0))
+    assert found[1].value == pytest.approx([10.0, 20.0])
+    assert np.isnan(found[2].value).all()
 
 
 @pytest.mark.parametrize(
@@ -255,7 +255,7 @@ def test_an_instrument_as_oceanarray_writes_it(tmp_path):
     )  # fmt: skip
     (found,) = read(tmp_path, one)
     assert (found.serial, found.nominal) == ("7518", 100.0)
-    assert found.depth == pytest.approx(depth_of(np.array([10.0, 11.0, 12.0]), -32.0), abs=1e-4)
+    assert found.value == pytest.approx(depth_of(np.array([10.0, 11.0, 12.0]), -32.0), abs=1e-4)
     path = [str(tmp_path / "a.nc")]
     (warm,) = read_series(path, ["temperature"], frozenset({1}), 900.0)["temperature"]
     assert warm.value.tolist() == [10.0, 11.0, 12.0]

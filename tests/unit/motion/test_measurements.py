@@ -13,7 +13,7 @@ from calm.motion.measurements import (
     interpolated,
     joined,
 )
-from calm.motion.sensors import Sensor
+from calm.records.instrument_series import InstrumentSeries
 
 START = np.datetime64("2026-03-01", "ns")
 
@@ -30,7 +30,7 @@ def currents(time, u, depth=(10.0,), **more):
 
 
 def sensor(label, time, depth):
-    return Sensor(label, "", np.nan, "p", time, np.asarray(depth, float))
+    return InstrumentSeries(label, "", np.nan, "p", time, np.asarray(depth, float))
 
 
 def test_values_are_linear_within_the_gap_and_never_beyond_the_ends():

@@ -6,8 +6,9 @@ import pytest
 import calm
 from calm.errors import UsageError
 from calm.motion.remarks import Fault
-from calm.motion.sensors import Sensor, plausible, unusable
+from calm.motion.sensors import plausible, unusable
 from calm.motion.suspects import distances_of
+from calm.records.instrument_series import InstrumentSeries
 
 SEABED = 300.0
 
@@ -15,14 +16,14 @@ SEABED = 300.0
 def sensor(*depth, again=()):
     time = np.datetime64("2026-03-01", "ns") + np.arange(len(depth)) * np.timedelta64(1, "h")
     time[list(again)] = time[[i - 1 for i in again]]
-    return Sensor("a", "", np.nan, "p.csv", time, np.array(depth))
+    return InstrumentSeries("a", "", np.nan, "p.csv", time, np.array(depth))
 
 
 @pytest.mark.parametrize(("place", "least"), [(60.0, 30.0), (30.0, 10.0), (10.0, -10.0)])
 def test_readings_far_above_the_place_or_below_the_seabed_are_left_out(place, least):
     good = [place + 5.0] * 7
     found, said = plausible(sensor(*good, least - 0.1, least, 330.0, 330.1), place, SEABED)
-    assert np.isnan(found.depth).tolist() == [False] * 7 + [True, False, False, True]
+    assert np.isnan(found.value).tolist() == [False] * 7 + [True, False, False, True]
     assert said == [
         f"a: 2 of its readings cannot be from its place, {place:.1f} m, and are left out: the "
         f"first is {least - 0.1:.1f} m, at 2026-03-01T07:00:00"
@@ -30,27 +31,27 @@ def test_readings_far_above_the_place_or_below_the_seabed_are_left_out(place, le
     shallow, _ = plausible(
         sensor(*[95.0] * 7, 119.9, 120.1), 90.0, 100.0
     )  # 20 m below, not a tenth
-    assert np.isnan(shallow.depth).tolist() == [False] * 8 + [True]
+    assert np.isnan(shallow.value).tolist() == [False] * 8 + [True]
 
 
 def test_several_depths_at_one_time_are_those_of_several_instruments():
     with pytest.raises(UsageError, match="`a` has several depths at 2 of its times"):
         plausible(sensor(60.0, 95.0, 60.0, 95.0, again=(1, 3)), 60.0, SEABED)
     found, said = plausible(sensor(60.0, 60.5, 61.0, 61.5, again=(1, 3)), 60.0, SEABED)
-    assert found.depth.tolist() == [60.0, 61.0]
+    assert found.value.tolist() == [60.0, 61.0]
     assert "2 of its times stand twice" in said[0]
 
 
 def test_where_half_are_wrong_the_sensor_is_and_nothing_is_left_out():
     for count, left_out in ((2, True), (3, False)):
         found, said = plausible(sensor(*[60.0] * 3, np.nan, *[-999.0] * count), 60.0, SEABED)
-        assert np.isnan(found.depth).sum() == 1 + count * left_out
+        assert np.isnan(found.value).sum() == 1 + count * left_out
         assert bool(said) == left_out
 
 
 def test_of_readings_at_one_time_the_first_counts():
     found, said = plausible(sensor(60.0, 61.0, 99.0, 62.0, again=(2,)), 60.0, SEABED)
-    assert found.depth.tolist() == [60.0, 61.0, 62.0] and len(found.time) == 3
+    assert found.value.tolist() == [60.0, 61.0, 62.0] and len(found.time) == 3
     assert said == [
         "a: 1 of its times stand twice, the first 2026-03-01T01:00:00: the first reading of each "
         "counts"
@@ -122,7 +123,7 @@ def test_what_a_fault_adds_is_taken_off(kind, value, since, until, read):
     """Of 60, 80 and 100 m, read as the words of `Fault` say."""
     fault = Fault("a", kind, value, value, value, 9.0, np.datetime64(since), np.datetime64(until))
     one = sensor(*read)
-    time, depth = fault.taken_off(one.time, one.depth)
+    time, depth = fault.taken_off(one.time, one.value)
     assert depth == pytest.approx([60.0, 80.0, 100.0])
     assert (time == one.time).all()
 
@@ -130,6 +131,6 @@ def test_what_a_fault_adds_is_taken_off(kind, value, since, until, read):
 def test_times_that_are_late_are_set_back():
     late = Fault("a", "clock", 0.5, 0.5, 0.5, 9.0, NEVER, NEVER)
     one = sensor(60.0, 80.0)
-    time, depth = late.taken_off(one.time, one.depth)
+    time, depth = late.taken_off(one.time, one.value)
     assert time[0] == np.datetime64("2026-02-28T23:30")
     assert depth.tolist() == [60.0, 80.0]

@@ -127,8 +127,8 @@ def test_records_of_batch_and_motion(write: Callable[[Table], Path]) -> None:
 def test_pressures_and_the_sea_level(write: Callable[[Table], Path]) -> None:
     top, deep = read_sensors([str(write(SENSORS))], frozenset({1}), 48.0, 300.0)
     assert (top.label, deep.label) == ("top", "deep CTD")
-    assert top.depth == pytest.approx(depth_of(np.array([50.5, 51.0]), 48.0))
-    assert np.isnan(deep.depth).tolist() == [False, True]
+    assert top.value == pytest.approx(depth_of(np.array([50.5, 51.0]), 48.0))
+    assert np.isnan(deep.value).tolist() == [False, True]
     time, level = read_sea_level(write(LEVEL))
     assert level == pytest.approx([0.505, -0.2])
     assert time[1] == np.datetime64(TIMES[1])

@@ -68,7 +68,7 @@ def test_pressures_of_rodb(tmp_path: Path) -> None:
     expected = ["2015-11-30T23:00:01", "2015-12-01T00:00:01", "2016-02-29T01:30:00"]
     assert one.time.astype("M8[s]").astype(str).tolist() == expected
     depth = depth_of(np.array([828.9, np.nan, 831.3]), 26.5)
-    assert one.depth == pytest.approx(depth, abs=1e-9, nan_ok=True)
+    assert one.value == pytest.approx(depth, abs=1e-9, nan_ok=True)
 
 
 def test_currents_of_rodb_are_where_their_pressure_was(tmp_path: Path) -> None:
@@ -104,7 +104,7 @@ def test_pressures_of_sea_bird(tmp_path: Path, name: str, times: tuple, first: s
     assert one.time[0].astype("M8[s]").astype(str) == first
     # the second is missing, the third is flagged by Sea-Bird's own software
     expected = depth_of(np.array([100.065, np.nan, np.nan]), 65.0)
-    assert one.depth == pytest.approx(expected, abs=1e-6, nan_ok=True)
+    assert one.value == pytest.approx(expected, abs=1e-6, nan_ok=True)
 
 
 @pytest.mark.parametrize("sea", [True, False])
@@ -114,7 +114,7 @@ def test_a_table_of_rbrs_library_is_without_the_air(tmp_path: Path, sea: bool) -
     (one,) = read_sensors([f"CTD={path}"], frozenset({1}), 45.0, 900.0)
     assert (one.serial, str(one.time[1])) == ("80217", "2015-09-19T08:32:26.500000000")
     expected = depth_of(np.array([2.6, np.nan] if sea else [12.64 - 10.1325, np.nan]), 45.0)
-    assert one.depth == pytest.approx(expected, abs=1e-9, nan_ok=True)
+    assert one.value == pytest.approx(expected, abs=1e-9, nan_ok=True)
     (warm,) = read_series([str(path)], ["temperature"], frozenset({1}), 900.0)["temperature"]
     assert warm.value.tolist() == [14.2, 14.3]
 
