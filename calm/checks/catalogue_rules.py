@@ -217,13 +217,16 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
             f"weighs {rope.mass:.4g} kg/m and has {net:.4g} N/m in water: with that it displaces a "
             f"small part of what its diameter does, {lift / ROPE_ROUNDING:.4g} N/m"
         )
-    if rope.stiffness is not None:
-        stiffness = f"has a stiffness of {rope.stiffness:.4g} N"
+    known = [] if rope.stiffness is None else [rope.stiffness]
+    if rope.elongation and rope.breaking_load:
+        known = [at * rope.breaking_load / strain for at, strain in rope.elongation if strain]
+    if known:
         wire = {each.name for each in materials_in(rope.material)} <= {"steel", "stainless steel"}
-        if rope.stiffness > stiff:
-            yield f"{stiffness}; a steel bar of its diameter {stiff:.4g} N"
-        elif rope.material and wire and rope.stiffness < SOFTEST_WIRE * stiff:
-            yield f"{stiffness}; a wire of its diameter {SOFTEST_WIRE * stiff:.4g} N at least"
+        has, least = "has a stiffness of", SOFTEST_WIRE * stiff
+        if max(known) > stiff:
+            yield f"{has} {max(known):.4g} N; a steel bar of its diameter {stiff:.4g} N"
+        elif rope.material and wire and known[-1] < least:
+            yield f"{has} {known[-1]:.4g} N; a wire of its diameter {least:.4g} N at least"
 
 
 LEAST_DRAG = {"sphere": 0.06, "cylinder": 0.2, "cable": 0.05, "chain": 1.0}

@@ -14,7 +14,6 @@ import numpy as np
 from calm.physics.hull import Floating
 from calm.physics.line import Booleans, Floats, Integers, Line
 from calm.physics.reynolds import DragCurve
-from calm.physics.stretch import ElongationCurve
 from calm.physics.track import head_count
 
 LEAST = 0.12
@@ -113,7 +112,7 @@ class BarChain:
     length : (n,) of the bars, unstretched [m]
     piece : (n,) each bar's own; of the rigid head its last
     compliance : (n,) 1/EA [1/N]
-    elongation : the bars of every cable that stretches by a curve, and the curve
+    elongation : the bars of every cable that stretches by a curve, and the knots of the curve
     elements : the loads
     bars : (p, 2) first bar of every piece, and the one behind its last; equal without length
     span : (p, 2) where a piece begins on its first bar and ends on its last, 0 to 1
@@ -125,7 +124,7 @@ class BarChain:
     length: Floats
     piece: Integers
     compliance: Floats
-    elongation: tuple[tuple[Integers, ElongationCurve], ...]
+    elongation: tuple[tuple[Integers, Floats], ...]
     elements: Elements
     bars: Integers
     span: Floats
@@ -160,7 +159,7 @@ def chain_of(line: Line, count: int) -> BarChain:
         piece=piece,
         compliance=line.compliance[piece] * line.flexible[piece],
         elongation=tuple(
-            (np.flatnonzero(piece == i), curve)
+            (np.flatnonzero(piece == i), np.array(curve.knots))
             for i, curve in enumerate(line.elongation)
             if curve is not None
         ),

@@ -37,9 +37,12 @@ class NoStep(ArithmeticError):
 
 def _overturned(before: Floats, after: Floats) -> bool:
     """Return whether a bar has turned by more than 120°: it may then be pushed, not pulled."""
-    chords = np.diff(before, axis=0), np.diff(after, axis=0)
+    chords = before[1:] - before[:-1], after[1:] - after[:-1]
+    along = np.einsum("ij,ij->i", *chords)
+    if along.min() >= 0.0:  # as nearly always
+        return False
     sizes = np.prod([np.linalg.norm(chord, axis=1) for chord in chords], axis=0)
-    return bool((np.einsum("ij,ij->i", *chords) < -0.5 * sizes).any())
+    return bool((along < -0.5 * sizes).any())
 
 
 @dataclass(frozen=True)
@@ -133,7 +136,7 @@ class Mover:
         """
         on = self.chain.elements
         bar, (above, below) = on.bar, on.share
-        chord = np.diff(node)
+        chord = node[:, 1:] - node[:, :-1]
         length = np.sqrt((chord * chord).sum(axis=0))
         axis = chord / length
         height = above * node[2].take(bar) + below * node[2].take(bar + 1)
@@ -147,8 +150,7 @@ class Mover:
     def strain(self, tension: Floats) -> tuple[Floats, Floats]:
         """(n,) of the bars and what it grows by [1/N]; a rope that is pushed is as one at rest."""
         strain, growth = self.chain.compliance * tension, self.chain.compliance.copy()
-        for bars, curve in self.chain.elongation:
-            knots = np.array(curve.knots)
+        for bars, knots in self.chain.elongation:
             pull = np.maximum(tension[bars], 0.0)
             origin, a, b, c, d = knots[np.searchsorted(knots[:, 0], pull, side="right") - 1].T
             x = pull - origin

@@ -157,7 +157,10 @@ GREATER_FLATTERS = (
     *("depth_rating", "max_tilt", "warn_tilt", "buoyancy"),
 )
 """Limits by which a component is judged, and its lift: each flatters the greater it is."""
-LESSER_FLATTERS = ("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt")
+LESSER_FLATTERS = (
+    *("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt"),
+    *("k_surface", "wind_area", "wind_cd"),
+)
 """Weight and drag of a component, each of which flatters the less it is; an anchor's do not."""
 
 

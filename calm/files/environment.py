@@ -126,8 +126,8 @@ class Fouling(Model):
     """
 
     depth: Annotated[float, definition.POSITIVE_LENGTH] = described("how far down it grows", "50 m")
-    thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0)] = described(
-        "of the growth all around, e.g. 20 mm", "20 mm"
+    thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0, at_most=1)] = (
+        described("of the growth all around, e.g. 20 mm", "20 mm")
     )
     density: Annotated[float | None, DENSITY] = optional(
         "of the growth; as heavy as water when absent", "1025 kg/m^3"

@@ -1,4 +1,4 @@
-"""What differs between two moorings as read: piece by piece, and in all that is around the line.
+"""Differences between two moorings as read: piece by piece, and in all that is around the line.
 
 Which part of one line is which of another is found by label, else by content and order. A label
 decides where one part of each line has it. Those that `numbered` made are no labels: a shackle put

@@ -258,7 +258,9 @@ class SwellKeys(Model):
 class WaveKeys(Model):
     """The keys of `waves:`: one sea, a table of seas with their shares of the time, or both."""
 
-    significant_height: definition.PositiveLength = optional("Hs of the sea to be survived", "5 m")
+    significant_height: Annotated[float | None, QuantityField("length", at_least=0.05)] = optional(
+        "Hs of the sea to be survived", "5 m"
+    )
     peak_period: Annotated[float | None, QuantityField("time", above=0)] = optional(
         "Tp of that sea; pierson-moskowitz and ochi-hubble have their own", "8.4 s"
     )

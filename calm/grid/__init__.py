@@ -1,1 +1,1 @@
-"""What was measured at moving depths, put onto fixed levels with its uncertainty."""
+"""Gridding: what was measured at moving depths, put onto fixed levels with its uncertainty."""

@@ -43,7 +43,7 @@ INTERPOLATED, DOUBTFUL, MISSING = 8, 3, 9
 
 
 class Scales(NamedTuple):
-    """What the correlation of the anomaly is: depth [m], time [s], share without correlation."""
+    """Hold scales of the anomaly's correlation: depth [m], time [s], share without correlation."""
 
     depth: float
     time: float

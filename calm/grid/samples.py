@@ -1,4 +1,4 @@
-"""Where the instruments were, and their series at those depths, brought to common times."""
+"""Samples of instruments at the depths where they were, brought to common times."""
 
 from __future__ import annotations
 

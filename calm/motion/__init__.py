@@ -1,1 +1,1 @@
-"""Where every part of a mooring was, from the currents and the pressures that were measured."""
+"""Motion of a mooring: where every part of it was, from currents and pressures measured."""

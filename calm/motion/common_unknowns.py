@@ -1,4 +1,4 @@
-"""What is common to a whole record: factors on the line, the datum, and where its sensors hang.
+"""Unknowns common to a whole record: factors on the line, the datum, and where its sensors hang.
 
 The normal prior of an offset, a metre, cannot believe in a clamp that sits ten metres lower: it
 would bend the factors and the datum instead. So every way the sensors may hang is a normal prior of
@@ -138,7 +138,7 @@ ROBUST = 4.0
 
 @dataclass(frozen=True)
 class LinearLaw:
-    """What n times say of the unknowns of the whole record, by the slopes at a state.
+    """Hold what n times say of the unknowns of the whole record, by the slopes at a state.
 
     Attributes
     ----------

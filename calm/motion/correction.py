@@ -1,4 +1,4 @@
-"""What is to be estimated of a mooring, in blocks that are kept and taken up where it stopped."""
+"""Correction of a mooring, in blocks that are kept and taken up where it stopped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong with sensors: clocks, gains, offsets, drifts, slipped clamps, exchanged labels.
+"""Diagnosis of sensors: clocks, gains, offsets, drifts, slipped clamps, exchanged labels.
 
 Each is one more unknown beside those of the whole record, with a prior of its own, and weighed by
 how likely the pressures then are (a Bayes factor, Kass and Raftery 1995): by Student's law for the
@@ -51,7 +51,7 @@ FEWEST = 20
 
 @dataclass(frozen=True)
 class _Found:
-    """How likely the pressures are with some faults.
+    """Tell how likely the pressures are with some faults.
 
     Attributes
     ----------

@@ -58,7 +58,7 @@ class Instruments:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What is added is called."""
+        """Return the names of what is added."""
         return ONE if self.along is None else SEVERAL
 
 

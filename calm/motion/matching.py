@@ -1,4 +1,4 @@
-"""What was measured, out of files, and which part of a line each instrument is.
+"""Matching of measurements to a line: which sensor hangs where, which readings can be right.
 
 It is found by label, serial number, or order down the line.
 """

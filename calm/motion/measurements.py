@@ -1,4 +1,4 @@
-"""What was measured, on common times: currents at levels or on the line, depths of sensors.
+"""Measurements on common times: currents at levels or on the line, depths of sensors.
 
 The times are those of the currents; sensors are interpolated to them over gaps that are not long.
 """

@@ -1,4 +1,4 @@
-"""Where a mooring was, from the files of its sensors: what ``calm motion`` reads and estimates."""
+"""Estimate of the motion from files of sensors: what ``calm motion`` reads and computes."""
 
 from __future__ import annotations
 

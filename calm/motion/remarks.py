@@ -1,4 +1,4 @@
-"""How well depths are computed, and what is said of sensors and currents that are wrong."""
+"""Remarks on how well depths are computed, and on sensors and currents that are wrong."""
 
 from __future__ import annotations
 
@@ -79,11 +79,11 @@ class Fault:
         return replace(self, value=value, low=low, high=high)
 
     def same(self, other: Fault) -> bool:
-        """Whether it is the same of the same sensor, by whatever size."""
+        """Return whether it is the same of the same sensor, by whatever size."""
         return (self.label, self.kind, self.other) == (other.label, other.kind, other.other)
 
     def alike(self, other: Fault) -> bool:
-        """Whether it is the same, or both are of the line as a whole and all its currents."""
+        """Return whether it is the same, or both are of the whole line and all its currents."""
         both = {self.label, other.label} <= {LINE, CURRENTS}
         return both or self.same(other)
 
@@ -100,7 +100,7 @@ class Fault:
 
     @property
     def certain(self) -> bool:
-        """Whether it can be nothing else."""
+        """Return whether it can be nothing else."""
         return self.odds >= LIKELY
 
     def sentence(self, rival: bool = True) -> str:
@@ -197,7 +197,7 @@ def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
 
 
 def no_drag(name: str, value: float) -> bool:
-    """Whether a factor on a drag is too far from what is assumed to be one."""
+    """Return whether a factor on a drag is too far from what is assumed to be one."""
     far = abs(float(np.log(value))) > FAR_FACTOR * common_unknowns.FACTORS[name][1]
     return name.endswith("drag") and far
 

@@ -1,4 +1,4 @@
-"""What may be wrong with a record: one thing each, and what it does to the depths.
+"""Suspects: faults that a record may have, one each, and what each does to the depths.
 
 Of the line and its currents: all currents or those of one level read too low or too high, or a
 rotor slows; floats are missing; cables are longer or shorter; the drag is another, or grows by
@@ -38,7 +38,7 @@ probability; that of a level is shared by all levels."""
 
 @dataclass(frozen=True)
 class Suspect:
-    """What one fault does to n times of s sensors.
+    """Hold what one fault does to n times of s sensors.
 
     Attributes
     ----------

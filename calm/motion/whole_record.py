@@ -1,4 +1,4 @@
-"""What is common to the whole record: factors on the line, the datum, the offsets of sensors."""
+"""Estimate of what a record has in common: factors on the line, datum, offsets of sensors."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What every element of a shape is loaded with, and how it should hang: the march's referee.
+"""Referee of the march: what every element of a shape is loaded with, and how it should hang.
 
 All follows from the coordinates. The flow is looked up, and drag and friction are written, apart
 from the laws of the march; only measured curves (of stretch, of drag, of strumming) are the same.

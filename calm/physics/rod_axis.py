@@ -1,4 +1,4 @@
-"""How a rigid body leans, by the forces of the water on it and its clamps: the axis about whose
+"""Lean of a rigid body, by the forces of the water on it and its clamps: the axis about whose
 middle no force turns it.
 """
 

@@ -1,4 +1,4 @@
-"""Where an anchor stands, from acoustic ranges that a ship took about it."""
+"""Ranging of an anchor: its place, from acoustic ranges that a ship took about it."""
 
 from calm.ranging.range_fit import Located as Located
 from calm.ranging.range_fit import locate as locate

@@ -1,4 +1,4 @@
-"""What the variables of a dataset say of themselves: their frame, their quantity, their north.
+"""Attributes of the variables of a dataset: their frame, their quantity, their north.
 
 A name is a custom of a program; the attributes are what the person who wrote the file says of it.
 Where they name another frame or quantity than the name suggests, they are believed.

@@ -122,9 +122,8 @@ class CurrentDataset:
         if self._terms.declination:
             with np.errstate(invalid="ignore"):  # of what is infinite
                 first, second = turned_by(self._terms.declination, first, second)
-        depth = np.full(first.shape[1], np.nan)
-        if self._levels is not None:
-            depth = self._levels.depths(self._time, index)
+        none, levels = np.full(first.shape[1], np.nan), self._levels
+        depth = none if levels is None else levels.depths(self._time, index)
         return depth, first, second, up[0] if up else None
 
     def flags(self, index: Index) -> NDArray[np.int8] | None:
@@ -132,8 +131,7 @@ class CurrentDataset:
         if not self._flags:
             return None
         every = [self._along(one, index, velocity.flags_of) for one in self._flags]
-        worst: NDArray[np.int8] = np.maximum.reduce(every)
-        return worst
+        return np.asarray(np.maximum.reduce(every), np.int8)
 
     def remarks(self, index: Index) -> list[str]:
         """Return what is odd about the currents of some times; of a part where they are many."""
@@ -231,22 +229,18 @@ class ArrayRecord(Record):
         self._path = path
         with cf_files.reading(path):
             self._dataset = cf_files.open_current(path)
-        try:
-            with cf_files.reading(path):
-                self._current = CurrentDataset(self._dataset, terms)
-            times = self._current.times
-            if times is None:
-                raise refused(path, "has no times: it is one profile, for `calm run`")
-            self._index, chosen = choose_profiles(times, period, every, path)
-            with cf_files.reading(path):
-                remarks = self._current.remarks(self._index)
-        except BaseException:
-            self._dataset.close()
-            raise
-        self.time, self.labels = times[self._index], self._current.labels
-        found = self._current
+            try:
+                self._current = found = CurrentDataset(self._dataset, terms)
+                if found.times is None:
+                    raise refused(path, "has no times: it is one profile, for `calm run`")
+                self._index, chosen = choose_profiles(found.times, period, every, path)
+                remarks = found.remarks(self._index)
+            except BaseException:
+                self._dataset.close()
+                raise
+        self.time, self.labels = found.times[self._index], found.labels
         self.notes = (*chosen, *found.notices, *found.turned, *remarks, *found.rules, *RULES)
-        self.source = {"file": path.name, **self._current.source}
+        self.source = {"file": path.name, **found.source}
         self._ahead: tuple[int, int, Levels] | None = None
 
     def profiles(self, start: int, stop: int) -> Levels:
@@ -268,8 +262,7 @@ class ArrayRecord(Record):
         self._ahead = None
         end = min(max(stop, self._end_of_chunk(start)), self.count)
         with cf_files.reading(self._path):
-            arrays = self._current.read(part(self._index, start, end))
-        window = start, end, arrays
+            window = start, end, self._current.read(part(self._index, start, end))
         if end > stop:
             self._ahead = window
         return window

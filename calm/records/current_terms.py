@@ -1,4 +1,4 @@
-"""How a person wants the currents of a file taken, at which time, and which of them cannot be."""
+"""Terms on which a person wants currents taken, at which time, and what cannot be had."""
 
 import re
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""What grids have at a place: the nearest column of currents with water, the depth of the seabed.
+"""Grids at a place: the nearest column of currents with water, the depth of the seabed.
 
 Depths of the seabed are those of GEBCO, EMODnet or a survey.
 """
@@ -320,14 +320,17 @@ class SeabedGrid:
 
     @property
     def plane(self) -> tuple[float, float]:
-        """How much deeper it is per metre to the east and to the north [-]: the mean over a node's
-        distance to either side."""
+        """Return how much deeper it is per metre to the east and to the north [-]: the mean over a
+        node's distance to either side.
+        """
         east, north = self._falls.mean(axis=1).tolist()
         return east, north
 
     @property
     def _falls(self) -> Floats:
-        """How much deeper it is per metre along east (2,) and north (2,), on either side [-]."""
+        """Return how much deeper it is per metre along east (2,) and north (2,), on either side
+        [-].
+        """
         step = float(np.diff(_nodes(self.at(-self.east, -self.north))[0]).mean())
         rises = self.deeper(step * np.array([(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]))
         falls = rises.reshape(2, 2) * np.array([1.0, -1.0]) / step

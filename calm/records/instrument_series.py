@@ -1,4 +1,4 @@
-"""What instruments of a mooring measured over time: temperature, salinity, velocity, by instrument.
+"""Series of the instruments of a mooring: temperature, salinity, velocity over time.
 
 A file holds several instruments along a dimension, as `calm motion` takes them, or one, as archives
 keep them (OceanSITES, IMOS). Who an instrument is, its file says by a label, a serial number or a
@@ -40,7 +40,7 @@ _ONE_PLACE = ("instrument_nominal_depth", "nominal_depth", "sensor_depth")
 
 @dataclass(frozen=True)
 class Identity:
-    """Who an instrument is, as its file says.
+    """Tell who an instrument is, as its file says.
 
     Attributes
     ----------
@@ -56,18 +56,18 @@ class Identity:
 
     @property
     def known(self) -> bool:
-        """Whether its file says anything of it."""
+        """Return whether its file says anything of it."""
         return bool(self.label or self.serial) or np.isfinite(self.nominal)
 
     @property
     def named(self) -> str:
-        """What a person calls it."""
+        """Return what a person calls it."""
         return self.label or self.serial or self.source
 
 
 @dataclass(frozen=True)
 class InstrumentSeries(Identity):
-    """What one instrument measured of one quantity.
+    """Hold what one instrument measured of one quantity.
 
     Attributes
     ----------

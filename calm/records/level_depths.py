@@ -1,4 +1,4 @@
-"""Where the levels of a current are: depths, heights, or distances from an instrument."""
+"""Depths of the levels of a current: given as depths, heights, or distances from an instrument."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which variables of a dataset are a current, and its flags: by CF standard name or usual name."""
+"""Velocity variables of a dataset, and their flags: by CF standard name or usual name."""
 
 from __future__ import annotations
 

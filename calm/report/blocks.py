@@ -1,4 +1,4 @@
-"""What CALM says, for every medium: a terminal, a page, a PDF and a notebook print the same.
+"""Blocks that CALM speaks in, for every medium: terminal, page, PDF and notebook print the same.
 
 Every text is plain: a printer escapes it in its own way, and nothing in a text is markup.
 """

@@ -1,4 +1,4 @@
-"""What a line weighs, what causes its knockdown, what would change it, and what a change does.
+"""Explanation of a line: its weights, the causes of its knockdown, what a change does to it.
 
 The facts of a result, an explanation, a sizing and a comparison of two designs, as a person reads
 them.

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from calm.errors import UsageError
-from calm.report.blocks import Report, Section
+from calm.report.blocks import Cell, Report, Section
 from calm.report.html import page
 from calm.report.provenance import moment
 from calm.whole_file import put
@@ -165,8 +165,14 @@ def pdf_leaf(part: Report | Section) -> str:
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
-def _members(part: Any) -> dict[str, Any]:
-    """A part of the report with its kind, which the template goes by; of a section its parts."""
+def _members(part: Any) -> dict[str, Any] | str:
+    """A part of the report with its kind, which the template goes by; of a section its parts.
+
+    Of a cell that is nothing but its text it is the text.
+    """
+    if isinstance(part, Cell):
+        text, *more = vars(part).values()
+        return text if not any(more) else vars(part)
     if isinstance(part, Section):
         return {"name": part.name, "parts": part.parts}
     return {"kind": type(part).__name__, **vars(part)}

@@ -250,7 +250,7 @@ def test_a_report_has_the_life_and_its_pictures(calm, buoy, tmp_path):
         ("{}", "needs `significant_height`"),
         ("{significant_height: 2 m}", "needs a `peak_period`"),
         ("{peak_period: 6 s, scatter: seas.csv}", "needs `significant_height`"),
-        ("{significant_height: 0 m, peak_period: 6 s}", "more than 0 m"),
+        ("{significant_height: 0 m, peak_period: 6 s}", "at least 0.05 m"),
         ("{significant_height: 2, peak_period: 6 s}", "did you mean `significant_height: 2 m`"),
         ("{significant_height: 9 m, peak_period: 4 s}", "would break"),
         ("{significant_heigth: 2 m, peak_period: 4 s}", "significant_height"),

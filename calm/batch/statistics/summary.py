@@ -133,8 +133,7 @@ class Summary:
     @property
     def known_responses(self) -> Sequence[Response]:
         """Those that are known in some profile, as the offset of most nets is not; else all."""
-        known = [one for one in self.responses if one.distribution is not None]
-        return known or self.responses
+        return [one for one in self.responses if one.distribution is not None] or self.responses
 
     @property
     def solved(self) -> int:

@@ -33,7 +33,7 @@ class TextRow:
 
 @dataclass(frozen=True)
 class ShownPart:
-    """What is drawn as one: a piece or several that are alike, a junction, a clamped instrument.
+    """A part that is drawn as one: a piece or several alike, a junction, a clamped instrument.
 
     Attributes
     ----------

@@ -17,6 +17,7 @@ KINDS = {
 
 GOOD_SPHERE = {"kind": "sphere", "diameter": "1 m", "buoyancy": "2000 N", "source": "a list"}
 GOOD_ROPE = {"kind": "cable", "diameter": "10 mm", "weight": "0.2 N/m", "source": "a list"}
+STRETCHED = {"breaking_load": "50 kN", "elongation": [[0.01, 0.2], [0.03, 0.5]]}
 GOOD_CHAIN = {"kind": "chain", "diameter": "10 mm", "source": "a list"}
 GOOD_BODY = {"kind": "body", "length": "1 m", "mass": "70 kg", "buoyancy": "0 N", "cd": 0.7,
              "drag_area": "0.35 m^2", "source": "a list"}  # fmt: skip
@@ -33,7 +34,16 @@ def findings(definition, known=()):
 
 
 @pytest.mark.parametrize(
-    "good", [GOOD_SPHERE, GOOD_ROPE, GOOD_CHAIN, GOOD_BODY, GOOD_SHACKLE, GOOD_ANCHOR]
+    "good",
+    [
+        GOOD_SPHERE,
+        GOOD_ROPE,
+        GOOD_ROPE | STRETCHED,
+        GOOD_CHAIN,
+        GOOD_BODY,
+        GOOD_SHACKLE,
+        GOOD_ANCHOR,
+    ],
 )
 def test_good_components_pass(good):
     assert findings(good) == []
@@ -59,6 +69,12 @@ def test_good_components_pass(good):
         (GOOD_SPHERE, {"mass": "300 g"}, "weighs 0.3 kg and lifts 2000 N"),
         (GOOD_ROPE, {"diameter": "80 mm", "mass": "0.06 kg/m"}, "a small part of what"),
         (GOOD_ROPE, {"material": "steel", "stiffness": "3 kN"}, "a wire of its diameter 8.659e+05"),
+        (
+            GOOD_ROPE,
+            {"material": "steel"} | STRETCHED,
+            "stiffness of 3000 N; a wire of its diameter",
+        ),
+        (GOOD_ROPE, STRETCHED | {"elongation": [[0.1, 1e-4], [0.3, 1e-3]]}, "5e+07 N; a steel bar"),
         (GOOD_ROPE, {"weight": None, "mass": "0.7 kg/m", "density": "7850 kg/m^3"}, "solid bar"),
         (GOOD_ROPE, {"weight": "6.5 N/m"}, "solid bar"),
         (GOOD_ROPE, {"weight": "0.3 N/m", "material": "nylon"}, "solid bar"),

@@ -15,7 +15,7 @@ components:
   ball: {{kind: sphere, diameter: 1 m, buoyancy: 4 kN, breaking_load: 60 kN}}
   thread: {{kind: cable, diameter: 8 mm, weight: 1 N/m}}
   logger: {{kind: body, length: 0 m, buoyancy: 0 N, kn: 1 N/(m/s)^2, inclination: insensitive,
-    depth_rating: 300 m, max_tilt: 20 deg}}
+    depth_rating: 300 m, max_tilt: 20 deg, wind_area: 2 m^2}}
   block: {{kind: anchor, weight: 20 kN}}
 """
 
@@ -40,6 +40,8 @@ def test_what_flatters_departs():
     (drag,) = departing(clamp="kn: 0.5 N/(m/s)^2")
     assert (drag.name, drag.value, drag.default) == ("kn of probe", 0.5, 1.0)
     assert not lift.backed and not drag.backed
+    (wind,) = departing(clamp="wind_area: 1 m^2")
+    assert (wind.name, wind.value, wind.default) == ("wind_area of probe", 1.0, 2.0)
     (told,) = departing(float="buoyancy: 5 kN, sources: {buoyancy: weighed}")
     assert told.backed
 

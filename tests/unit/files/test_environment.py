@@ -335,6 +335,14 @@ def test_density_that_falls_with_depth_is_a_warning(
         ([STRATIFIED % "1400"], (4, 74, "`density: 1400` must be at most 1350 kg/m^3")),
         (["maximum_speed: 0 m/s"], (4, 18, "`maximum_speed: 0 m/s` must be more than 0 m/s")),
         (
+            ["waves: {significant_height: 4 mm, peak_period: 9 s}"],
+            (4, 31, "`significant_height: 4 mm` must be at least 0.05 m"),
+        ),
+        (
+            ["fouling: {depth: 50 m, thickness: 20 m}"],
+            (4, 37, "`thickness: 20 m` must be at most 1 m"),
+        ),
+        (
             ["maximum_speed: 0.5 m/s"],
             (
                 8,
