@@ -279,8 +279,8 @@ def locate(
     from calm.ranging import locate as found_at
     from calm.ranging import range_fit, read_ranges
     from calm.records.record import parse_place
+    from calm.report.anchor_sheets import located_figure, located_part
     from calm.report.folder import check_destination, write_file
-    from calm.report.located_anchor import located_figure, located_part
 
     outputs = Outputs((file,), json)
     if plot is not None:

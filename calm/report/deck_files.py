@@ -14,10 +14,10 @@ from calm.drawing.plot import draw
 from calm.drop import DropPlan
 from calm.records.delimited import table_csv
 from calm.report import deck_lists, deck_logs, provenance
+from calm.report.anchor_sheets import drop_part
 from calm.report.blocks import Figure, PageBreak, Report, ReportPart, warned
 from calm.report.check_tables import short_verdict
 from calm.report.diagram import Paper, diagram_pages
-from calm.report.drop_sheet import drop_part
 from calm.report.sheet import net_part
 
 Rows = Iterable[Sequence[object]]

@@ -8,8 +8,8 @@ from calm.deck.deck_items import DeckItem, DeckRow, Order, rows_on_paper
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
+from calm.report.anchor_sheets import whereabouts
 from calm.report.blocks import Block, Cell, Prose, ReportPart, Table, blank, number, table_of, words
-from calm.report.drop_sheet import whereabouts
 from calm.report.provenance import position_text
 from calm.report.sheet import leg_titles
 
