@@ -82,11 +82,9 @@ def by_address(law: Law, *arguments: Any) -> Any:
         numba: Any = __import__("numba")
         types = tuple(numba.typeof(argument) for argument in arguments)
         signature = numba.float64(*types, numba.float64)
-
-        def compiler(law: Law, **options: Any) -> Any:
-            return numba.cfunc(signature, **options)(law)
-
-        found = _entries[law] = kept(compiler, clone(law))
+        found = _entries[law] = kept(
+            lambda law, **options: numba.cfunc(signature, **options)(law), clone(law)
+        )
     return found
 
 
