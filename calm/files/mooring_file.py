@@ -363,3 +363,25 @@ def _travelling(piece: Piece, pieces: Sequence[Piece], top: SourceMapping, clamp
         return clamp
     upper, lower = (stops[label] for label in between)
     return replace(clamp, at=upper, travel=(upper, lower))
+
+
+def check_one_fit(pieces: Sequence[Piece], top: SourceMapping) -> None:
+    """Check that one piece at most is to be cut to fit."""
+    fits = [piece for piece in pieces if piece.length is None]
+    for piece in fits[1:]:
+        message = f"only one piece can be cut to fit; line {fits[0].line} has one already"
+        top.refuse_at(piece.line, piece.column, message)
+
+
+def check_fit(
+    pieces: Sequence[Piece], seabed: float | None, tow: TowKeys | None, top: SourceMapping
+) -> None:
+    """Check that the depth to reach lies above the seabed, and below the ship."""
+    for piece in pieces:
+        here = piece.line, piece.column
+        for key, depth in (("top", piece.fit_top_depth), ("body", piece.fit_body_depth)):
+            if depth is not None and seabed is not None and depth >= seabed:
+                top.refuse_at(*here, f"`{key}_depth` is below the seabed, {seabed:g} m deep")
+        if tow and piece.fit_body_depth is not None and piece.fit_body_depth <= -tow.height:
+            message = f"`body_depth` is not below the tow point, {tow.height:g} m above the water"
+            top.refuse_at(*here, message)

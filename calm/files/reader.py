@@ -91,14 +91,20 @@ class MooringKeys(Model):
 
 
 def read_mooring(
-    path: str | Path, *, environment: str | Path | None = None, **how: Any
+    path: str | Path,
+    *,
+    environment: str | Path | None = None,
+    catalogs: Sequence[str | Path] = (),
+    text: str | None = None,
+    stand_in: bool = False,
+    net: bool = False,
 ) -> MooringFile:
-    """Read a mooring file and all it refers to, in an environment as of `MooringReader`.
+    """Read a mooring file and all it refers to in one environment, by a `MooringReader`.
 
-    InputError: with every mistake found, each at its place. `how` are `catalogs` and all else that
-    a `MooringReader` takes.
+    InputError: with every mistake found, each at its place.
     """
-    return MooringReader(path, **how).in_environment(environment)
+    reader = MooringReader(path, catalogs=catalogs, text=text, stand_in=stand_in, net=net)
+    return reader.in_environment(environment)
 
 
 class _ReadLine(NamedTuple):
@@ -181,7 +187,7 @@ class MooringReader:
             if self._legged:
                 check_held_depths(line.legs, top, depth)
             else:
-                _check_fit(line.pieces, depth, keys.tow if keys else None, top)
+                mooring_file.check_fit(line.pieces, depth, keys.tow if keys else None, top)
         if problems or keys is None or surroundings is None:
             raise InputError(_in_order(problems, self._path))
         return MooringFile(
@@ -224,7 +230,7 @@ class MooringReader:
             line_is_whole = bool(pieces) and len(problems) == before
         else:
             (_check_tow if towed else _check_anchor)(pieces, top)
-            _check_one_fit(pieces, top)
+            mooring_file.check_one_fit(pieces, top)
             pieces = numbered(pieces)
             if line_is_whole:
                 pieces = mooring_file.travelling(pieces, top)
@@ -314,27 +320,6 @@ def _check_slides(
             said.append(f"by its slope the seabed is {-depth - deeper:.3g} m above the water here")
         for one in said:
             top.refuse_at(piece.line, piece.column, one)
-
-
-def _check_one_fit(pieces: Sequence[Piece], top: SourceMapping) -> None:
-    fits = [piece for piece in pieces if piece.length is None]
-    for piece in fits[1:]:
-        message = f"only one piece can be cut to fit; line {fits[0].line} has one already"
-        top.refuse_at(piece.line, piece.column, message)
-
-
-def _check_fit(
-    pieces: Sequence[Piece], seabed: float | None, tow: TowKeys | None, top: SourceMapping
-) -> None:
-    """Check that the depth to reach lies above the seabed, and below the ship."""
-    for piece in pieces:
-        here = piece.line, piece.column
-        for key, depth in (("top", piece.fit_top_depth), ("body", piece.fit_body_depth)):
-            if depth is not None and seabed is not None and depth >= seabed:
-                top.refuse_at(*here, f"`{key}_depth` is below the seabed, {seabed:g} m deep")
-        if tow and piece.fit_body_depth is not None and piece.fit_body_depth <= -tow.height:
-            message = f"`body_depth` is not below the tow point, {tow.height:g} m above the water"
-            top.refuse_at(*here, message)
 
 
 class EnvironmentFileKeys(Model):
