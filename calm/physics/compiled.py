@@ -58,8 +58,7 @@ def entry(law: Law, *arguments: Any) -> Any:
     found = _entries.get(law)
     if found is None:
         numba: Any = __import__("numba")
-        options = {**OPTIONS, "pipeline_class": _law_compiler()}
-        dispatcher = kept(numba.njit, clone(law), cache_folder(), **options)
+        dispatcher = kept(numba.njit, clone(law))
         types = tuple(numba.typeof(argument) for argument in arguments)
         dispatcher.compile(types)
         found = _entries[law] = dispatcher.overloads[types].entry_point
@@ -83,12 +82,9 @@ def by_address(law: Law, *arguments: Any) -> Any:
         numba: Any = __import__("numba")
         types = tuple(numba.typeof(argument) for argument in arguments)
         signature = numba.float64(*types, numba.float64)
-        options = {name: OPTIONS[name] for name in ("error_model", "_nrt")}
-
-        def compiler(law: Law, **options: Any) -> Any:
-            return numba.cfunc(signature, pipeline_class=_law_compiler(), **options)(law)
-
-        found = _entries[law] = kept(compiler, clone(law), cache_folder(), **options)
+        found = _entries[law] = kept(
+            lambda law, **options: numba.cfunc(signature, **options)(law), clone(law)
+        )
     return found
 
 
@@ -161,10 +157,11 @@ def clone(law: Law) -> Law:
     return clone
 
 
-def kept(compiler: Callable[..., Any], law: Law, folder: Path | None, **options: Any) -> Any:
+def kept(compiler: Callable[..., Any], law: Law) -> Any:
     """A law compiled, and kept in a folder if there is one."""
     import numba
 
+    folder, options = cache_folder(), {**OPTIONS, "pipeline_class": _law_compiler()}
     if folder is None:
         return compiler(law, **options)
     settings: Any = numba.config

@@ -45,10 +45,9 @@ def resolve_once(operation: Any, context: Any, given: Any, named: Any) -> Any:
     """What an operation on some types is; numba itself tries all that it could be each time."""
     if named:
         return _resolve(operation, context, given, named)
-    found = _seen.get((operation, given))
-    if found is None:
-        found = _seen[operation, given] = _resolve(operation, context, given, named)
-    return found
+    if (operation, given) not in _seen:
+        _seen[operation, given] = _resolve(operation, context, given, named)
+    return _seen[operation, given]
 
 
 def short_name(name: str, given: Any, **more: Any) -> str:

@@ -6,6 +6,7 @@ is stretched as that force has it. Neither uses a number that the march left beh
 positions.
 """
 
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -59,12 +60,9 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
 def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Referee:
     """A line and its water as the audit takes them, with room to work in."""
     moored = moored_of(line, water, frequency, compiled)
-    pieces = len(line.length)
-    if compiled:
-        given: Any = moored.bodies
-        nodes: Any = np.zeros((2, pieces), np.int64)
-        return Referee(moored, given.copy(), nodes[0], nodes[1])
-    return Referee(moored, list(moored.bodies), [0] * pieces, [0] * pieces)
+    nodes: Any = np.zeros((2, len(line.length)), np.int64)
+    first, last = nodes if compiled else nodes.tolist()
+    return Referee(moored, copy(moored.bodies), first, last)
 
 
 def bodies_of(line: Line) -> tuple[Any, list[Knot]]:

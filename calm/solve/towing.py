@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from calm.errors import NoEquilibrium
 from calm.physics.compiled import outcome
 from calm.physics.drag import Vector
-from calm.physics.line import FAILURES, NO_ROOM, Line, MarchError, Trace, Water
+from calm.physics.line import FAILURES, Line, MarchError, Trace, Water
 from calm.physics.passing import FAILURE, FX, FY, FZ, NODES
 from calm.physics.track import Track
 from calm.solve.audit import referee_of
@@ -25,7 +25,7 @@ from calm.solve.closing import (
     whole_line,
 )
 from calm.solve.finish import closing_refusal
-from calm.solve.mooring import MORE_ROOM, search_of
+from calm.solve.mooring import MORE_ROOM, lacks_room, search_of
 from calm.solve.problem import (
     CHOSEN,
     COARSE,
@@ -179,17 +179,15 @@ class Towed:
 
     def _planned(self, step: float) -> Root:
         root: Root = outcome(planned, self.compiled, self.search, self.root, step)
-        while self._lacks_room():
-            self._lay_out(MORE_ROOM * len(self.search.problem.work.chosen))
-            root = outcome(planned, self.compiled, self.search, self.root, step)
+        if self._gets_room():
+            return self._planned(step)
         self._refuse_stopped(root.miss)
         return root
 
     def _marched(self, x: float, step: float, record: int) -> float:
         miss = self._miss(x, step, record)
-        while self._lacks_room():
-            self._lay_out(MORE_ROOM * len(self.search.problem.work.chosen))
-            miss = self._miss(x, step, record)
+        if self._gets_room():
+            return self._marched(x, step, record)
         self._refuse_stopped(miss)
         return miss
 
@@ -207,8 +205,12 @@ class Towed:
         self.search = search_of(problem, compiled)
         self.referee = referee_of(self.line, self.water, self.frequency, compiled)
 
-    def _lacks_room(self) -> bool:
-        return bool(self.search.problem.work.left[FAILURE] == NO_ROOM)
+    def _gets_room(self) -> bool:
+        """Lay the line out anew where the last march needed more room; whether it did."""
+        problem = self.search.problem
+        if lacking := lacks_room(problem):
+            self._lay_out(MORE_ROOM * len(problem.work.chosen))
+        return lacking
 
     def _refuse_stopped(self, miss: float) -> None:
         if isnan(miss):
