@@ -7,51 +7,30 @@ import numpy as np
 from calm.errors import NoEquilibrium
 from calm.physics.line import FAILURES, Line, Trace, Water
 from calm.physics.track import Load
+from calm.solve import solution
 from calm.solve.closing import Closed
 from calm.solve.problem import BELOW, CHANGED, FINE, MARCHES, MOST_AFLOAT, LineProblem
 from calm.solve.refine import Errors, Refined
 from calm.solve.search import NO_OTHER, FoundShape, ending_of_audit
-from calm.solve.solution import (
-    ABOVE_SURFACE,
-    BELOW_SEABED,
-    DRAGGED_DOWN,
-    FOLDED,
-    FOUND,
-    MARCH_STOPPED,
-    MISSES,
-    NO_SHAPE_NEAR,
-    NOT_CLOSED,
-    NOT_LYING,
-    OUT_OF_BALANCE,
-    RISES,
-    SLACK_AT_REST,
-    SLACK_ON_DIGITS,
-    TOO_MANY_AFLOAT,
-    UNSUPPORTED,
-    Settings,
-    Solution,
-    Status,
-    standing_lift,
-    too_heavy,
-)
+from calm.solve.solution import Settings, Solution, Status, standing_lift, too_heavy
 
 STATUS_OF = {
-    FOUND: Status.CONVERGED,
-    MARCH_STOPPED: Status.NOT_CONVERGED,
-    NO_SHAPE_NEAR: Status.NOT_CONVERGED,
-    MISSES: Status.NOT_CONVERGED,
-    SLACK_ON_DIGITS: Status.SLACK,
-    SLACK_AT_REST: Status.SLACK,
-    TOO_MANY_AFLOAT: Status.ABOVE_SURFACE,
-    RISES: Status.ABOVE_SURFACE,
-    DRAGGED_DOWN: Status.GROUNDED,
-    NOT_LYING: Status.GROUNDED,
-    UNSUPPORTED: Status.NO_EQUILIBRIUM,
-    BELOW_SEABED: Status.GROUNDED,
-    ABOVE_SURFACE: Status.ABOVE_SURFACE,
-    NOT_CLOSED: Status.NOT_CONVERGED,
-    OUT_OF_BALANCE: Status.NOT_CONVERGED,
-    FOLDED: Status.SLACK,
+    solution.FOUND: Status.CONVERGED,
+    solution.MARCH_STOPPED: Status.NOT_CONVERGED,
+    solution.NO_SHAPE_NEAR: Status.NOT_CONVERGED,
+    solution.MISSES: Status.NOT_CONVERGED,
+    solution.SLACK_ON_DIGITS: Status.SLACK,
+    solution.SLACK_AT_REST: Status.SLACK,
+    solution.TOO_MANY_AFLOAT: Status.ABOVE_SURFACE,
+    solution.RISES: Status.ABOVE_SURFACE,
+    solution.DRAGGED_DOWN: Status.GROUNDED,
+    solution.NOT_LYING: Status.GROUNDED,
+    solution.UNSUPPORTED: Status.NO_EQUILIBRIUM,
+    solution.BELOW_SEABED: Status.GROUNDED,
+    solution.ABOVE_SURFACE: Status.ABOVE_SURFACE,
+    solution.NOT_CLOSED: Status.NOT_CONVERGED,
+    solution.OUT_OF_BALANCE: Status.NOT_CONVERGED,
+    solution.FOLDED: Status.SLACK,
 }
 """What an ending comes to."""
 
@@ -164,7 +143,7 @@ def solution_found(
     NoEquilibrium
         There is none.
     """
-    if found.ending != FOUND:
+    if found.ending != solution.FOUND:
         raise refusal_of(found, line, water)
     other = None if found.other_depth == NO_OTHER else found.other_depth
     return replace(
@@ -184,13 +163,13 @@ def refuse_unbalanced(closure: float, moment: float) -> None:
     NoEquilibrium
     """
     ending, value = ending_of_audit(closure, moment)
-    if ending != FOUND:
+    if ending != solution.FOUND:
         raise audit_refusal(ending, value)
 
 
 def audit_refusal(ending: int, value: float) -> NoEquilibrium:
     """Return what the audit says against a shape."""
-    if ending == NOT_CLOSED:
+    if ending == solution.NOT_CLOSED:
         return Status.NOT_CONVERGED.because(
             f"The loads do not sum to the force at the line's end: they are {value:.1e} off."
         )
@@ -199,11 +178,11 @@ def audit_refusal(ending: int, value: float) -> NoEquilibrium:
 
 def closing_refusal(closed: Closed, towed: bool) -> NoEquilibrium:
     """Return why a line does not close."""
-    if closed.ending == MARCH_STOPPED:
+    if closed.ending == solution.MARCH_STOPPED:
         return march_stopped(closed.value)
-    if closed.ending == NO_SHAPE_NEAR:
+    if closed.ending == solution.NO_SHAPE_NEAR:
         return Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
-    if closed.ending == SLACK_ON_DIGITS:
+    if closed.ending == solution.SLACK_ON_DIGITS:
         return Status.SLACK.because(
             "The line is slack: its shape depends on the last digits of the buoyancy in use."
         )
@@ -221,11 +200,16 @@ def march_stopped(failure: float, piece: int | None = None) -> NoEquilibrium:
 def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
     """Return why a moored line has no shape."""
     ending, value, piece = found.ending, found.value, found.piece
-    if ending in (MARCH_STOPPED, NO_SHAPE_NEAR, MISSES, SLACK_ON_DIGITS):
+    if ending in (
+        solution.MARCH_STOPPED,
+        solution.NO_SHAPE_NEAR,
+        solution.MISSES,
+        solution.SLACK_ON_DIGITS,
+    ):
         return closing_refusal(found.refined.closed, False)
-    if ending == UNSUPPORTED:
+    if ending == solution.UNSUPPORTED:
         return too_heavy(standing_lift(line, water))
-    if ending == SLACK_AT_REST:
+    if ending == solution.SLACK_AT_REST:
         length = float(line.length.sum())
         radius = watch_circle_radius(length, water.depth - line.anchor_height)
         return Status.SLACK.because(
@@ -233,22 +217,22 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
             "the water is deep: it has no unique shape. Its watch circle has a radius of "
             f"{radius:.{0 if radius >= 100.0 else 1}f} m."
         )
-    if ending == TOO_MANY_AFLOAT:
+    if ending == solution.TOO_MANY_AFLOAT:
         return Status.ABOVE_SURFACE.because(
             f"More than {MOST_AFLOAT} floats would lie at the surface, one after the other."
         )
-    if ending == RISES:
+    if ending == solution.RISES:
         return Status.ABOVE_SURFACE.because(
             "A buoyant part of the line would rise above the surface: "
             "more of it than the floats listed one below the other."
         )
-    if ending == DRAGGED_DOWN:
+    if ending == solution.DRAGGED_DOWN:
         return Status.GROUNDED.because("The current drags the whole line down to the seabed.")
-    if ending == NOT_LYING:
+    if ending == solution.NOT_LYING:
         return Status.GROUNDED.because("The line does not lie on the seabed.")
-    if ending == BELOW_SEABED:
+    if ending == solution.BELOW_SEABED:
         return touching(piece, value)
-    if ending == ABOVE_SURFACE:
+    if ending == solution.ABOVE_SURFACE:
         depth, length = water.depth, float(line.length.sum())
         return risen(piece, value, doubted_depth(depth) if length > 2.0 * depth else "")
     return audit_refusal(ending, value)
