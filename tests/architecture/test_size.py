@@ -8,7 +8,7 @@ from pathlib import Path
 PACKAGE = Path(__file__).resolve().parents[2] / "calm"
 MOST_LINES = 86_550
 MOST_MODULES = 330
-MOST_IMPORTS = 0.082
+MOST_IMPORTS = 0.083
 """Share of the lines of code that import something."""
 
 
