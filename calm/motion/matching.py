@@ -181,8 +181,11 @@ def named_point(one: Identity, line: LinePlaces) -> int | None:
 
 
 def _index(text: str, among: Sequence[str]) -> int | None:
-    known = [one.casefold() for one in among]
-    return known.index(text.casefold()) if text and known.count(text.casefold()) == 1 else None
+    for written in (str, str.casefold):
+        known = [written(one) for one in among]
+        if text and known.count(written(text)) == 1:
+            return known.index(written(text))
+    return None
 
 
 def nowhere(one: Identity, line: LinePlaces) -> str:

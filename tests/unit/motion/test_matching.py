@@ -87,3 +87,9 @@ def test_a_sensor_without_a_label_is_that_of_its_serial_number():
     for serial, label, at in (("371", "", 0), ("9", "", None), ("", "", None), ("5", "float", 3)):
         (one,) = sensors(1.0, label=label, serial=serial)
         assert named_point(one, places) == at
+
+
+def test_of_labels_that_differ_in_their_case_alone_each_is_its_own():
+    places = line(("ctd", "CTD", *LABELS[2:]))
+    found = [named_point(*sensors(1.0, label=label), places) for label in ("ctd", "CTD", "Ctd")]
+    assert found == [0, 1, None]
