@@ -1,11 +1,20 @@
 """Where compiled laws are kept."""
 
+import builtins
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import BuiltinFunctionType, FunctionType
+from typing import Any
 
 import pytest
 
+from calm.batch.net_profiles import solve_net_rows
+from calm.batch.solving import solve_rows
 from calm.physics import compiled
 from calm.physics.drag import drag_share
+from calm.physics.passing import pass_line
+from calm.solve.mooring import find_asked
+from calm.solve.net_closing import ask_net
 
 
 def test_a_folder_that_cannot_be_written_is_done_without(
@@ -56,3 +65,26 @@ def test_laws_linked_into_a_law_give_its_digits(
     finally:
         for store in stores:
             store.cache_clear()
+
+
+def called_by(law: Callable[..., Any], known: set[Any]) -> Iterator[Any]:
+    """What a law and the laws that it calls name, but for these."""
+    known.add(law)
+    for name in law.__code__.co_names:
+        named = law.__globals__.get(name, getattr(builtins, name, None))
+        if isinstance(named, FunctionType) and named.__module__.startswith("calm."):
+            if named not in known:
+                yield from called_by(named, known)
+        else:
+            yield named
+
+
+@pytest.mark.parametrize("law", [find_asked, pass_line, ask_net, solve_rows, solve_net_rows])
+def test_laws_call_laws_and_functions_of_numbers_alone(law: Callable[..., Any]) -> None:
+    """Arrays are handed from law to law in a form that numba's own functions do not know."""
+    numbers = {abs, len, max, min, range, bool, float, int, tuple}
+    for named in called_by(law, set()):
+        if isinstance(named, BuiltinFunctionType) and named not in numbers:
+            assert named.__module__ == "math", named
+        assert not isinstance(named, FunctionType), named
+        assert not getattr(named, "__name__", "").startswith("numpy"), named
