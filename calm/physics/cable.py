@@ -38,14 +38,6 @@ NEAR_A_TURN = 1e-6
 AT_A_LEVEL, TRIALS = 1e-9, 10
 """Distance from a level at which a part of a segment ends there, as a share of the depth range of
 the segment, and the most passes that look for it."""
-Passed = tuple[float, State, float, State, float]
-"""How long a part of a segment is that was passed [m]; where it is passed in two halves the state
-between and the strain of the upper one, else the state above it and 0; the state below it, and the
-strain of the lower half, or of all of it."""
-Passed = tuple[float, State, float, State, float]
-"""How long a part of a segment is that was passed [m]; where it is passed in two halves the state
-between and the strain of the upper one, else the state above it and 0; the state below it, and the
-strain of the lower half, or of all of it."""
 LITTLE_TURN = 1e-6
 """How much the last of a few steps may turn a segment, squared [rad²], and be good enough where it
 need not settle to the last digits."""
@@ -186,60 +178,6 @@ def pass_segment(
     )
 
 
-@within
-def pass_halves(
-    cable: CableStretch,
-    knots: Sequence[Knot],
-    vibration: Vibration,
-    sea: Sea,
-    state: State,
-    cut: float,
-    halves: bool,
-    near: float,
-    expected: Vector,
-) -> Passed:
-    """Pass a segment, or a part of one, in two halves where there are to be `halves`, else at once.
-
-    `near` and `expected` are as in `pass_segment`.
-    """
-    half, upper = cut, 0.0
-    if halves:
-        half = 0.5 * cut
-        middle, upper = pass_segment(cable, knots, vibration, sea, state, half, near, expected)
-        if upper == NO_BALANCE:
-            return cut, middle, upper, middle, upper
-        state = middle
-    below, strain = pass_segment(cable, knots, vibration, sea, state, half, near, expected)
-    return cut, state, upper, below, strain
-
-
-@within
-def pass_halves(
-    cable: CableStretch,
-    knots: Sequence[Knot],
-    vibration: Vibration,
-    sea: Sea,
-    state: State,
-    cut: float,
-    halves: bool,
-    near: float,
-    expected: Vector,
-) -> Passed:
-    """Pass a segment, or a part of one, in two halves where there are to be `halves`, else at once.
-
-    `near` and `expected` are as in `pass_segment`.
-    """
-    half, upper = cut, 0.0
-    if halves:
-        half = 0.5 * cut
-        middle, upper = pass_segment(cable, knots, vibration, sea, state, half, near, expected)
-        if upper == NO_BALANCE:
-            return cut, middle, upper, middle, upper
-        state = middle
-    below, strain = pass_segment(cable, knots, vibration, sea, state, half, near, expected)
-    return cut, state, upper, below, strain
-
-
 def vibrating_share(
     vibration: Vibration,
     beat: float,
@@ -283,23 +221,23 @@ def touchdown(
     sea: Sea,
     state: State,
     cut: float,
-    halves: bool,
     near: float,
     expected: Vector,
     bed: Bed,
-) -> Passed:
+) -> tuple[float, State, float]:
     """Pass the part of a segment that hangs: to where it has nothing left to carry above the bed.
 
-    `halves`, `near` and `expected` are as in `pass_halves`.
+    `near` and `expected` are as in `pass_segment`.
+
+    Returns
+    -------
+    Length of the part [m], at most `cut`, the state below it, and its strain.
     """
     low, high, hanging = 0.0, cut, cut
     carried = off_bed(bed, state[3], state[4], state[5])
-    passed = hanging, state, 0.0, state, 0.0
+    below, strain = state, 0.0
     for _ in range(PASSES):
-        passed = pass_halves(
-            cable, knots, vibration, sea, state, hanging, halves, near, expected
-        )
-        below = passed[3]
+        below, strain = pass_segment(cable, knots, vibration, sea, state, hanging, near, expected)
         fz = off_bed(bed, below[3], below[4], below[5])
         if (hanging == cut and fz > 0.0) or abs(fz) <= 1e-12 * carried:
             break
@@ -309,7 +247,7 @@ def touchdown(
             high = hanging
         following = hanging * carried / (carried - fz)
         hanging = following if low < following < high else 0.5 * (low + high)
-    return passed
+    return hanging, below, strain
 
 
 @within
@@ -320,24 +258,28 @@ def pass_part(
     sea: Sea,
     state: State,
     cut: float,
-    halves: bool,
     near: float,
     expected: Vector,
     share: float,
-) -> Passed:
+) -> tuple[float, State, float]:
     """Pass a segment as far as the first level or turn of the flow that splits it.
 
     Parameters
     ----------
-    halves, near, expected : see `pass_halves`
+    near, expected : see `pass_segment`
     share : see `counts_across`
+
+    Returns
+    -------
+    Length of the part [m], the state below it, and its strain.
     """
-    passed = pass_halves(cable, knots, vibration, sea, state, cut, halves, near, expected)
-    _, _, _, below, _ = passed
+    below, strain = pass_segment(cable, knots, vibration, sea, state, cut, near, expected)
     within_levels = in_interval(sea, below[7], -state[2], -below[2])
     if within_levels and cable.friction != CONSTANT:
-        return passed
-    return split_part(cable, knots, vibration, sea, state, passed, halves, near, expected, share)
+        return cut, below, strain
+    return split_part(
+        cable, knots, vibration, sea, state, below, strain, cut, near, expected, share
+    )
 
 
 def split_part(
@@ -346,23 +288,25 @@ def split_part(
     vibration: Vibration,
     sea: Sea,
     state: State,
-    passed: Passed,
-    halves: bool,
+    below: State,
+    strain: float,
+    cut: float,
     near: float,
     expected: Vector,
     share: float,
-) -> Passed:
-    """`pass_part` of a segment that may have to be split; `passed` is all of it."""
-    cut, _, _, below, _ = passed
+) -> tuple[float, State, float]:
+    """`pass_part` of a segment that may have to be split; `below` and `strain` are those of all of
+    it."""
+    part = cut
     level = level_within(sea, below[7], -state[2], -below[2], share)
     if level > 0:
-        passed = until_level(
-            cable, knots, vibration, sea, state, below, cut, halves, near, level, share
+        part, below, strain = until_level(
+            cable, knots, vibration, sea, state, below, cut, near, level, share
         )
-    part, _, _, below, _ = passed
     if cable.friction == CONSTANT and flow_along(sea, state) * flow_along(sea, below) < 0.0:
-        passed = until_turn(cable, knots, vibration, sea, state, below, part, halves, near, expected)
-    return passed
+        part = until_turn(cable, knots, vibration, sea, state, part, near, expected)
+        below, strain = pass_segment(cable, knots, vibration, sea, state, part, near, expected)
+    return part, below, strain
 
 
 def until_level(
@@ -373,11 +317,10 @@ def until_level(
     state: State,
     below: State,
     cut: float,
-    halves: bool,
     near: float,
     k: int,
     share: float,
-) -> Passed:
+) -> tuple[float, State, float]:
     """Pass the part of a segment down to a level of the profile.
 
     The first trial follows from the mean load of the segment, the others are secants.
@@ -385,8 +328,11 @@ def until_level(
     Parameters
     ----------
     below : the state below the whole segment
-    halves, near : see `pass_halves`
     k, share : see `counts_across`
+
+    Returns
+    -------
+    Length of the part [m], the state below it, and its strain.
     """
     _, _, z, fx, fy, fz, _, _ = state
     level, start, whole = sea.levels[k], -z, z - below[2]
@@ -398,11 +344,10 @@ def until_level(
         if sinks * last > 0.0:
             part = min(cut * (level - start) / whole * (last / sinks), cut)
     before, above = 0.0, start
-    passed = part, state, 0.0, below, NO_BALANCE
+    passed, strain = below, NO_BALANCE
     for _ in range(TRIALS):
-        passed = pass_halves(cable, knots, vibration, sea, state, part, halves, near, load)
-        _, _, _, reached, strain = passed
-        depth = -reached[2]
+        passed, strain = pass_segment(cable, knots, vibration, sea, state, part, near, load)
+        depth = -passed[2]
         off, depths = abs(depth - level), abs(depth - start)
         if strain == NO_BALANCE or off <= AT_A_LEVEL * abs(whole) or depth == above:
             break
@@ -411,7 +356,7 @@ def until_level(
         following = part + (level - depth) * (part - before) / (depth - above)
         before, above = part, depth
         part = following if 0.0 < following < cut else 0.5 * part
-    return passed
+    return part, passed, strain
 
 
 def sinking(fx: float, fy: float, fz: float, load: Vector, length: float) -> float:
@@ -428,35 +373,29 @@ def until_turn(
     vibration: Vibration,
     sea: Sea,
     state: State,
-    below: State,
     cut: float,
-    halves: bool,
     near: float,
     expected: Vector,
-) -> Passed:
-    """Pass the part of a segment above where the flow along it turns round.
+) -> float:
+    """Return how much of a segment there is before the flow along it turns round [m].
 
-    There a friction of constant size jumps from one direction to the other. By regula falsi, whose
-    end that stays is halved.
-
-    Parameters
-    ----------
-    below : the state below the whole segment
-    halves, near, expected : see `pass_halves`
+    There a friction of constant size jumps from one direction to the other. At most `cut`; `near`
+    and `expected` are as in `pass_segment`. By regula falsi, whose end that stays is halved.
     """
+    below, _ = pass_segment(cable, knots, vibration, sea, state, cut, near, expected)
     low, high = 0.0, cut
     at_low, at_high = flow_along(sea, state), flow_along(sea, below)
     for _ in range(PASSES):
         length = low + (high - low) * at_low / (at_low - at_high)
-        passed = pass_halves(cable, knots, vibration, sea, state, length, halves, near, expected)
-        here = flow_along(sea, passed[3])
+        below, _ = pass_segment(cable, knots, vibration, sea, state, length, near, expected)
+        here = flow_along(sea, below)
         if here * at_low > 0.0:
             low, at_low, at_high = length, here, 0.5 * at_high
         else:
             high, at_high, at_low = length, here, 0.5 * at_low
         if here == 0.0 or high - low <= NEAR_A_TURN * cut:
             break
-    return pass_halves(cable, knots, vibration, sea, state, high, halves, near, expected)
+    return high
 
 
 def flow_along(sea: Sea, state: State) -> float:
