@@ -35,6 +35,7 @@ from calm.physics.line import (
 from calm.physics.profile import Sea, interval_at
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
 from calm.physics.seabed import lay_line
+from calm.physics.strumming import with_beat
 from calm.physics.track import CABLE, ROD, Course
 
 MOST_SEGMENTS = 50_000
@@ -170,7 +171,8 @@ def pass_cable(
     The state; the unstretched length above its touchdown [m], -1 where it has none; how many
     segments have been used and nodes passed so far; whether the march can go on.
     """
-    cable, knots, vibration = course.cables[place], course.knots, course.vibration
+    cable, knots = course.cables[place], course.knots
+    vibration = with_beat(course.vibration, course.vibration.beat * cable.diameter)
     first, done, hanging = used, 0.0, -1.0
     near, expected = how.near, (0.0, 0.0, 0.0)
     while used - first < counts[place] if how.given else done < cable.length or used == first:

@@ -233,7 +233,7 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
             return ending
         tension = worth * moved_ends(net, x, FINE)
         if (
-            net.errors[DEPTH_ERROR] <= worth * net.lines.limits.depth
+            net.errors[DEPTH_ERROR] <= worth * net.span
             and net.errors[TENSION_ERROR] <= tension
         ):
             break

@@ -1,11 +1,11 @@
 """A net of legs as laws: its legs marched, and what is left at its ends and nodes.
 
-Unknown are the depths of free ends, the pulls on upper ends that are not free, and the places of
-nodes; slopes are differences of marches on the same segments.
+Unknown are the depths of free ends, the pulls on upper ends that are not free, the places of nodes,
+and the frequency of a leg that strums; slopes are differences of marches on the same segments.
 """
 
 from collections.abc import MutableSequence, Sequence
-from math import degrees, inf
+from math import degrees, inf, sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.compiled import set_row
@@ -14,6 +14,7 @@ from calm.physics.line import GOES_ON, Bed, Record, off_bed
 from calm.physics.passing import FAILURE, HANGING, LANDED, NODES, How, Z, pass_line
 from calm.physics.passing import GROUNDED as LIES
 from calm.physics.profile import Sea
+from calm.physics.strumming import with_beat
 from calm.physics.track import Course, Load
 from calm.solve.closing import place
 from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, SearchArrays, Unknown
@@ -22,11 +23,13 @@ STANDING, HANGING_DOWN, PULLED = range(3)
 """Legs marched from a free upper end, from a free lower end, and from an upper end that is held."""
 JUMP = 1e-6
 """Share by which an unknown is moved for the slopes."""
-LANDS, STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG = range(7)
+LANDS, STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG, FREQUENCY = range(8)
 """Of a leg as it was marched last: whether it may land, the stage where it did or -1, its length on
 the seabed [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and
-those of them that hang."""
-OF_LEG = 7
+those of them that hang; how fast its cables strum [Hz]."""
+OF_LEG = 8
+PASSED = 7
+"""Where a leg comes out: way east and north, height, force, and the frequency that it sheds."""
 
 
 class LegRow(NamedTuple):
@@ -42,6 +45,9 @@ class LegRow(NamedTuple):
     stands : length of a float that shows how much of it is out of the water [m]
     highest : how high it may come [m]
     rides : as in `Limits`
+    sheds : Strouhal number over diameter at its end, where vortices set the frequency of a leg that
+        strums [1/m]; 0 of one that does not
+    past_east, past_north, past_up : current there [m/s]
     stages, landing, cables, surfacing, rows, pieces : how many there are of each, see `Course`
     """
 
@@ -56,6 +62,10 @@ class LegRow(NamedTuple):
     stands: float
     highest: float
     rides: int
+    sheds: float
+    past_east: float
+    past_north: float
+    past_up: float
     stages: int
     landing: int
     cables: int
@@ -72,7 +82,7 @@ class NetProblem(NamedTuple):
     lines : the legs in one: what is of them has a row for each, as long as the longest needs
     held : (·, 6) places of the ends of each leg that are held, where its march begins and ends [m]
     state : numbers of each leg: `LANDS` and those after it
-    passed : (·, 6) way east and north, height, and force, where each came out
+    passed : (·, 7) where each came out, see `PASSED`
     first, last, ends : node of each piece's ends; place and tension there
     found, kept, slopes, way : what is left, by shares of `rows`, now and before, its slopes by
         shares of `scale`, and the step that they ask for
@@ -80,6 +90,7 @@ class NetProblem(NamedTuple):
     errors : of depths [m] and tensions [N]
     nodes_at : first unknown of the nodes
     length, force : of the longest leg [m]; a typical one [N]
+    span : what errors of depths are measured by [m]
     """
 
     legs: Sequence[LegRow]
@@ -103,6 +114,7 @@ class NetProblem(NamedTuple):
     nodes_at: int
     length: float
     force: float
+    span: float
 
 
 class Marching(NamedTuple):
@@ -123,7 +135,7 @@ def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
     course, work = lines.course, lines.work
     course = Course(
         course.stages[i][: leg.stages], course.loads[i], course.cables[i][: leg.cables],
-        course.knots[i], course.vibration, leg.landing,
+        course.knots[i], with_beat(course.vibration, net.state[i][FREQUENCY]), leg.landing,
     )  # fmt: skip
     afloat = SurfaceFloat(
         own.form, own.height, own.area, own.weight, own.lift, own.surface_drag, own.wind_east,
@@ -191,7 +203,9 @@ def begun(net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]) -> 
 
 def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
     """March a leg from what is unknown of it; how that ended, see `calm.physics.line`."""
-    leg, state, problem = net.legs[i], net.state[i], leg_of(net, how.sea, i)
+    leg, state = net.legs[i], net.state[i]
+    state[FREQUENCY] = x[leg.first + 1] if leg.sheds > 0.0 else 0.0
+    problem = leg_of(net, how.sea, i)
     course, work = problem.course, problem.work
     depth, out = begun(net, problem, i, x)
     cuts = work.halved if how.cuts == HALVED else work.chosen
@@ -210,21 +224,39 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
     passed[0], passed[1] = record[0][n] - record[0][0], record[1][n] - record[1][0]
     passed[2] = left[Z]
     passed[3], passed[4], passed[5] = record[3][n], record[4][n], record[5][n]
+    passed[6] = shed_by(leg, record[3][n], record[4][n], record[5][n])
     return GOES_ON
+
+
+def shed_by(leg: LegRow, fx: float, fy: float, fz: float) -> float:
+    """The frequency F = St |V| sin φ/D of the vortices at the end of a leg [Hz].
+
+    φ is the angle between the current and the force there, see `calm.physics.strumming`.
+    """
+    u, v, w = leg.past_east, leg.past_north, leg.past_up
+    cx, cy, cz = v * fz - w * fy, w * fx - u * fz, u * fy - v * fx
+    tension = sqrt(fx * fx + fy * fy + fz * fz)
+    if tension == 0.0:
+        return 0.0
+    return leg.sheds * sqrt(cx * cx + cy * cy + cz * cz) / tension
 
 
 def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, column: int) -> None:
     """Add a share of what a leg came out with to what is left, or to a column of its slopes."""
     leg = net.legs[i]
-    for k in range(6):
+    for k in range(PASSED):
         row = leg.first + k
-        if k < 3:
+        if k == 6:
+            if leg.sheds == 0.0:
+                break
+            row = leg.first + 1
+        elif k < 3:
             if leg.kind != PULLED:
                 if k < 2:
                     continue
                 row = leg.first
         elif leg.end < 0:
-            break
+            continue
         else:
             row = net.nodes_at + 3 * leg.end + k - 3
         change = share * out[k] / net.rows[row]
@@ -264,6 +296,8 @@ def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes:
                     net.found[row] -= x[at + k] / net.rows[row]
         else:
             net.found[at] -= up / net.rows[at]
+            if leg.sheds > 0.0:
+                net.found[at + 1] -= x[at + 1] / net.rows[at + 1]
         if slopes:
             failure = slopes_of_leg(net, i, x, how)
             if failure != GOES_ON:
@@ -274,7 +308,7 @@ def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes:
 def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: Marching) -> int:
     """Add what a leg has in the slopes of what is left."""
     leg, nodes, at = net.legs[i], net.nodes_at, net.legs[i].first
-    own = 3 if leg.kind == PULLED else 1
+    own = 3 if leg.kind == PULLED else 2 if leg.sheds > 0.0 else 1
     free = own + (1 if leg.kind == PULLED and leg.start >= 0 else 0)
     moved = Marching(how.sea, how.step, how.cuts, True, OTHER)
     for m in range(free):
@@ -289,6 +323,8 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
         if failure != GOES_ON:
             return failure
         add_passed(net, i, net.passed[i], 1.0 / JUMP, k)
+    if leg.sheds > 0.0:
+        net.slopes[at + 1][at + 1] -= net.scale[at + 1] / net.rows[at + 1]
     for k in range(3):
         if leg.kind == PULLED:
             row = at + k
