@@ -86,7 +86,7 @@ class NetSearch:
         x[self.net.nodes_at :] = start.nodes.ravel()
         for i, each in enumerate(self.laid):
             down, pull = each.kind == net_march.HANGING_DOWN, start.pull[i]
-            x[first] = -(start.lower if down else start.first)[i][2]
+            x[first : first + each.unknowns] = -(start.lower if down else start.first)[i][2]
             if each.kind == net_march.PULLED:
                 x[first : first + 3] = pull
             elif x[first] < 0.0 and not down and each.problem.surfacing:  # what pulls is in use
@@ -163,7 +163,7 @@ class NetSearch:
         """
         net, legs = self.net, []
         left = np.abs(np.array(net.found) * np.array(net.rows))
-        miss = float(np.abs(net.found[: net.nodes_at]).max()) * net.length
+        miss = float(left[: net.nodes_at].max())
         if miss > self.settings.tolerance * net.span:
             raise unsettled(f"a leg misses its end by {miss:.2g} m")
         imbalance = np.linalg.norm(left[net.nodes_at :].reshape(-1, 3), axis=1)

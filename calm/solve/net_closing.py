@@ -1,17 +1,20 @@
 """A net of legs closed, as laws: Newton's method on segments that stay.
 
-Slopes are kept by Broyden's rule while they lead on.
+Slopes are kept by Broyden's rule while they lead on. A net with a single unknown is closed by
+secants, and in a bracket where these do not lead on.
 """
 
 from collections.abc import Callable, MutableSequence, Sequence
-from math import inf, sqrt
+from math import inf, isnan, nan, sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.line import GOES_ON, NO_ROOM
+from calm.physics.passing import FAILURE
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
 from calm.solve import net_march
 from calm.solve.closing import halve
+from calm.solve.least_change import root_near
 from calm.solve.net_march import (
     LANDS,
     STAGE,
@@ -35,6 +38,8 @@ halved once more, `MOST_HALVINGS` times; of one of many, whose segments are long
 MOST_HALVINGS = 3
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
+NARROWEST = 1e-15
+"""Width of the last bracket of a single unknown, as a share of its scale."""
 SINGULAR = 1e-14
 """Slope, in shares, below which an unknown is left as it is."""
 CAME_OUT, NOT_CLOSED, TO_AND_FRO, NEEDS_ROOM = range(4)
@@ -92,6 +97,36 @@ def keep(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
         kept[k] = values[k]
 
 
+class OneUnknown(NamedTuple):
+    """Hold what a march is about of a net with one unknown."""
+
+    net: NetProblem
+    x: MutableSequence[float]
+    how: Marching
+
+
+def left_at(about: OneUnknown, value: float) -> float:
+    """What is left at a value of the only unknown; NaN where a march stops."""
+    net, x, how = about.net, about.x, about.how
+    x[0] = value
+    return net.found[0] if left_over(net, x, how, False) == GOES_ON else nan
+
+
+def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough: float) -> int:
+    """`close_net` of a net with one unknown."""
+    about, scale, slope = OneUnknown(net, x, how), net.scale[0], net.slopes[0][0]
+    changes, value, left, slope = root_near(
+        left_at, about, x[0], (slope if slope < 0.0 else -1.0) / scale, x[0] - scale,
+        x[0] + scale, enough, NARROWEST * scale,
+    )  # fmt: skip
+    if isnan(left) and net.lines.work.left[0][FAILURE] == NO_ROOM:
+        return NEEDS_ROOM
+    if value != x[0]:
+        left = left_at(about, value)
+    net.slopes[0][0] = slope * scale
+    return CAME_OUT if changes and abs(left) <= 100.0 * enough else NOT_CLOSED
+
+
 def close_net(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
@@ -103,6 +138,8 @@ def close_net(
     enough : what may be left, in shares
     known : whether the slopes are about right already, and need not be found first
     """
+    if len(x) == 1:
+        return close_one(net, x, how, enough)
     failure = left_over(net, x, how, not known)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
@@ -113,6 +150,8 @@ def close_on(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
     """`close_net` from unknowns that were marched last, on these segments."""
+    if len(x) == 1:
+        return close_one(net, x, how, enough)
     size, trial, fresh, plain, left = len(x), net.trial, not known, known, net.kept
     keep(net.found, left)
     for _ in range(MOST_STEPS):

@@ -95,9 +95,7 @@ class LaidLeg:
 
     @property
     def unknowns(self) -> int:
-        if self.kind == net_march.PULLED:
-            return 3
-        return 2 if self.shedding[0] > 0.0 else 1
+        return 3 if self.kind == net_march.PULLED else 1
 
     @property
     def shedding(self) -> tuple[float, float, float, float]:
@@ -172,9 +170,6 @@ def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> N
     for first, each in zip(firsts, laid, strict=False):
         if each.kind == net_march.PULLED:
             scale[first : first + 3] = force
-        elif each.unknowns == 2:
-            sheds, *past = each.shedding
-            scale[first + 1] = rows[first + 1] = sheds * float(np.linalg.norm(past)) or 1.0
 
     stack: Any = np.stack if compiled else list
     no_sea: Any = None
@@ -221,7 +216,7 @@ def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> N
     places = [[*(end.place or (0.0, 0.0, 0.0))] for each in laid for end in each.ends]
     return NetProblem(
         listed(LegRow, [each.row(at, span) for at, each in zip(firsts, laid, strict=False)]), lines,
-        taken(np.array(places).reshape(-1, 6)), zeros(count, net_march.OF_LEG), zeros(count, net_march.PASSED),
+        taken(np.array(places).reshape(-1, 6)), zeros(count, net_march.OF_LEG), zeros(count, 6),
         zeros(count, pieces, of=int), zeros(count, pieces, of=int), zeros(count, pieces + 1, 4),
         zeros(size), zeros(size), zeros(size, size), zeros(size), zeros(size),
         zeros(size, size + 1), zeros(size, of=int), taken(scale), taken(rows), zeros(2),

@@ -1,7 +1,7 @@
 """A net of legs as laws: its legs marched, and what is left at its ends and nodes.
 
-Unknown are the depths of free ends, the pulls on upper ends that are not free, the places of nodes,
-and the frequency of a leg that strums; slopes are differences of marches on the same segments.
+Unknown are the depths of free ends, the pulls on upper ends that are not free, and the places of
+nodes; slopes are differences of marches on the same segments.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -23,13 +23,14 @@ STANDING, HANGING_DOWN, PULLED = range(3)
 """Legs marched from a free upper end, from a free lower end, and from an upper end that is held."""
 JUMP = 1e-6
 """Share by which an unknown is moved for the slopes."""
-LANDS, STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG, FREQUENCY = range(8)
+LANDS, STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG, FREQUENCY, YIELD = range(9)
 """Of a leg as it was marched last: whether it may land, the stage where it did or -1, its length on
 the seabed [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and
-those of them that hang; how fast its cables strum [Hz]."""
-OF_LEG = 8
-PASSED = 7
-"""Where a leg comes out: way east and north, height, force, and the frequency that it sheds."""
+those of them that hang; the frequency of its cables [Hz], and how what that lacks changes with it."""
+OF_LEG = 9
+ROUGHLY_SETTLED, SETTLED, MOST_TURNS = 1e-3, 1e-9, 20
+"""What a frequency may lack, as a share of it, where segments are chosen and where they are given,
+and how often a leg is marched for it."""
 
 
 class LegRow(NamedTuple):
@@ -82,7 +83,7 @@ class NetProblem(NamedTuple):
     lines : the legs in one: what is of them has a row for each, as long as the longest needs
     held : (·, 6) places of the ends of each leg that are held, where its march begins and ends [m]
     state : numbers of each leg: `LANDS` and those after it
-    passed : (·, 7) where each came out, see `PASSED`
+    passed : (·, 6) way east and north, height, and force, where each came out
     first, last, ends : node of each piece's ends; place and tension there
     found, kept, slopes, way : what is left, by shares of `rows`, now and before, its slopes by
         shares of `scale`, and the step that they ask for
@@ -202,10 +203,30 @@ def begun(net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]) -> 
 
 
 def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg from what is unknown of it; how that ended, see `calm.physics.line`."""
+    """March a leg from what is unknown of it; how that ended, see `calm.physics.line`.
+
+    One that strums until it does at the frequency of the vortices at its end. That falls as the
+    frequency assumed rises, since more drag lifts the line: there is one, found by secants.
+    """
     leg, state = net.legs[i], net.state[i]
-    state[FREQUENCY] = x[leg.first + 1] if leg.sheds > 0.0 else 0.0
-    problem = leg_of(net, how.sea, i)
+    failure = march_once(net, i, x, how)
+    before, lacked, settled = 0.0, 0.0, SETTLED if how.given else ROUGHLY_SETTLED
+    for turn in range(MOST_TURNS if leg.sheds > 0.0 else 0):
+        frequency = state[FREQUENCY]
+        lacking = shed_by(leg, net.passed[i]) - frequency
+        if failure != GOES_ON or abs(lacking) <= settled * frequency:
+            break
+        if turn > 0 and frequency != before:
+            state[YIELD] = (lacking - lacked) / (frequency - before)
+        before, lacked = frequency, lacking
+        state[FREQUENCY] = frequency - lacking / min(state[YIELD], -1.0)
+        failure = march_once(net, i, x, how)
+    return failure
+
+
+def march_once(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
+    """March a leg, at the frequency at which it was marched last where it strums."""
+    leg, state, problem = net.legs[i], net.state[i], leg_of(net, how.sea, i)
     course, work = problem.course, problem.work
     depth, out = begun(net, problem, i, x)
     cuts = work.halved if how.cuts == HALVED else work.chosen
@@ -224,15 +245,15 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
     passed[0], passed[1] = record[0][n] - record[0][0], record[1][n] - record[1][0]
     passed[2] = left[Z]
     passed[3], passed[4], passed[5] = record[3][n], record[4][n], record[5][n]
-    passed[6] = shed_by(leg, record[3][n], record[4][n], record[5][n])
     return GOES_ON
 
 
-def shed_by(leg: LegRow, fx: float, fy: float, fz: float) -> float:
+def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
     """The frequency F = St |V| sin φ/D of the vortices at the end of a leg [Hz].
 
     φ is the angle between the current and the force there, see `calm.physics.strumming`.
     """
+    _, _, _, fx, fy, fz = passed
     u, v, w = leg.past_east, leg.past_north, leg.past_up
     cx, cy, cz = v * fz - w * fy, w * fx - u * fz, u * fy - v * fx
     tension = sqrt(fx * fx + fy * fy + fz * fz)
@@ -244,19 +265,15 @@ def shed_by(leg: LegRow, fx: float, fy: float, fz: float) -> float:
 def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, column: int) -> None:
     """Add a share of what a leg came out with to what is left, or to a column of its slopes."""
     leg = net.legs[i]
-    for k in range(PASSED):
+    for k in range(6):
         row = leg.first + k
-        if k == 6:
-            if leg.sheds == 0.0:
-                break
-            row = leg.first + 1
-        elif k < 3:
+        if k < 3:
             if leg.kind != PULLED:
                 if k < 2:
                     continue
                 row = leg.first
         elif leg.end < 0:
-            continue
+            break
         else:
             row = net.nodes_at + 3 * leg.end + k - 3
         change = share * out[k] / net.rows[row]
@@ -296,8 +313,6 @@ def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes:
                     net.found[row] -= x[at + k] / net.rows[row]
         else:
             net.found[at] -= up / net.rows[at]
-            if leg.sheds > 0.0:
-                net.found[at + 1] -= x[at + 1] / net.rows[at + 1]
         if slopes:
             failure = slopes_of_leg(net, i, x, how)
             if failure != GOES_ON:
@@ -308,7 +323,7 @@ def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes:
 def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: Marching) -> int:
     """Add what a leg has in the slopes of what is left."""
     leg, nodes, at = net.legs[i], net.nodes_at, net.legs[i].first
-    own = 3 if leg.kind == PULLED else 2 if leg.sheds > 0.0 else 1
+    own = 3 if leg.kind == PULLED else 1
     free = own + (1 if leg.kind == PULLED and leg.start >= 0 else 0)
     moved = Marching(how.sea, how.step, how.cuts, True, OTHER)
     for m in range(free):
@@ -323,8 +338,6 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
         if failure != GOES_ON:
             return failure
         add_passed(net, i, net.passed[i], 1.0 / JUMP, k)
-    if leg.sheds > 0.0:
-        net.slopes[at + 1][at + 1] -= net.scale[at + 1] / net.rows[at + 1]
     for k in range(3):
         if leg.kind == PULLED:
             row = at + k

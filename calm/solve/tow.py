@@ -17,7 +17,7 @@ from calm.physics.line import GOES_ON, Floats, Line, Trace, Water
 from calm.physics.passing import FAILURE
 from calm.solve import net_closing
 from calm.solve.finish import march_stopped
-from calm.solve.least_change import bracketed_root, root_near
+from calm.solve.least_change import bracketed_root
 from calm.solve.net import NetSearch, NetSolution, with_room
 from calm.solve.net_leg import LegEnd, NetLeg
 from calm.solve.problem import CHOSEN, COARSE_STEP, FINE
@@ -31,7 +31,7 @@ FARTHER = 1.05
 """In an even current, how far up the other side of the root is tried, in misses: where levels cut a
 line a march is not quite the same at every depth."""
 ROUGHLY = 1e-3
-"""What is left of a rough root, as a share of the line out, and of a rough frequency."""
+"""What is left of a rough root, as a share of the line out."""
 NEARLY_OUT = 2e-3
 """Depth at which a line that will not close is taken to be leaving the water, as a share of it."""
 WIDEST_JUMP, NARROW_JUMP = 0.02, 1e-9
@@ -142,16 +142,11 @@ def _relative(line: Line, water: Water, towing: Towing) -> Water:
 
 
 class _Marches:
-    """Marches of a towed line at an angle step, each with its free end at a depth.
-
-    Where it strums, at the frequency that its angle at the ship gives it there. That falls as the
-    one assumed rises, since more drag lifts the line: so there is one.
-    """
+    """Marches of a towed line at an angle step, each with its free end at a depth."""
 
     def __init__(self, net: NetSearch, step: float) -> None:
         self.net, self.span, self.step = net, net.net.length, step
         self.allowed = net.settings.tolerance * self.span
-        self.x = np.zeros(len(net.net.found))
 
     @property
     def shape(self) -> Trace:
@@ -160,38 +155,25 @@ class _Marches:
 
     def miss(self, _: None, depth: float) -> float:
         """How high the line ends above the tow point [m]; NaN where the march stops."""
-        self.x[0] = depth
-        if len(self.x) == 1:
-            left = self._left_over(None, 0.0)
-        else:
-            most = float(self.net.net.rows[1])
-            _, self.x[1], left, _ = root_near(
-                self._left_over, None, self.x[1], -1.0 / most, 0.0, most, ROUGHLY, 1e-9 * most
-            )
-        return nan if isnan(left) else float(self.net.net.found[0]) * self.span
-
-    def _left_over(self, _: None, frequency: float) -> float:
-        """What is left of the last unknown, as a share."""
-        self.x[1:] = frequency
+        self.x = np.array([depth])
         how = self.net.marching(self.step, CHOSEN, FINE, given=False)
         self.failure, _same = self.net.asked(net_closing.MARCH, self.x, how)
-        return float(self.net.net.found[-1]) if self.failure == GOES_ON else nan
+        return float(self.net.net.found[0]) * self.span if self.failure == GOES_ON else nan
 
 
 def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
     """Return the deepest equilibrium, and the depth of the free end at the next one above [m]."""
     rough = _Marches(net, max(COARSE_STEP, 2.0 * net.settings.angle_step))
     start, other_depth = _locate(rough, towing)
-    closed = net.closed(start, rough.step, net_closing.NEAR)
     try:
-        x = net.settled(start if closed is None else closed)
+        x = net.settled(np.array([start]))
     except NoEquilibrium as failure:
         raise _why_not(rough, start, towing) from failure
     return net.told(x), other_depth
 
 
-def _locate(rough: _Marches, towing: Towing) -> tuple[Floats, float | None]:
-    """Find the unknowns of the deepest root, and the depth of the next one above [m]."""
+def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
+    """Find the depth of the free end at the deepest root, and that of the next one above [m]."""
     span, found = rough.span, []
     shallowest = -towing.height - span if towing.in_air else 0.0
     depth = max(span - towing.height, 1e-3 * span)
@@ -221,7 +203,7 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[Floats, float | None]:
                 break
         depth, low = upper, high
     if found:
-        return found[0], float(found[1][0]) if len(found) > 1 else None
+        return found[0], found[1] if len(found) > 1 else None
     if span <= towing.height:
         raise Status.ABOVE_SURFACE.because(
             f"The line, {span:.2f} m long, does not reach the water from "
@@ -245,16 +227,14 @@ def _upwards(
     return [max(depth + FARTHER * low - NARROW_JUMP * span, shallowest)]
 
 
-def _root(rough: _Marches, upper: float, high: float, depth: float, low: float) -> Floats:
-    """The unknowns at a root of the miss between two depths."""
+def _root(rough: _Marches, upper: float, high: float, depth: float, low: float) -> float:
+    """Root of the miss between two depths."""
     span = rough.span
     x, left, slope = bracketed_root(
         rough.miss, None, upper, high, depth, low, ROUGHLY * span, NARROW_JUMP * span
     )
     _refuse_stopped(rough, left)
-    root = rough.x.copy()
-    root[0] = min(max(x - left / slope, upper), depth) if slope < 0.0 else x
-    return root
+    return min(max(x - left / slope, upper), depth) if slope < 0.0 else x
 
 
 def _refuse_stopped(rough: _Marches, miss: float) -> None:
@@ -262,7 +242,7 @@ def _refuse_stopped(rough: _Marches, miss: float) -> None:
         raise march_stopped(rough.failure)
 
 
-def _why_not(rough: _Marches, start: Floats, towing: Towing) -> NoEquilibrium:
+def _why_not(rough: _Marches, start: float, towing: Towing) -> NoEquilibrium:
     """Why a tow does not close near a rough root."""
     stopped = rough.net.net.lines.work.left[0][FAILURE]
     failure = Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
@@ -271,13 +251,13 @@ def _why_not(rough: _Marches, start: Floats, towing: Towing) -> NoEquilibrium:
     if towing.in_air:
         return failure
     nearly_out = NEARLY_OUT * rough.span
-    surfaces = start[0] < nearly_out
-    if not isnan(rough.miss(None, start[0])):
+    surfaces = start < nearly_out
+    if not isnan(rough.miss(None, start)):
         height = rough.shape.position[:, 2]
         surfaces = bool(height[: int(np.argmin(height)) + 1].max() > -nearly_out)
     if surfaces:
         return Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW)
-    return _half_out(_Marches(rough.net, rough.net.settings.angle_step), start[0]) or failure
+    return _half_out(_Marches(rough.net, rough.net.settings.angle_step), start) or failure
 
 
 def _half_out(fine: _Marches, root: float) -> NoEquilibrium | None:
