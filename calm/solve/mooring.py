@@ -17,6 +17,7 @@ from calm.physics.compiled import by_address, outcome
 from calm.physics.line import NO_ROOM, Floats, Line, Trace, Water
 from calm.physics.passing import FAILURE
 from calm.physics.track import Track
+from calm.solve.accuracy import Errors, take_as_marched
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root, miss_at, not_closed, planned, polish, whole_line
 from calm.solve.finish import closing_refusal, solution_found
@@ -33,7 +34,7 @@ from calm.solve.problem import (
     Unknown,
     problem_of,
 )
-from calm.solve.refine import Errors, Refined
+from calm.solve.refine import Refined
 from calm.solve.search import FoundShape, Referee, audited, find_shape
 from calm.solve.solution import (
     FOUND,
@@ -170,7 +171,7 @@ def find_now(find: Callable[[AskedSearch, float], float], asked: AskedSearch) ->
 
 ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
 NODES, HANGING, LANDED, GROUNDED, SEGMENTS, FIRST_ERROR = range(11, 17)
-CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED = range(22, 26)
+CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED, SHARE_IN_USE, LIES = range(22, 28)
 """Where it stands in what a search tells; from `FIRST_ERROR` on the errors."""
 
 
@@ -189,6 +190,7 @@ def tell(found: FoundShape, told: MutableSequence[float]) -> None:
     told[FIRST_ERROR], told[FIRST_ERROR + 1] = errors.depth, errors.tension
     told[FIRST_ERROR + 2] = errors.relative
     told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
+    told[SHARE_IN_USE], told[LIES] = found.refined.share, found.refined.grounded
     told[CLOSURE], told[MOMENT] = found.closure, found.moment
     told[OTHER_DEPTH], told[OTHER_GROUNDED] = found.other_depth, found.other_grounded
 
@@ -203,7 +205,8 @@ def as_told(told: Sequence[float]) -> FoundShape:
     closed = Closed(ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]))
     errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
     last = [float(told[i]) for i in (CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED)]
-    return FoundShape(ending, value, piece, Refined(closed, segments, errors), errors, *last)
+    refined = Refined(closed, segments, errors, float(told[SHARE_IN_USE]), float(told[LIES]))
+    return FoundShape(ending, value, piece, refined, errors, *last)
 
 
 WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
@@ -288,8 +291,10 @@ class Nearby:
             raise Status.NOT_CONVERGED.because("It lies on the seabed, or hangs, unlike the other.")
         errors = Errors(base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error)
         referee = referee_of(line, water, 0.0, compiled)
-        refined = Refined(closed, len(self._cuts), errors)
+        refined = Refined(closed, len(self._cuts), errors, closed.root.x, closed.grounded)
         problem = search.problem
+        record = problem.work.records[FINE]
+        outcome(take_as_marched, compiled, record, closed.nodes)
         found = outcome(audited, compiled, problem, referee, refined)
         return solution_found(found, problem, line, water, self._settings)
 

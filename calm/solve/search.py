@@ -21,6 +21,7 @@ from calm.physics.referee import (
 )
 from calm.physics.seabed import closure
 from calm.physics.track import Load
+from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, tension_at
 from calm.solve.closing import Closed, Root, coarse_miss, not_closed, place, planned, whole_line
 from calm.solve.locate import locate
 from calm.solve.problem import (
@@ -37,7 +38,7 @@ from calm.solve.problem import (
     Search,
     Unknown,
 )
-from calm.solve.refine import UNKNOWN_ERRORS, Errors, Refined, lowest_node, refine, tension_at
+from calm.solve.refine import Refined, lowest_node, refine, unrefined
 from calm.solve.solution import (
     ABOVE_SURFACE,
     BELOW_SEABED,
@@ -162,7 +163,7 @@ def is_slack(found: FoundShape) -> bool:
 
 def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
     """Return why there is no shape."""
-    refined = Refined(not_closed(ending, value, root), 0, UNKNOWN_ERRORS)
+    refined = unrefined(not_closed(ending, value, root))
     return FoundShape(ending, value, piece, refined, UNKNOWN_ERRORS, 0.0, 0.0, NO_OTHER, 0.0)
 
 

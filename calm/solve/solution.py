@@ -59,7 +59,8 @@ class Solution:
     ----------
     line, water, settings : what was solved; of a tow the line from its free end, and the water as
         the ship sees it
-    position : (k+1, 3) east and north of the anchor or the tow point, up from the surface [m]
+    position : (k+1, 3) east and north of the anchor or the tow point, up from the surface [m];
+        extrapolated from two shapes, as are the forces and tensions
     force : (k+1, 3) sum of all external forces on the free-end side of a node [N]
     element_piece : (k,) piece of the line each element belongs to
     element_clamp : (k,) clamp it is (an element without length), or -1
@@ -84,6 +85,7 @@ class Solution:
         solver came upon, and its unstretched length on the seabed [m]
     frequency : of the cables that strum [Hz]; 0 where none does
     pulled : whether its first end is not free but pulled: a leg of a net
+    marched : the finer of the two shapes, which passed the audit; None if nothing was extrapolated
     """
 
     line: Line
@@ -116,6 +118,7 @@ class Solution:
     closure: float = nan
     moment_residual: float = nan
     pulled: bool = False
+    marched: Trace | None = None
 
     @property
     def surface(self) -> bool:
