@@ -62,6 +62,8 @@ SHORT = 1e-6
 EXACT, ROUGH = 1e-8, 3e-3
 """Change of the mean flow along a segment, as a share of the flow, from which the segment is split
 at a level: of a shape to be closed to the last digits, and of other marches."""
+ROUNDING = 1e-12
+"""Part of a cable that is left by the rounding of sums, and passed over."""
 SLIVER = 0.01
 """Part of a segment above a level, as a share of the segment, at which no chosen segment ends."""
 
@@ -192,7 +194,8 @@ def pass_cable(
     near, expected = how.near, (0.0, 0.0, 0.0)
     share = EXACT if how.given and near == 0.0 else ROUGH
     others = 3 * len(course.loads) + 2 * len(course.stages)
-    while used - first < counts[place] if how.given else done < cable.length or used == first:
+    whole = (1.0 - ROUNDING) * cable.length
+    while used - first < counts[place] if how.given else done < whole or used == first:
         if used == len(cuts):
             return state, hanging, used, nodes, NO_ROOM
         cut = cuts[used]

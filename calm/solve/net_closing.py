@@ -5,16 +5,14 @@ secants, and in a bracket where these do not lead on.
 """
 
 from collections.abc import Callable, MutableSequence, Sequence
-from math import inf, isnan, nan, sqrt
+from math import inf, sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.line import GOES_ON, NO_ROOM
-from calm.physics.passing import FAILURE
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
 from calm.solve import net_march
 from calm.solve.closing import halve
-from calm.solve.least_change import root_near
 from calm.solve.net_march import (
     LANDS,
     STAGE,
@@ -38,8 +36,8 @@ halved once more, `MOST_HALVINGS` times; of one of many, whose segments are long
 MOST_HALVINGS = 3
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
-NARROWEST = 1e-15
-"""Width of the last bracket of a single unknown, as a share of its scale."""
+FLATTEST, MOST_HALVED = -1e-3, 100
+"""Slope of a single unknown, in shares, at which a secant is held, and how many steps it may take."""
 SINGULAR = 1e-14
 """Slope, in shares, below which an unknown is left as it is."""
 CAME_OUT, NOT_CLOSED, TO_AND_FRO, NEEDS_ROOM = range(4)
@@ -97,34 +95,34 @@ def keep(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
         kept[k] = values[k]
 
 
-class OneUnknown(NamedTuple):
-    """Hold what a march is about of a net with one unknown."""
-
-    net: NetProblem
-    x: MutableSequence[float]
-    how: Marching
-
-
-def left_at(about: OneUnknown, value: float) -> float:
-    """What is left at a value of the only unknown; NaN where a march stops."""
-    net, x, how = about.net, about.x, about.how
-    x[0] = value
-    return net.found[0] if left_over(net, x, how, False) == GOES_ON else nan
-
-
 def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough: float) -> int:
-    """`close_net` of a net with one unknown."""
-    about, scale, slope = OneUnknown(net, x, how), net.scale[0], net.slopes[0][0]
-    changes, value, left, slope = root_near(
-        left_at, about, x[0], (slope if slope < 0.0 else -1.0) / scale, x[0] - scale,
-        x[0] + scale, enough, NARROWEST * scale,
-    )  # fmt: skip
-    if isnan(left) and net.lines.work.left[0][FAILURE] == NO_ROOM:
+    """`close_net` of a net with one unknown, of which what is left falls.
+
+    By secants, and by halving a bracket where these do not halve what is left.
+    """
+    above, below, scale, slope = -inf, inf, net.scale[0], net.slopes[0][0]
+    slope, halved = slope if slope < 0.0 else -1.0, True
+    failure = left_over(net, x, how, False)
+    for _ in range(MOST_HALVED):
+        value, left = x[0], net.found[0]
+        if failure != GOES_ON or abs(left) <= enough:
+            break
+        if left > 0.0:
+            above = value
+        else:
+            below = value
+        x[0] = value - left / min(slope, FLATTEST) * scale
+        if below - above < inf and not (halved and above < x[0] < below):
+            x[0] = 0.5 * (above + below)
+        if x[0] == value:
+            break
+        failure = left_over(net, x, how, False)
+        slope = (net.found[0] - left) / (x[0] - value) * scale
+        halved = abs(net.found[0]) < 0.5 * abs(left)
+    net.slopes[0][0] = slope
+    if failure == NO_ROOM:
         return NEEDS_ROOM
-    if value != x[0]:
-        left = left_at(about, value)
-    net.slopes[0][0] = slope * scale
-    return CAME_OUT if changes and abs(left) <= 100.0 * enough else NOT_CLOSED
+    return CAME_OUT if failure == GOES_ON and abs(net.found[0]) <= 100.0 * enough else NOT_CLOSED
 
 
 def close_net(
