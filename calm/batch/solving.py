@@ -145,7 +145,7 @@ def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem
     for k in range(len(sea.intervals) - 1):
         moving |= on.joined[k, 1] != 0.0 or on.joined[k, 2] != 0.0 or on.joined[k, 3] != 0.0
     limits = Limits(
-        given.span, given.depth, given.anchor_height, given.tow_height, given.towed,
+        given.span, given.depth, given.anchor_height,
         given.angle_step, given.coarse_step, given.allowed, given.share_allowed, given.bed,
         given.near, given.length, given.standing, given.lift, given.rides,
         not (moving or given.blown), given.blown, given.refused, given.refused_at_rest,

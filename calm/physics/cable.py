@@ -27,7 +27,7 @@ from calm.physics.profile import (
 )
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
-from calm.physics.strumming import Vibration, amplified_share, strummed
+from calm.physics.strumming import Vibration, amplified_share, strummed, with_beat
 from calm.physics.track import CableStretch
 
 PASSES, STALLED = 200, 50
@@ -116,7 +116,7 @@ def pass_segment(
     The state, and the strain: `NO_BALANCE` where there is none.
     """
     x, y, z, fx, fy, fz, tz, level = state
-    kn, kt, friction, beat = cable.normal_drag, cable.tangential_drag, cable.friction, cable.beat
+    kn, kt, friction = cable.normal_drag, cable.tangential_drag, cable.friction
     compliance, first_knot, end_knot = cable.compliance, cable.first_knot, cable.end_knot
     gravity = sea.gravity
     half = 0.5 * cut
@@ -141,16 +141,14 @@ def pass_segment(
             pull = 0.5 * turning_friction(friction, kt * area, u, v, w)
             ax, ay, az = ax + pull * u, ay + pull * v, az + pull * w
         factor = 1.0
-        if beat == 0.0:
+        if vibration.beat == 0.0:
             c, doubt = 0.0, 1.0
             if near > 0.0 and size > 0.0:
                 c, doubt = few_steps_share(ax, ay, az, 0.5 * kn * area, size, u, v, w, 1)
             if not doubt < LITTLE_TURN:
                 c = drag_share(ax, ay, az, 0.5 * kn * area, u, v, w)
         else:
-            c, factor = vibrating_share(
-                vibration, beat, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz
-            )
+            c, factor = vibrating_share(vibration, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz)
         tx, ty, tz = axis_along(ax, ay, az, c, u, v, w)
         qx, qy, qz = segment_drag(friction, factor * kn * area, kt * area, u, v, w, tx, ty, tz)
         qz += lift
@@ -180,7 +178,6 @@ def pass_segment(
 
 def vibrating_share(
     vibration: Vibration,
-    beat: float,
     ax: float,
     ay: float,
     az: float,
@@ -196,16 +193,15 @@ def vibrating_share(
 
     Parameters
     ----------
-    beat : frequency times diameter [m/s]
+    vibration : of the cable
     tx, ty, tz : its last known axis, of any length. Where the segment's own drag hardly turns it
         the factor there will do for this pass.
     """
     speed = sqrt(u * u + v * v + w * w)
     if speed == 0.0:
         return 0.0, 1.0
-    a1, b1, c1, greatest, _ = vibration
-    here = Vibration(a1, b1, c1, greatest, beat / speed)
-    if k * greatest * speed * speed > 0.1 * sqrt(ax * ax + ay * ay + az * az):
+    here = with_beat(vibration, vibration.beat / speed)
+    if k * vibration.greatest * speed * speed > 0.1 * sqrt(ax * ax + ay * ay + az * az):
         return amplified_share(ax, ay, az, k, here, u, v, w)
     cx, cy, cz = v * tz - w * ty, w * tx - u * tz, u * ty - v * tx
     across = sqrt(cx * cx + cy * cy + cz * cz)
@@ -429,7 +425,7 @@ def segment_length(
         sinking = (1.0 + strain) * fz / tension
         tx, ty, tz = -fx / tension, -fy / tension, -fz / tension
     length, floor = reach, 1e-4 * reach
-    kn = cable.normal_drag * (vibration.greatest if cable.beat > 0.0 else 1.0)
+    kn = cable.normal_drag * (vibration.greatest if vibration.beat > 0.0 else 1.0)
     depth = -z
     for _ in range(2):
         rate = rate_of_turn(cable, kn, sea, depth, level, tension > 0.0, tx, ty, tz, angle_step)

@@ -37,6 +37,7 @@ from calm.physics.line import (
 from calm.physics.profile import Sea, interval_at
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
 from calm.physics.seabed import lay_line
+from calm.physics.strumming import with_beat
 from calm.physics.track import CABLE, ROD, Course
 
 MOST_SEGMENTS = 50_000
@@ -53,6 +54,8 @@ SHORT = 1e-6
 EXACT, ROUGH = 1e-8, 3e-3
 """Change of the mean flow along a segment, as a share of the flow, from which the segment is split
 at a level: of a shape to be closed to the last digits, and of other marches."""
+ROUNDING = 1e-12
+"""Part of a cable that is left by the rounding of sums, and passed over."""
 SLIVER = 0.01
 """Part of a segment above a level, as a share of the segment, at which no chosen segment ends."""
 
@@ -177,12 +180,14 @@ def pass_cable(
     The state; the unstretched length above its touchdown [m], -1 where it has none; how many
     segments have been used and nodes passed so far; whether the march can go on.
     """
-    cable, knots, vibration = course.cables[place], course.knots, course.vibration
+    cable, knots = course.cables[place], course.knots
+    vibration = with_beat(course.vibration, course.vibration.beat * cable.diameter)
     first, done, hanging = used, 0.0, -1.0
     near, expected = how.near, (0.0, 0.0, 0.0)
     share = EXACT if how.given and near == 0.0 else ROUGH
     others = 3 * len(course.loads) + 2 * len(course.stages)
-    while used - first < counts[place] if how.given else done < cable.length or used == first:
+    whole = (1.0 - ROUNDING) * cable.length
+    while used - first < counts[place] if how.given else done < whole or used == first:
         if used == len(cuts):
             return state, hanging, used, nodes, NO_ROOM
         cut = cuts[used]

@@ -144,9 +144,10 @@ def level_within(sea: Sea, hint: int, start: float, end: float, share: float) ->
 def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> bool:
     """Whether a segment that extends beyond a level needs to be split there.
 
-    The flow at the middle of a segment stands for the mean flow along it. If the slope of the
-    current changes by b at a level, the mean is off by b·off²/(2·length): twice that may be at most
-    `share` of the flow at the level.
+    The water at the middle of a segment stands for the mean along it. If the slope of the current
+    changes by b at a level, the mean is off by b·off²/(2·length): twice that may be at most `share`
+    of the flow at the level. The same holds for the density, which jumps where a tow leaves the
+    water.
 
     Parameters
     ----------
@@ -158,7 +159,9 @@ def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> 
     du, dv, dw = below.du - above.du, below.dv - above.dv, below.dw - above.dw
     bend = sqrt(du * du + dv * dv + dw * dw)
     flow = sqrt(below.u * below.u + below.v * below.v + below.w * below.w)
-    return bend * off * off > share * length * flow
+    dense = abs(below.ddensity - above.ddensity)
+    most = share * length
+    return bend * off * off > most * flow or dense * off * off > most * below.density
 
 
 class Profile:

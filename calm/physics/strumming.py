@@ -143,7 +143,8 @@ class Vibration(NamedTuple):
     a1, b1, c1 : a/D = a1 + b1 φ + c1 φ², φ in degrees
     greatest : factor on the cable's Cn at rest [-]
     beat : F D/|V|, the frequency of the cable made dimensionless with its diameter and the speed
-        there; 0.166 sin φ_n in an even flow, whatever its speed [-]
+        there; 0.166 sin φ_n in an even flow, whatever its speed [-]. Of a line it is F [Hz], and
+        of one of its cables F D [m/s]
     """
 
     a1: float
@@ -155,6 +156,12 @@ class Vibration(NamedTuple):
 
 AT_REST = Vibration(0.0, 0.0, 0.0, 1.0, 0.0)
 """Of a line that does not strum."""
+
+
+def with_beat(vibration: Vibration, beat: float) -> Vibration:
+    """The same law of vibration at another beat."""
+    a1, b1, c1, greatest, _ = vibration
+    return Vibration(a1, b1, c1, greatest, beat)
 
 
 def amplitude(vibration: Vibration, angle: float) -> float:

@@ -61,7 +61,7 @@ class CableStretch(NamedTuple):
     friction : number of the law, see `Friction`
     first_knot, end_knot : of its elongation curve among the knots of the track; the same where it
         has none
-    beat : its frequency times its diameter [m/s]; 0 where it does not strum
+    diameter : by which it strums [m]; 0 where it does not
     """
 
     piece: int
@@ -75,7 +75,7 @@ class CableStretch(NamedTuple):
     friction: int
     first_knot: int
     end_knot: int
-    beat: float
+    diameter: float
 
 
 ROD, CABLE, CLAMP = range(3)
@@ -168,14 +168,11 @@ class Track:
         return replace(self, stages=stages, cables=cables)
 
     @staticmethod
-    def of(line: Line, frequency: float = 0.0) -> Track:
-        """Lay out a line, free end first; its head (see `head_count`) becomes one rod.
-
-        `frequency` is that of the cables that strum [Hz].
-        """
+    def of(line: Line) -> Track:
+        """Lay out a line, free end first; its head (see `head_count`) becomes one rod."""
         vibration = AT_REST if line.strumming is None else line.strumming.vibration(0.0)
         track = Track([], [], [], [], vibration)
-        rows, head = _Rows(line, frequency), head_count(line)
+        rows, head = _Rows(line), head_count(line)
         if head:
             track._add_rod(rows, range(head))
         for piece, flexible in enumerate(line.flexible.tolist()[head:], head):
@@ -200,7 +197,7 @@ class Track:
     def _add_cable(self, rows: _Rows, piece: int, curve: ElongationCurve | None) -> None:
         start, end, first = 0.0, rows.length[piece], len(self.knots)
         self.knots.extend(() if curve is None else curve.knots)
-        figures = (*rows.cable[piece], first, len(self.knots), rows.beat[piece])
+        figures = (*rows.cable[piece], first, len(self.knots), rows.strums[piece])
         rounding = 1e-12 * end  # a clamp so near to an end, or to another, is there
         for clamp in rows.clamps.get(piece, ()):
             at = rows.clamp_at[clamp]
@@ -242,11 +239,11 @@ class _Rows:
     length, clamp_at : as in `Line`
     rigid, clamp : of each piece, and of each clamp, what comes after the length in a `Load`
     cable : of each piece, what comes between the length and the knots in a `CableStretch`
-    beat : of each piece, as in `CableStretch`
+    strums : of each piece, the diameter of a `CableStretch`
     clamps : of each piece, from its top
     """
 
-    def __init__(self, line: Line, frequency: float) -> None:
+    def __init__(self, line: Line) -> None:
         pieces, clamps = len(line.length), len(line.clamp_at)
         self.length: list[float] = line.length.tolist()
         self.clamp_at: list[float] = line.clamp_at.tolist()
@@ -262,8 +259,7 @@ class _Rows:
             pieces, line.buoyancy, line.volume, line.normal_drag, line.tangential_drag,
             line.compliance, line.thinning, line.friction.law,
         )  # fmt: skip
-        strums = line.strumming is not None
-        self.beat: list[float] = (frequency * line.diameter * strums).tolist()
+        self.strums: list[float] = (line.diameter * (line.strumming is not None)).tolist()
         self.clamps: dict[int, list[int]] = {}
         on = line.clamp_piece.tolist()
         for clamp in np.argsort(line.clamp_at, kind="stable").tolist():

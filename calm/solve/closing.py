@@ -87,8 +87,7 @@ def whole_line(problem: LineProblem, lands: bool) -> Unknown:
     """
     limits = problem.limits
     height = 0.0 if lands else limits.anchor_height
-    goal = limits.tow_height if limits.towed else height - limits.depth
-    return Unknown(goal, BELOW, limits.rides, lands, len(problem.course.stages))
+    return Unknown(height - limits.depth, BELOW, limits.rides, lands, len(problem.course.stages))
 
 
 def down_to(problem: LineProblem, unknown: Unknown, lower: int) -> Unknown:
@@ -350,13 +349,9 @@ def near_root(
     miss = 0.0
     for side in range(2):
         about = About(problem, unknown, step, cuts, given, record)
-        low, high = 0.0, 1.0
-        if unknown.sought == BELOW:
-            high = problem.limits.span
-            if problem.limits.towed:
-                low, high = -2.0 * high, 2.0 * high
+        high = problem.limits.span if unknown.sought == BELOW else 1.0
         found, x, miss, slope = root_near(
-            search.miss, about, x, slope, low, high, small, narrow * high
+            search.miss, about, x, slope, 0.0, high, small, narrow * high
         )
         if found:
             if x != problem.work.left[LAST] and not isnan(miss):
@@ -364,7 +359,7 @@ def near_root(
             return Root(True, unknown, x, miss, slope)
         whole = unknown.stages == len(problem.course.stages)
         across = whole and unknown.sought <= 0 and len(problem.surfacing) > 0
-        if side > 0 or problem.limits.towed or not across:
+        if side > 0 or not across:
             break
         if unknown.sought == BELOW:
             unknown, x = with_sought(unknown, 0, unknown.rides), 1.0

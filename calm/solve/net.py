@@ -6,16 +6,16 @@ places of the nodes; asked is that every leg ends where it is held and that the 
 balance: see `calm.solve.net_march`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from calm.errors import NoEquilibrium
 from calm.physics.compiled import by_address, outcome
-from calm.physics.line import FAILURES, GOES_ON, Floats, Line, Trace, Water
+from calm.physics.line import FAILURES, GOES_ON, NO_ROOM, Floats, Line, Trace, Water
 from calm.physics.profile import Profile
 from calm.solve import net_closing, net_march
 from calm.solve.finish import refuse_unbalanced
@@ -28,6 +28,7 @@ from calm.solve.problem import CHOSEN, FINE, ROOM
 from calm.solve.solution import Settings, Solution, expect_many, runs_compiled
 
 MORE_ROOM = 8
+Answer = TypeVar("Answer")
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ class NetSearch:
             ending = outcome(ask_now, True, ask, asked)
         else:
             ending = ask_net(asked, 0.0)
-        if task >= net_closing.CLOSE and ending == net_closing.NEEDS_ROOM:
+        if ending == (net_closing.NEEDS_ROOM if task >= net_closing.CLOSE else NO_ROOM):
             raise LacksRoom
         return int(ending), np.array(own)
 
@@ -160,10 +161,10 @@ class NetSearch:
 
         NoEquilibrium: it does not pass the checks.
         """
-        net, legs, before = self.net, [], 0
+        net, legs = self.net, []
         left = np.abs(np.array(net.found) * np.array(net.rows))
         miss = float(left[: net.nodes_at].max())
-        if miss > self.settings.tolerance * self.water.depth:
+        if miss > self.settings.tolerance * net.span:
             raise unsettled(f"a leg misses its end by {miss:.2g} m")
         imbalance = np.linalg.norm(left[net.nodes_at :].reshape(-1, 3), axis=1)
         errors = (
@@ -178,10 +179,8 @@ class NetSearch:
         greatest = max(float(each.tension.max()) for each in legs)
         if len(imbalance) and float(imbalance.max()) > 1e-6 * greatest:
             raise unsettled(f"the pulls at a node leave {imbalance.max():.2g} N over")
-        for each, leg in zip(self.laid, legs, strict=True):
+        for leg in legs:
             refuse_unbalanced(leg.closure, leg.moment_residual)
-            refuse_misplaced(each, leg, errors[0], before)
-            before += len(each.leg.line.length)
         return NetSolution(
             tuple(legs), x[net.nodes_at :].reshape(-1, 3).copy(), imbalance, miss, *errors,
             int(sum(state[net_march.MARCHES] for state in net.state)), x, self.lands,
@@ -211,17 +210,35 @@ def solve_net(
     """
     settings = settings or Settings()
     expect_many(4.0 * len(legs))
-    room = ROOM
+
+    def solved(net: NetSearch) -> NetSolution:
+        found = net.told(net.settled(about(net, near)))
+        before = 0
+        for each, leg in zip(net.laid, found.legs, strict=True):
+            refuse_misplaced(each, leg, found.depth_error, before)
+            before += len(each.leg.line.length)
+        return found
+
     while True:
-        net = NetSearch(legs, nodes, water, settings, room)
         try:
-            return net.told(net.settled(about(net, near)))
-        except LacksRoom:
-            room *= MORE_ROOM
+            return with_room(solved, legs, nodes, water, settings)
         except NoEquilibrium:
             if (moving := stirred(water)) is None:
                 raise
             water = moving
+
+
+def with_room(
+    solve: Callable[[NetSearch], Answer],
+    legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
+) -> Answer:  # fmt: skip
+    """Return what becomes of a search, with room for as many segments as it takes."""
+    room = ROOM
+    while True:
+        try:
+            return solve(NetSearch(legs, nodes, water, settings, room))
+        except LacksRoom:
+            room *= MORE_ROOM
 
 
 def about(net: NetSearch, near: NetSolution | None) -> Floats:

@@ -1,6 +1,7 @@
 """A net of legs closed, as laws: Newton's method on segments that stay.
 
-Slopes are kept by Broyden's rule while they lead on.
+Slopes are kept by Broyden's rule while they lead on. A net with a single unknown is closed by
+secants, and in a bracket where these do not lead on.
 """
 
 from collections.abc import Callable, MutableSequence, Sequence
@@ -35,6 +36,8 @@ halved once more, `MOST_HALVINGS` times; of one of many, whose segments are long
 MOST_HALVINGS = 3
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
+FLATTEST, MOST_HALVED = -1e-3, 100
+"""Slope of a single unknown, in shares, at which a secant is held, and how many steps it may take."""
 SINGULAR = 1e-14
 """Slope, in shares, below which an unknown is left as it is."""
 CAME_OUT, NOT_CLOSED, TO_AND_FRO, NEEDS_ROOM = range(4)
@@ -92,6 +95,36 @@ def keep(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
         kept[k] = values[k]
 
 
+def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough: float) -> int:
+    """`close_net` of a net with one unknown, of which what is left falls.
+
+    By secants, and by halving a bracket where these do not halve what is left.
+    """
+    above, below, scale, slope = -inf, inf, net.scale[0], net.slopes[0][0]
+    slope, halved = slope if slope < 0.0 else -1.0, True
+    failure = left_over(net, x, how, False)
+    for _ in range(MOST_HALVED):
+        value, left = x[0], net.found[0]
+        if failure != GOES_ON or abs(left) <= enough:
+            break
+        if left > 0.0:
+            above = value
+        else:
+            below = value
+        x[0] = value - left / min(slope, FLATTEST) * scale
+        if below - above < inf and not (halved and above < x[0] < below):
+            x[0] = 0.5 * (above + below)
+        if x[0] == value:
+            break
+        failure = left_over(net, x, how, False)
+        slope = (net.found[0] - left) / (x[0] - value) * scale
+        halved = abs(net.found[0]) < 0.5 * abs(left)
+    net.slopes[0][0] = slope
+    if failure == NO_ROOM:
+        return NEEDS_ROOM
+    return CAME_OUT if failure == GOES_ON and abs(net.found[0]) <= 100.0 * enough else NOT_CLOSED
+
+
 def close_net(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
@@ -103,6 +136,8 @@ def close_net(
     enough : what may be left, in shares
     known : whether the slopes are about right already, and need not be found first
     """
+    if len(x) == 1:
+        return close_one(net, x, how, enough)
     failure = left_over(net, x, how, not known)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
@@ -113,6 +148,8 @@ def close_on(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
     """`close_net` from unknowns that were marched last, on these segments."""
+    if len(x) == 1:
+        return close_one(net, x, how, enough)
     size, trial, fresh, plain, left = len(x), net.trial, not known, known, net.kept
     keep(net.found, left)
     for _ in range(MOST_STEPS):
@@ -232,10 +269,7 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
         if ending != CAME_OUT:
             return ending
         tension = worth * moved_ends(net, x, FINE)
-        if (
-            net.errors[DEPTH_ERROR] <= worth * net.lines.limits.depth
-            and net.errors[TENSION_ERROR] <= tension
-        ):
+        if net.errors[DEPTH_ERROR] <= worth * net.span and net.errors[TENSION_ERROR] <= tension:
             break
         step *= 0.5
     return CAME_OUT

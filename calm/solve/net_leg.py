@@ -51,12 +51,15 @@ class LegEnd:
     place : east, north and up [m] of an end that is held; None where it is not
     seabed : height of the seabed below an anchor [m]; -inf where the end stands on none
     deeper : how much deeper it is there per metre to the east and to the north [-]
+    past : current past an end that is held, whose vortices set the frequency of the leg's cables,
+        where these strum [m/s]
     """
 
     node: int = -1
     place: tuple[float, float, float] | None = None
     seabed: float = -inf
     deeper: tuple[float, float] = (0.0, 0.0)
+    past: tuple[float, float, float] | None = None
 
     @property
     def free(self) -> bool:
@@ -95,6 +98,14 @@ class LaidLeg:
     def unknowns(self) -> int:
         return 3 if self.kind == net_march.PULLED else 1
 
+    @property
+    def shedding(self) -> tuple[float, float, float, float]:
+        """Strouhal number over the diameter at its end [1/m] and current there, as in `LegRow`."""
+        model, diameter, past = self.line.strumming, self.line.diameter, self.ends[1].past
+        if model is None or past is None or not diameter.any():
+            return 0.0, 0.0, 0.0, 0.0
+        return model.strouhal / float(diameter[diameter > 0.0][-1]), *past
+
     @staticmethod
     def of(leg: NetLeg, water: Water, settings: Settings, rough: bool) -> LaidLeg:
         """Lay out a leg; `rough` as of `problem_of`."""
@@ -108,16 +119,22 @@ class LaidLeg:
         problem = problem_of(line, water, settings, compiled=False, rough=rough, room=1)
         return LaidLeg(leg, line, kind, problem)
 
-    def row(self, first: int) -> LegRow:
-        """The leg in numbers; `first` is the first of its unknowns."""
+    def row(self, first: int, span: float) -> LegRow:
+        """The leg in numbers.
+
+        Parameters
+        ----------
+        first : of its unknowns
+        span : as of `NetProblem`
+        """
         (start, end), (course, limits) = self.ends, (self.problem.course, self.problem.limits)
         length, counted = self.leg.line.length, (len(course.stages), course.landing)
         rough = ROUGH_REACH * limits.depth if limits.near > 0.0 else 0.0
         return LegRow(
             self.kind, first, start.node, end.node, self.leg.lower.seabed, *self.bed[:2],
-            max(float(length.sum()) * 0.01, min(0.01 * limits.depth, 50.0) * 0.1, rough),
+            max(float(length.sum()) * 0.01, min(0.01 * span, 50.0) * 0.1, rough),
             self.stands, self.highest,
-            int(limits.rides), *counted, len(course.cables), len(self.problem.surfacing),
+            int(limits.rides), *self.shedding, *counted, len(course.cables), len(self.problem.surfacing),
             len(self.problem.hull), len(self.line.length),
         )  # fmt: skip
 
@@ -147,6 +164,8 @@ def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> N
     length = max(float(each.leg.line.length.sum()) for each in laid)
     lifts = [np.abs(each.leg.line.net_force(np.zeros(len(each.leg.line.length)))) for each in laid]
     force = max(1.0, *(float(lift.sum()) for lift in lifts))
+    stands = any(isfinite(each.leg.lower.seabed) for each in laid)
+    span = problems[0].limits.depth if stands else length
     scale, rows = np.full(size, length), np.full(size, length)
     rows[firsts[-1] :] = force
     for first, each in zip(firsts, laid, strict=False):
@@ -197,12 +216,12 @@ def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> N
     )  # fmt: skip
     places = [[*(end.place or (0.0, 0.0, 0.0))] for each in laid for end in each.ends]
     return NetProblem(
-        listed(LegRow, [each.row(at) for at, each in zip(firsts, laid, strict=False)]), lines,
+        listed(LegRow, [each.row(at, span) for at, each in zip(firsts, laid, strict=False)]), lines,
         taken(np.array(places).reshape(-1, 6)), zeros(count, net_march.OF_LEG), zeros(count, 6),
         zeros(count, pieces, of=int), zeros(count, pieces, of=int), zeros(count, pieces + 1, 4),
         zeros(size), zeros(size), zeros(size, size), zeros(size), zeros(size),
         zeros(size, size + 1), zeros(size, of=int), taken(scale), taken(rows), zeros(2),
-        firsts[-1], length, force,
+        firsts[-1], length, force, span,
     )  # fmt: skip
 
 
@@ -219,6 +238,7 @@ def leg_found(
     errors : of depths [m] and of tensions [N]
     """
     state, (deep, taut) = net.state[i], errors
+    frequency = float(state[net_march.FREQUENCY])
     work = SearchArrays(*(column[i] for column in net.lines.work))
     course = laid.problem.course._replace(loads=net.lines.course.loads[i])
     problem = laid.problem._replace(course=course, work=work)
@@ -236,8 +256,8 @@ def leg_found(
     outcome(take_as_marched, compiled, work.records[FINE], closed.nodes)
     segments = int(sum(work.counts[HALVED]))
     refined = Refined(closed, segments, told, share, closed.grounded)
-    found = solution_of(problem, laid.line, water, settings, refined, told)
-    referee = referee_of(carried_by(laid.line, problem), water, 0.0, compiled)
+    found = solution_of(problem, laid.line, water, settings, refined, told, frequency)
+    referee = referee_of(carried_by(laid.line, problem), water, frequency, compiled)
     shape = RefereeShape(
         work.records[FINE], closed.nodes, closed.hanging, referee.first, referee.last
     )

@@ -5,7 +5,7 @@ nodes; slopes are differences of marches on the same segments.
 """
 
 from collections.abc import MutableSequence, Sequence
-from math import degrees, inf
+from math import degrees, inf, sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.compiled import set_row
@@ -14,6 +14,7 @@ from calm.physics.line import GOES_ON, Bed, Record, off_bed
 from calm.physics.passing import FAILURE, HANGING, LANDED, NODES, How, Z, pass_line
 from calm.physics.passing import GROUNDED as LIES
 from calm.physics.profile import Sea
+from calm.physics.strumming import with_beat
 from calm.physics.track import Course, Load
 from calm.solve.closing import place
 from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, SearchArrays, Unknown
@@ -22,11 +23,14 @@ STANDING, HANGING_DOWN, PULLED = range(3)
 """Legs marched from a free upper end, from a free lower end, and from an upper end that is held."""
 JUMP = 1e-6
 """Share by which an unknown is moved for the slopes."""
-LANDS, STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG = range(7)
+LANDS, STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG, FREQUENCY, YIELD = range(9)
 """Of a leg as it was marched last: whether it may land, the stage where it did or -1, its length on
 the seabed [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and
-those of them that hang."""
-OF_LEG = 7
+those of them that hang; the frequency of its cables [Hz], and how what that lacks changes with it."""
+OF_LEG = 9
+ROUGHLY_SETTLED, SETTLED, MOST_TURNS = 1e-3, 1e-9, 20
+"""What a frequency may lack, as a share of it, where segments are chosen and where they are given,
+and how often a leg is marched for it."""
 
 
 class LegRow(NamedTuple):
@@ -42,6 +46,9 @@ class LegRow(NamedTuple):
     stands : length of a float that shows how much of it is out of the water [m]
     highest : how high it may come [m]
     rides : as in `Limits`
+    sheds : Strouhal number over diameter at its end, where vortices set the frequency of a leg that
+        strums [1/m]; 0 of one that does not
+    past_east, past_north, past_up : current there [m/s]
     stages, landing, cables, surfacing, rows, pieces : how many there are of each, see `Course`
     """
 
@@ -56,6 +63,10 @@ class LegRow(NamedTuple):
     stands: float
     highest: float
     rides: int
+    sheds: float
+    past_east: float
+    past_north: float
+    past_up: float
     stages: int
     landing: int
     cables: int
@@ -80,6 +91,7 @@ class NetProblem(NamedTuple):
     errors : of depths [m] and tensions [N]
     nodes_at : first unknown of the nodes
     length, force : of the longest leg [m]; a typical one [N]
+    span : what errors of depths are measured by [m]
     """
 
     legs: Sequence[LegRow]
@@ -103,6 +115,7 @@ class NetProblem(NamedTuple):
     nodes_at: int
     length: float
     force: float
+    span: float
 
 
 class Marching(NamedTuple):
@@ -123,7 +136,7 @@ def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
     course, work = lines.course, lines.work
     course = Course(
         course.stages[i][: leg.stages], course.loads[i], course.cables[i][: leg.cables],
-        course.knots[i], course.vibration, leg.landing,
+        course.knots[i], with_beat(course.vibration, net.state[i][FREQUENCY]), leg.landing,
     )  # fmt: skip
     afloat = SurfaceFloat(
         own.form, own.height, own.area, own.weight, own.lift, own.surface_drag, own.wind_east,
@@ -190,7 +203,29 @@ def begun(net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]) -> 
 
 
 def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg from what is unknown of it; how that ended, see `calm.physics.line`."""
+    """March a leg from what is unknown of it; how that ended, see `calm.physics.line`.
+
+    One that strums until it does at the frequency of the vortices at its end. That falls as the
+    frequency assumed rises, since more drag lifts the line: there is one, found by secants.
+    """
+    leg, state = net.legs[i], net.state[i]
+    failure = march_once(net, i, x, how)
+    before, lacked, settled = 0.0, 0.0, SETTLED if how.given else ROUGHLY_SETTLED
+    for turn in range(MOST_TURNS if leg.sheds > 0.0 else 0):
+        frequency = state[FREQUENCY]
+        lacking = shed_by(leg, net.passed[i]) - frequency
+        if failure != GOES_ON or abs(lacking) <= settled * frequency:
+            break
+        if turn > 0 and frequency != before:
+            state[YIELD] = (lacking - lacked) / (frequency - before)
+        before, lacked = frequency, lacking
+        state[FREQUENCY] = frequency - lacking / min(state[YIELD], -1.0)
+        failure = march_once(net, i, x, how)
+    return failure
+
+
+def march_once(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
+    """March a leg, at the frequency at which it was marched last where it strums."""
     leg, state, problem = net.legs[i], net.state[i], leg_of(net, how.sea, i)
     course, work = problem.course, problem.work
     depth, out = begun(net, problem, i, x)
@@ -211,6 +246,20 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
     passed[2] = left[Z]
     passed[3], passed[4], passed[5] = record[3][n], record[4][n], record[5][n]
     return GOES_ON
+
+
+def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
+    """The frequency F = St |V| sin φ/D of the vortices at the end of a leg [Hz].
+
+    φ is the angle between the current and the force there, see `calm.physics.strumming`.
+    """
+    _, _, _, fx, fy, fz = passed
+    u, v, w = leg.past_east, leg.past_north, leg.past_up
+    cx, cy, cz = v * fz - w * fy, w * fx - u * fz, u * fy - v * fx
+    tension = sqrt(fx * fx + fy * fy + fz * fz)
+    if tension == 0.0:
+        return 0.0
+    return leg.sheds * sqrt(cx * cx + cy * cy + cz * cz) / tension
 
 
 def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, column: int) -> None:

@@ -86,8 +86,6 @@ class Limits(NamedTuple):
     span : what lengths are measured by: the water depth, in a tow the line out [m]
     depth : of the water [m]
     anchor_height : [m]
-    tow_height : of the tow point above the surface [m]; of a mooring 0
-    towed : whether the line is towed
     angle_step, coarse_step : turn of one segment [rad]
     allowed : the greatest miss of a solution [m]
     share_allowed : how well the share of a float's buoyancy in use is found [-]
@@ -104,8 +102,6 @@ class Limits(NamedTuple):
     span: float
     depth: float
     anchor_height: float
-    tow_height: float
-    towed: bool
     angle_step: float
     coarse_step: float
     allowed: float
@@ -232,8 +228,6 @@ def problem_of(
     settings: Settings,
     *,
     compiled: bool,
-    frequency: float = 0.0,
-    tow_height: float = 0.0,
     track: Track | None = None,
     rough: bool = False,
     room: int = ROOM,
@@ -244,14 +238,12 @@ def problem_of(
     Parameters
     ----------
     compiled : whether compiled laws are to take it: its sequences are arrays
-    frequency : of the cables that strum [Hz]
-    tow_height : of the tow point above the surface [m]
     track : the line laid out, where it is known
     rough : whether it is solved as one of many, without an audit
     room : for how many segments
     intervals : of other water that it is to be solved in, at most
     """
-    track = track or Track.of(line, frequency)
+    track = track or Track.of(line)
     profile = Profile(water)
     span = float(line.length.sum()) if line.towed else water.depth
     floating = None if line.towed else line.floating
@@ -273,8 +265,6 @@ def problem_of(
         span=float(span),
         depth=float(water.depth),
         anchor_height=float(line.anchor_height),
-        tow_height=float(tow_height),
-        towed=bool(line.towed),
         angle_step=float(settings.angle_step),
         coarse_step=max(COARSE_STEP, 2.0 * settings.angle_step),
         allowed=float((ROUGH if rough else settings.tolerance) * span),

@@ -1,19 +1,27 @@
-"""A towed line: how deep its free end runs behind a ship that steams on steadily."""
+"""A towed line: how deep its free end runs behind a ship that steams on steadily.
+
+It is a leg of a net that is held at the ship, see `calm.solve.net`. What is found here is which of
+its equilibria is closed: rough marches from the deepest free end upwards show where its upper end
+comes to the ship, each at the frequency that a line strums with there.
+"""
 
 from dataclasses import dataclass, replace
-from math import nan
+from functools import partial
+from math import isnan, nan
 
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import outcome
 from calm.physics.hull import AIR_DENSITY
-from calm.physics.line import Floats, Line, MarchError, Water
-from calm.solve.finish import refuse_unbalanced, solution_of
+from calm.physics.line import GOES_ON, Floats, Line, Trace, Water
+from calm.physics.passing import FAILURE
+from calm.solve import net_closing
+from calm.solve.finish import march_stopped
 from calm.solve.least_change import bracketed_root
-from calm.solve.search import audit_shape, stated_errors
-from calm.solve.solution import OtherEquilibrium, Settings, Solution, Status
-from calm.solve.towing import Towed, Waterline, half_out
+from calm.solve.net import NetSearch, NetSolution, with_room
+from calm.solve.net_leg import LegEnd, NetLeg
+from calm.solve.problem import CHOSEN, COARSE_STEP, FINE
+from calm.solve.solution import OtherEquilibrium, Settings, Solution, Status, expect_many
 
 SURFACE_BAND = 1e-7
 """Thickness of the band from water to air, as a share of the line out."""
@@ -22,13 +30,16 @@ SCAN = 16
 FARTHER = 1.05
 """In an even current, how far up the other side of the root is tried, in misses: where levels cut a
 line a march is not quite the same at every depth."""
-FREQUENCY_TOLERANCE = 1e-8
-PAY_OUT = "Pay out more line."
+ROUGHLY = 1e-3
+"""What is left of a rough root, as a share of the line out."""
 NEARLY_OUT = 2e-3
 """Depth at which a line that will not close is taken to be leaving the water, as a share of it."""
+WIDEST_JUMP, NARROW_JUMP = 0.02, 1e-9
+"""How far from a root that does not close a jump is sought, and how exactly, in lines out."""
+PAY_OUT = "Pay out more line."
+RIDE_CLEAR = "Pay out or take in some line, so that it is clear of the surface."
 AT_SURFACE = "The towed line comes up to the surface behind the ship."
 STAY_BELOW = "Give it more weight or a depressor, or tow slower."
-_ROUNDS = 20
 
 
 @dataclass(frozen=True)
@@ -73,36 +84,20 @@ def solve_tow(
         ``above-surface`` where a part would leave the water, ``grounded`` where one would touch
         the seabed, ``not-converged`` where no shape passes every check.
     """
-    towed = replace(line.reversed(), towed=True)
+    if not line.length.any():
+        raise Status.NO_EQUILIBRIUM.because("The towed line has no length.", advice=PAY_OUT)
+    _refuse_limp(line.reversed())
+    expect_many(1.0)
     water = _relative(line, water, towing)
-    tow = Towed(towed, water, settings or Settings(), towing.height)
-    found = False
-    try:
-        if tow.span == 0.0:
-            raise Status.NO_EQUILIBRIUM.because("The towed line has no length.", advice=PAY_OUT)
-        _refuse_limp(towed)
-        other_depth = _locate(tow, towing)
-        found = True
-        if towed.strumming is not None and towed.diameter.any():
-            _set_frequency(tow)
-        refined = tow.refine(lambda cuts, record: _polish(tow, towing, cuts, record))
-    except (MarchError, NoEquilibrium) as failure:
-        if found and not towing.in_air and _surfaces(tow):
-            raise Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW) from failure
-        if isinstance(failure, MarchError):
-            message = f"The march stopped: {failure}."
-            raise Status.NOT_CONVERGED.because(message) from failure
-        if found and towing.height > 0.0 and not towing.in_air:
-            raise half_out(tow) or failure from failure
-        raise
-    problem = tow.search.problem
-    errors = outcome(stated_errors, tow.compiled, problem, refined)
-    solution = solution_of(problem, towed, water, tow.settings, refined, errors, tow.frequency)
-    _refuse_misplaced(solution, towing)
-    closure, moment = outcome(audit_shape, tow.compiled, problem, tow.referee, refined.closed)
-    refuse_unbalanced(closure, moment)
+    past = tuple(map(float, water.current_at(np.zeros(()))))
+    ship = LegEnd(place=(0.0, 0.0, towing.height), past=past)
+    leg = NetLeg(line, ship, LegEnd())
+    solve = partial(_solved, towing=towing)
+    found, other_depth = with_room(solve, [leg], 0, water, settings or Settings())
     other = None if other_depth is None else OtherEquilibrium(other_depth, 0.0, 1.0, nan, nan)
-    return replace(solution, closure=closure, moment_residual=moment, other=other)
+    solution = replace(found.legs[0], miss=found.miss, other=other)
+    _refuse_misplaced(solution, towing)
+    return solution
 
 
 def _refuse_limp(towed: Line) -> None:
@@ -147,122 +142,153 @@ def _relative(line: Line, water: Water, towing: Towing) -> Water:
     )
 
 
-def _locate(tow: Towed, towing: Towing) -> float | None:
-    """Find the deepest coarse root; the depth of the free end at the next one above [m]."""
-    shallowest = -towing.height - tow.span if towing.in_air else 0.0
-    depth = max(tow.span - towing.height, tow.span * 1e-3)
-    low = tow.coarse_miss(depth)
+class _Marches:
+    """Marches of a towed line at an angle step, each with its free end at a depth."""
+
+    def __init__(self, net: NetSearch, step: float) -> None:
+        self.net, self.span, self.step = net, net.net.length, step
+        self.allowed = net.settings.tolerance * self.span
+
+    @property
+    def shape(self) -> Trace:
+        """The shape that was marched last."""
+        return self.net.shape(0, self.x)
+
+    def miss(self, _: None, depth: float) -> float:
+        """How high the line ends above the tow point [m]; NaN where the march stops."""
+        self.x = np.array([depth])
+        how = self.net.marching(self.step, CHOSEN, FINE, given=False)
+        self.failure, _same = self.net.asked(net_closing.MARCH, self.x, how)
+        return float(self.net.net.found[0]) * self.span if self.failure == GOES_ON else nan
+
+
+def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
+    """Return the deepest equilibrium, and the depth of the free end at the next one above [m]."""
+    rough = _Marches(net, max(COARSE_STEP, 2.0 * net.settings.angle_step))
+    start, other_depth = _locate(rough, towing)
+    try:
+        x = net.settled(np.array([start]))
+    except NoEquilibrium as failure:
+        raise _why_not(rough, start, towing) from failure
+    return net.told(x), other_depth
+
+
+def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
+    """Find the depth of the free end at the deepest root, and that of the next one above [m]."""
+    span, found = rough.span, []
+    shallowest = -towing.height - span if towing.in_air else 0.0
+    depth = max(span - towing.height, 1e-3 * span)
+    low = rough.miss(None, depth)
     while low > 0.0:  # the line stretches
-        if depth > 100.0 * tow.span:
+        if depth > 100.0 * span:
             raise Status.NOT_CONVERGED.because("The line stretches without end.")
         depth += 2.0 * low
-        low = tow.coarse_miss(depth)
-    found = False
-    for upper in _upwards(tow, depth, low, shallowest):
-        try:
-            high = tow.coarse_miss(upper)
-        except MarchError:
+        low = rough.miss(None, depth)
+    _refuse_stopped(rough, low)
+    for upper in _upwards(rough.net.water, depth, low, span, shallowest):
+        high = rough.miss(None, upper)
+        if isnan(high) and found:
+            break
+        if isnan(high) and upper == shallowest and not towing.in_air:
             # a line that drifts at the surface is now in the water, now in the air
-            if upper != shallowest or towing.in_air or found:
-                raise
-            upper = NEARLY_OUT * tow.span
-            if tow.coarse_miss(upper) <= 0.0:
-                raise Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW) from None
-            high = tow.coarse_miss(upper)
-        if upper == shallowest and -tow.allowed <= high <= 0.0:
-            high = tow.allowed  # at the surface, to within what is allowed
+            upper = NEARLY_OUT * span
+            high = rough.miss(None, upper)
+            if high <= 0.0:
+                raise Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW)
+        _refuse_stopped(rough, high)
+        if upper == shallowest and -rough.allowed <= high <= 0.0:
+            high = rough.allowed  # at the surface, to within what is allowed
         if (low <= 0.0) is not (high <= 0.0):
-            root = tow.coarse_root(upper, high, depth, low)
-            if found:
-                return root.x
-            tow.root, found = root, True
+            found.append(_root(rough, upper, high, depth, low))
+            if len(found) > 1:
+                break
         depth, low = upper, high
-    if not found and tow.span <= towing.height:
+    if found:
+        return found[0], found[1] if len(found) > 1 else None
+    if span <= towing.height:
         raise Status.ABOVE_SURFACE.because(
-            f"The line, {tow.span:.2f} m long, does not reach the water from "
+            f"The line, {span:.2f} m long, does not reach the water from "
             f"{towing.height:g} m above it.",
             advice=PAY_OUT,
         )
-    if not found:
-        raise Status.ABOVE_SURFACE.because(
-            "The towed body would come out of the water: even at the surface the line's upper end "
-            f"is {-low:.2f} m below the tow point.",
-            advice=STAY_BELOW,
-        )
-    return None
+    raise Status.ABOVE_SURFACE.because(
+        "The towed body would come out of the water: even at the surface the line's upper end "
+        f"is {-low:.2f} m below the tow point.",
+        advice=STAY_BELOW,
+    )
 
 
-def _upwards(tow: Towed, depth: float, low: float, shallowest: float) -> list[float]:
+def _upwards(water: Water, depth: float, low: float, span: float, shallowest: float) -> list[float]:
     """Depths to try, from below; where nothing changes with depth the miss itself is the way."""
-    water = tow.water
     if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
         steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()
         return steps
-    return [max(depth + FARTHER * low - tow.allowed, shallowest)]
+    return [max(depth + FARTHER * low - NARROW_JUMP * span, shallowest)]
 
 
-def _set_frequency(tow: Towed) -> None:
-    """Find the coarse root of a line that strums at the frequency its angle at the ship gives it.
+def _root(rough: _Marches, upper: float, high: float, depth: float, low: float) -> float:
+    """Root of the miss between two depths."""
+    span = rough.span
+    x, left, slope = bracketed_root(
+        rough.miss, None, upper, high, depth, low, ROUGHLY * span, NARROW_JUMP * span
+    )
+    _refuse_stopped(rough, left)
+    return min(max(x - left / slope, upper), depth) if slope < 0.0 else x
 
-    The frequency that follows falls as the one assumed rises, since more drag lifts the line: so
-    there is one.
+
+def _refuse_stopped(rough: _Marches, miss: float) -> None:
+    if isnan(miss):
+        raise march_stopped(rough.failure)
+
+
+def _why_not(rough: _Marches, start: float, towing: Towing) -> NoEquilibrium:
+    """Why a tow does not close near a rough root."""
+    stopped = rough.net.net.lines.work.left[0][FAILURE]
+    failure = Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
+    if stopped != GOES_ON:
+        failure = march_stopped(stopped)
+    if towing.in_air:
+        return failure
+    nearly_out = NEARLY_OUT * rough.span
+    surfaces = start < nearly_out
+    if not isnan(rough.miss(None, start)):
+        height = rough.shape.position[:, 2]
+        surfaces = bool(height[: int(np.argmin(height)) + 1].max() > -nearly_out)
+    if surfaces:
+        return Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW)
+    return _half_out(_Marches(rough.net, rough.net.settings.angle_step), start) or failure
+
+
+def _half_out(fine: _Marches, root: float) -> NoEquilibrium | None:
+    """Return why a tow does not close where its miss jumps; None where it does not jump there.
+
+    A rigid piece or a clamp is in the water or out of it, by its middle. Where the line is too
+    high with one in the water and too low with it out, it would ride half out: no equilibrium.
     """
-
-    def excess(_: None, frequency: float) -> float:
-        tow.strum(frequency)
-        tow.find_coarser()
-        tow.coarse_miss(tow.root.x)
-        return _frequency(tow) - frequency
-
-    most = excess(None, 0.0)
-    if most > 0.0:
-        frequency, *_ = bracketed_root(
-            excess, None, 0.0, most, most, excess(None, most), 1e-3 * most, 1e-9 * most
-        )
-        tow.strum(frequency)
-
-
-def _polish(tow: Towed, towing: Towing, cuts: int, record: int) -> None:
-    """Close the line on cuts at its own frequency, found by secants, with a node at the surface."""
-    tow.polish(cuts, record)
-    waterline = None
-    if towing.height > 0.0 and not towing.in_air:
-        waterline = Waterline(tow, max(tow.allowed, SURFACE_BAND * tow.span))
-    before, lacked, slope = 0.0, 0.0, -1.0
-    for _ in range(_ROUNDS):
-        frequency, lacking = tow.frequency, 0.0
-        if frequency > 0.0:
-            lacking = _frequency(tow) - frequency
-        moved = waterline is not None and waterline.moves(cuts, record)
-        if abs(lacking) <= FREQUENCY_TOLERANCE * frequency and not moved:
-            return
-        if before and frequency != before:
-            slope = min((lacking - lacked) / (frequency - before), -1.0)
-        before, lacked = frequency, lacking
-        tow.strum(frequency - lacking / slope)
-        tow.polish(cuts, record)
-    raise Status.NOT_CONVERGED.because("The frequency of the strumming line does not settle.")
-
-
-def _frequency(tow: Towed) -> float:
-    """F = 0.166 V₀ sin φ_n/D [Hz], from the angle to the flow at the ship of the last march."""
-    law, line = tow.line.strumming, tow.line
-    assert law is not None
-    diameter = float(line.diameter[line.diameter > 0.0][-1])
-    flow = tow.water.current_at(np.array(0.5 * SURFACE_BAND * tow.span))
-    force = np.array(tow.force)
-    across = float(np.linalg.norm(np.cross(flow, force)) / np.linalg.norm(force))
-    return law.strouhal * across / diameter
-
-
-def _surfaces(tow: Towed) -> bool:
-    """Return whether the line comes near to the surface on the far side of its lowest point."""
-    try:
-        trace = tow.shape_at(tow.root.x, tow.coarse_step)
-    except MarchError:
-        return tow.root.x < NEARLY_OUT * tow.span
-    height = trace.position[:, 2]
-    return bool(height[: int(np.argmin(height)) + 1].max() > -NEARLY_OUT * tow.span)
+    span, reach = fine.span, 1e-4 * fine.span
+    while not fine.miss(None, root - reach) > 0.0 >= fine.miss(None, root + reach):
+        reach *= 2.0
+        if reach > WIDEST_JUMP * span:
+            return None
+    high, low = root - reach, root + reach
+    while low - high > NARROW_JUMP * span:
+        middle = 0.5 * (high + low)
+        high, low = (middle, low) if fine.miss(None, middle) > 0.0 else (high, middle)
+    above, below = fine.miss(None, high), fine.miss(None, low)
+    shape, flexible = fine.shape, fine.net.laid[0].line.flexible
+    single = np.flatnonzero(~flexible[shape.piece] | (shape.clamp >= 0))
+    heights = 0.5 * np.abs(shape.position[single, 2] + shape.position[single + 1, 2])
+    if not above - below > fine.allowed or not heights.min(initial=span) < fine.allowed:
+        return None
+    element = single[int(np.argmin(heights))]
+    what = "{piece}" if shape.clamp[element] < 0 else "a clamp on {piece}"
+    return Status.NO_EQUILIBRIUM.because(
+        f"The line closes neither with {what} in the water nor with it out: its upper end "
+        f"would be {above:.2g} m above the tow point or {-below:.2g} m below. It would "
+        "ride half out of the water, which CALM does not solve.",
+        int(shape.piece[element]),
+        RIDE_CLEAR,
+    )
 
 
 def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
