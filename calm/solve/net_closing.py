@@ -11,18 +11,9 @@ from typing import Any, NamedTuple
 from calm.physics.line import GOES_ON, NO_ROOM
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
-from calm.solve import net_march
 from calm.solve.closing import halve
-from calm.solve.net_march import (
-    LANDS,
-    STAGE,
-    Marching,
-    NetProblem,
-    above_bed,
-    left_over,
-    leg_of,
-    place_of,
-)
+from calm.solve.net_march import left_over, take_scales
+from calm.solve.net_problem import COUNT, Marching, NetProblem, leg_of, place_of
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 
 MOST_STEPS, HALVINGS = 60, 9
@@ -34,25 +25,26 @@ WORTH, WORTH_OF_MANY = 5e-5, 2e-5
 """Errors, as shares of the water depth and of the greatest tension, above which segments are
 halved once more, `MOST_HALVINGS` times; of one of many, whose segments are longer."""
 MOST_HALVINGS = 3
+CHOICES = 2
+"""How often segments are chosen: the first time where a shape only about is."""
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
 """Slope of a single unknown, in shares, at which a secant is held, and how many steps it may take."""
 SINGULAR = 1e-14
 """Slope, in shares, below which an unknown is left as it is."""
-CAME_OUT, NOT_CLOSED, TO_AND_FRO, NEEDS_ROOM = range(4)
-"""How a net ends: closed; not; a leg alternately lies and lifts off; more segments than there is
-room for."""
+CAME_OUT, NOT_CLOSED, NEEDS_ROOM = range(3)
+"""How a net ends: closed; not; more segments than there is room for."""
 
 DEPTH_ERROR, TENSION_ERROR = range(2)
 
 
 def find_way(net: NetProblem, found: Sequence[float]) -> float:
-    """Write the step that brings to nothing what is left, by its slopes; its greatest share.
+    """Write the step that brings to nothing what is left, by its slopes; its size, in shares.
 
     By elimination, column by column. Unknowns of which the slopes say nothing stay.
     """
-    size, paper, row, most = len(found), net.paper, 0, 0.0
+    size, paper, row = len(found), net.paper, 0
     for r in range(size):
         for c in range(size):
             paper[r][c] = net.slopes[r][c]
@@ -77,8 +69,7 @@ def find_way(net: NetProblem, found: Sequence[float]) -> float:
     for k in range(size):
         row = net.order[k]
         net.way[k] = 0.0 if row < 0 else paper[row][size] / paper[row][k]
-        most = max(most, abs(net.way[k]))
-    return most
+    return sqrt(squares(net.way))
 
 
 def squares(values: Sequence[float]) -> float:
@@ -138,7 +129,10 @@ def close_net(
     """
     if len(x) == 1:
         return close_one(net, x, how, enough)
-    failure = left_over(net, x, how, not known)
+    failure = left_over(net, x, how, False)
+    if failure == GOES_ON and not known:
+        take_scales(net, x)
+        failure = left_over(net, x, how, True)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
     return close_on(net, x, how, enough, known)
@@ -196,27 +190,6 @@ def close_on(
     return CAME_OUT
 
 
-def lies_otherwise(net: NetProblem, x: Sequence[float], record: int) -> bool:
-    """Return whether a leg lies on the seabed but was taken to hang clear, or the other way round.
-
-    It is taken to do so from then on.
-    """
-    changed = False
-    for i in range(len(net.legs)):
-        leg, state, shape = net.legs[i], net.state[i], net.lines.work.records[i][record]
-        if leg.kind == net_march.HANGING_DOWN or leg.seabed == -inf:
-            continue
-        lies = state[STAGE] >= 0.0
-        if state[LANDS] == 0.0:
-            lowest = inf
-            for n in range(int(state[net_march.HUNG])):
-                lowest = min(lowest, above_bed(net, i, x, shape, n))
-            lies = lowest < -1e-6 * net.lines.limits.depth
-        changed = changed or lies != (state[LANDS] > 0.0)
-        state[LANDS] = 1.0 if lies else 0.0
-    return changed
-
-
 def moved_ends(net: NetProblem, x: Sequence[float], record: int) -> float:
     """Write where the ends of all pieces are, and how much these and their tensions have moved.
 
@@ -224,7 +197,7 @@ def moved_ends(net: NetProblem, x: Sequence[float], record: int) -> float:
     """
     net.errors[DEPTH_ERROR] = net.errors[TENSION_ERROR] = greatest = 0.0
     for i in range(len(net.legs)):
-        nodes, shape = int(net.state[i][net_march.COUNT]), net.lines.work.records[i][record]
+        nodes, shape = int(net.state[i][COUNT]), net.lines.work.records[i][record]
         pieces, end = net.legs[i].pieces, nodes - 1
         first, last = net.first[i][:pieces], net.last[i][:pieces]
         find_ends(RefereeShape(shape, nodes, end, first, last))
@@ -248,7 +221,7 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
     """Close a net that about is to the last digits, on segments that are short enough."""
     worth = WORTH_OF_MANY if net.lines.limits.near > 0.0 else WORTH
     for _ in range(MOST_HALVINGS):
-        for left in range(len(net.legs), -1, -1):
+        for _ in range(CHOICES):
             choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
             failure = left_over(net, x, choosing, False)
             if failure != GOES_ON:
@@ -257,11 +230,6 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
             ending = close_on(net, x, coarse, enough, True)
             if ending != CAME_OUT:
                 return ending
-            if not lies_otherwise(net, x, COARSE):
-                break
-            roughly = Marching(sea, 4.0 * step, CHOSEN, False, COARSE)
-            if left == 0 or close_net(net, x, roughly, NEAR, False) != CAME_OUT:
-                return TO_AND_FRO
         moved_ends(net, x, COARSE)
         for i in range(len(net.legs)):
             halve(leg_of(net, sea, i))
