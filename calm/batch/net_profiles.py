@@ -28,7 +28,7 @@ from calm.files import CurrentTable
 from calm.files.legs import nodes_of
 from calm.files.mooring_file import clamps_down
 from calm.physics.compiled import by_address, outcome
-from calm.physics.line import Floats, Water
+from calm.physics.line import BETTER, Floats, Water
 from calm.physics.profile import Sea
 from calm.physics.track import head_count
 from calm.records.grids import SeabedGrid
@@ -152,8 +152,8 @@ def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None
     for i in range(len(net.legs)):
         leg, record = net.legs[i], net.lines.work.records[i][FINE]
         count = int(net.state[i][net_problem.COUNT])
-        east, north, _ = place_of(net, i, paper.x, 1)
-        dx, dy = east - record[0][count - 1], north - record[1][count - 1]
+        east, north, _ = place_of(net, i, net.better, 1)
+        dx, dy = east - record[BETTER][count - 1], north - record[BETTER + 1][count - 1]
         rows.shares[case, i] = net.state[i][net_problem.SHARE]
         own = 1 if leg.own > 1 else 0
         for p in range(own, leg.pieces):
@@ -161,19 +161,21 @@ def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None
             for side in range(2):
                 n = net.first[i][p] if side == 0 else net.last[i][p]
                 for k in range(6):
-                    row[6 * side + k] = record[k][n]
+                    row[6 * side + k] = record[BETTER + k][n]
                 row[6 * side] += dx
                 row[6 * side + 1] += dy
         for n in range(1, count):
             if record[7][n] < 0.0:
                 continue
             row = rows.clamps[case, paper.clamp[i] + int(record[7][n])]
-            row[0], row[1], row[2] = record[0][n - 1] + dx, record[1][n - 1] + dy, record[2][n - 1]
+            row[0], row[1] = record[BETTER][n - 1] + dx, record[BETTER + 1][n - 1] + dy
+            row[2] = record[BETTER + 2][n - 1]
             above = below = 0.0
             for k in range(3, 6):
-                row[k] = record[k][n - 1] + record[k][n]
-                above += record[k][n - 1] * record[k][n - 1]
-                below += record[k][n] * record[k][n]
+                upper, lower = record[BETTER + k][n - 1], record[BETTER + k][n]
+                row[k] = upper + lower
+                above += upper * upper
+                below += lower * lower
             row[6] = sqrt(max(above, below))
 
 

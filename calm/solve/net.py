@@ -152,7 +152,7 @@ class NetSearch:
 
         NoEquilibrium: it does not pass the checks.
         """
-        net, legs = self.net, []
+        net, legs, better = self.net, [], np.array(self.net.better)
         left = np.abs(np.array(net.found) * np.array(net.rows))
         miss = float(left[: net.nodes_at].max())
         if miss > self.settings.tolerance * net.span:
@@ -163,9 +163,9 @@ class NetSearch:
             float(net.errors[net_closing.TENSION_ERROR]) + 1e-8 * net.force,
         )
         for i, each in enumerate(self.laid):
-            end = self.end(i, x)
+            ends = self.end(i, x), self.end(i, better)
             legs.append(
-                leg_found(each, net, i, end, errors, self.water, self.settings, self.compiled)
+                leg_found(each, net, i, ends, errors, self.water, self.settings, self.compiled)
             )
         greatest = max(float(each.tension.max()) for each in legs)
         if len(imbalance) and float(imbalance.max()) > 1e-6 * greatest:
@@ -173,7 +173,7 @@ class NetSearch:
         for leg in legs:
             refuse_unbalanced(leg.closure, leg.moment_residual)
         return NetSolution(
-            tuple(legs), x[net.nodes_at :].reshape(-1, 3).copy(), imbalance, miss, *errors,
+            tuple(legs), better[net.nodes_at :].reshape(-1, 3).copy(), imbalance, miss, *errors,
             int(sum(state[net_problem.MARCHES] for state in net.state)), x,
         )  # fmt: skip
 

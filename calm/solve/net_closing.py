@@ -11,9 +11,20 @@ from typing import Any, NamedTuple
 from calm.physics.line import GOES_ON, NO_ROOM
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
+from calm.solve.accuracy import Extent, bent, extrapolate, take_as_marched, tension_at
 from calm.solve.closing import halve
 from calm.solve.net_march import left_over, take_scales
-from calm.solve.net_problem import COUNT, Marching, NetProblem, leg_of, place_of
+from calm.solve.net_problem import (
+    COARSE_COUNT,
+    COARSE_HUNG,
+    COARSE_STAGE,
+    COUNT,
+    HUNG,
+    STAGE,
+    Marching,
+    NetProblem,
+    leg_of,
+)
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 
 MOST_STEPS, HALVINGS = 60, 9
@@ -21,9 +32,9 @@ MOST_STEPS, HALVINGS = 60, 9
 NEAR, CLOSED = 1e-4, 1e-10
 """What is left of lengths and forces, as shares of the longest leg and of a typical force: before
 segments are kept, and in a shape."""
-WORTH, WORTH_OF_MANY = 5e-5, 2e-5
-"""Errors, as shares of the water depth and of the greatest tension, above which segments are
-halved once more, `MOST_HALVINGS` times; of one of many, whose segments are longer."""
+WORTH = 4e-5
+"""Errors, as shares of the span and of the greatest tension, above which segments are halved once
+more, `MOST_HALVINGS` times."""
 MOST_HALVINGS = 3
 CHOICES = 2
 """How often segments are chosen: the first time where a shape only about is."""
@@ -190,36 +201,8 @@ def close_on(
     return CAME_OUT
 
 
-def moved_ends(net: NetProblem, x: Sequence[float], record: int) -> float:
-    """Write where the ends of all pieces are, and how much these and their tensions have moved.
-
-    Returns the greatest tension.
-    """
-    net.errors[DEPTH_ERROR] = net.errors[TENSION_ERROR] = greatest = 0.0
-    for i in range(len(net.legs)):
-        nodes, shape = int(net.state[i][COUNT]), net.lines.work.records[i][record]
-        pieces, end = net.legs[i].pieces, nodes - 1
-        first, last = net.first[i][:pieces], net.last[i][:pieces]
-        find_ends(RefereeShape(shape, nodes, end, first, last))
-        keep(first, net.first[i])
-        keep(last, net.last[i])
-        east, north, _ = place_of(net, i, x, 1)
-        for p in range(pieces + 1):
-            n, row = 0 if p == 0 else int(net.last[i][p - 1]), net.ends[i][p]
-            fx, fy, fz = shape[3][n], shape[4][n], shape[5][n]
-            tension = sqrt(fx * fx + fy * fy + fz * fz)
-            x0, y0 = shape[0][n] - shape[0][end] + east, shape[1][n] - shape[1][end] + north
-            off = max(abs(x0 - row[0]), abs(y0 - row[1]), abs(shape[2][n] - row[2]))
-            net.errors[DEPTH_ERROR] = max(net.errors[DEPTH_ERROR], 0.5 * off)
-            net.errors[TENSION_ERROR] = max(net.errors[TENSION_ERROR], 0.5 * abs(tension - row[3]))
-            row[0], row[1], row[2], row[3] = x0, y0, shape[2][n], tension
-            greatest = max(greatest, tension)
-    return greatest
-
-
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
     """Close a net that about is to the last digits, on segments that are short enough."""
-    worth = WORTH_OF_MANY if net.lines.limits.near > 0.0 else WORTH
     for _ in range(MOST_HALVINGS):
         for _ in range(CHOICES):
             choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
@@ -230,17 +213,58 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
             ending = close_on(net, x, coarse, enough, True)
             if ending != CAME_OUT:
                 return ending
-        moved_ends(net, x, COARSE)
+        keep(x, net.coarse)
         for i in range(len(net.legs)):
+            state = net.state[i]
+            state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
+            state[COARSE_STAGE] = state[STAGE]
             halve(leg_of(net, sea, i))
         ending = close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
         if ending != CAME_OUT:
             return ending
-        tension = worth * moved_ends(net, x, FINE)
-        if net.errors[DEPTH_ERROR] <= worth * net.span and net.errors[TENSION_ERROR] <= tension:
+        if extrapolate_net(net, sea, x) <= 1.0:
             break
         step *= 0.5
     return CAME_OUT
+
+
+def extrapolate_net(net: NetProblem, sea: Sea, x: Sequence[float]) -> float:
+    """Extrapolate all legs and the places of nodes; how many times the errors are above the target.
+
+    If a bend in one leg costs as much as the rest, nothing is extrapolated.
+    """
+    records, near = net.lines.work.records, net.lines.limits.near
+    deep = taut = moved = greatest = 0.0
+    kinked = False
+    for k in range(len(x)):
+        third = (x[k] - net.coarse[k]) / 3.0
+        net.better[k] = x[k] + third
+        if k >= net.nodes_at:
+            moved = max(moved, abs(third))
+    for i in range(len(net.legs)):
+        state, record, leg = net.state[i], records[i][FINE], leg_of(net, sea, i)
+        nodes, hanging = int(state[COUNT]), int(state[HUNG]) - 1
+        coarse_hanging = int(state[COARSE_HUNG]) - 1
+        coarse = Extent(int(state[COARSE_COUNT]), coarse_hanging, state[COARSE_STAGE] >= 0.0)
+        fine = Extent(nodes, hanging, state[STAGE] >= 0.0)
+        errors = extrapolate(records[i][COARSE], coarse, record, fine, near)
+        if near == 0.0:
+            bends, errors = bent(leg, hanging, errors)
+            kinked = kinked or bends
+        deep, taut = max(deep, errors.depth), max(taut, errors.tension)
+        for n in range(nodes):
+            greatest = max(greatest, tension_at(record, n))
+        pieces = net.legs[i].pieces
+        first, last = net.first[i][:pieces], net.last[i][:pieces]
+        find_ends(RefereeShape(record, nodes, nodes - 1, first, last))
+        keep(first, net.first[i])
+        keep(last, net.last[i])
+    if kinked:
+        keep(x, net.better)
+        for i in range(len(net.legs)):
+            take_as_marched(records[i][FINE], int(net.state[i][COUNT]))
+    net.errors[DEPTH_ERROR], net.errors[TENSION_ERROR] = deep + moved, taut
+    return max((deep + moved) / (WORTH * net.span), taut / (WORTH * max(greatest, 1e-300)))
 
 
 class AskedNet(NamedTuple):

@@ -18,7 +18,7 @@ from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
 from calm.physics.track import CableStretch, Course, Load, Stage
 from calm.solve import net_problem
-from calm.solve.accuracy import Errors, take_as_marched
+from calm.solve.accuracy import Errors
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root
 from calm.solve.finish import carried_by, risen, solution_of, touching
@@ -253,15 +253,16 @@ def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> N
         listed(LegRow, [each.row(at, span) for at, each in zip(firsts, laid, strict=False)]), lines,
         up, zeros(2 * room), taken(np.array(places).reshape(-1, 6)),
         zeros(count, net_problem.OF_LEG), zeros(count, net_problem.OUT),
-        zeros(count, pieces, of=int), zeros(count, pieces, of=int), zeros(count, pieces + 1, 4),
+        zeros(count, pieces, of=int), zeros(count, pieces, of=int),
         zeros(size), zeros(size), zeros(size, size), zeros(size), zeros(size),
-        zeros(size, size + 1), zeros(size, of=int), taken(scale), taken(rows), zeros(2),
+        zeros(size, size + 1), zeros(size, of=int), zeros(size), zeros(size), taken(scale), taken(rows), zeros(2),
         firsts[-1], length, force, span,
     )  # fmt: skip
 
 
 def leg_found(
-    laid: LaidLeg, net: NetProblem, i: int, end: Floats, errors: tuple[float, float],
+    laid: LaidLeg, net: NetProblem, i: int, ends: tuple[Floats, Floats],
+    errors: tuple[float, float],
     water: Water, settings: Settings, compiled: bool,
 ) -> Solution:  # fmt: skip
     """A leg as a line of its own, audited.
@@ -269,7 +270,7 @@ def leg_found(
     Parameters
     ----------
     i : its number
-    end : (3,) where it ends [m]
+    ends : (3,) where it ends as it was marched, and as extrapolated [m]
     errors : of depths [m] and of tensions [N]
     """
     state, (deep, taut) = net.state[i], errors
@@ -288,7 +289,6 @@ def leg_found(
         float(state[net_problem.GROUNDED]),
     )  # fmt: skip
     told = Errors(deep, taut, 0.0, taut, taut)
-    outcome(take_as_marched, compiled, work.records[FINE], closed.nodes)
     segments = int(sum(work.counts[HALVED]))
     refined = Refined(closed, segments, told, share, closed.grounded)
     found = solution_of(problem, laid.line, water, settings, refined, told, frequency)
@@ -301,19 +301,23 @@ def leg_found(
         referee.moored, shape, loads if compiled else loads.tolist(), landed, problem.limits
     )  # fmt: skip
     closure, moment = outcome(residuals, compiled, *asked)
-    line = laid.leg.line if first else found.line
+    line, marched = laid.leg.line if first else found.line, found.marched
+    assert marched is not None
+    place, better = (np.array([*each[:2], 0.0]) for each in ends)
     return replace(
         found,
         line=line,
         carried=line if first else found.carried,
-        position=found.position[first:] + np.array([end[0], end[1], 0.0]),
+        position=found.position[first:] + better,
         force=found.force[first:],
         element_piece=found.element_piece[first:] - first,
         element_clamp=found.element_clamp[first:],
         hanging=found.hanging - first,
         cut=found.cut[first:],
         strain=found.strain[first:],
-        marched=None,
+        marched=replace(
+            marched, position=marched.position[first:] + place, force=marched.force[first:]
+        ),
         marches=int(state[net_problem.MARCHES]),
         closure=closure,
         moment_residual=moment,

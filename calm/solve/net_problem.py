@@ -14,13 +14,29 @@ from calm.solve.problem import LineProblem, SearchArrays
 STANDING, HANGING_DOWN, PULLED, ANCHORED = range(4)
 """Legs marched from a free upper end, from a free lower end, from an upper end that is held or at a
 node, and from the seabed up to such an end."""
-STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG, EAST, NORTH, LIES, SLACK, FREQUENCY, YIELD = range(12)
+(
+    STAGE,
+    GROUNDED,
+    SHARE,
+    MARCHES,
+    COUNT,
+    HUNG,
+    EAST,
+    NORTH,
+    LIES,
+    SLACK,
+    FREQUENCY,
+    YIELD,
+    COARSE_COUNT,
+    COARSE_HUNG,
+    COARSE_STAGE,
+) = range(15)
 """State of a leg after its last march: the stage where it comes down on the seabed or -1, its length
 there [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and those of
 them that hang; of an anchored leg the way from its touchdown to its upper end to the east and
 north [m], how far the rest reaches along the seabed [m], and how much of that it does not need to
-come to its anchor [m]; the frequency of its cables [Hz], and the slope of what that lacks [-]."""
-OF_LEG = 12
+come to its anchor [m]; the frequency of its cables [Hz], and the slope of what that lacks [-]; its nodes, those that hang and its stage on coarse segments."""
+OF_LEG = 15
 OUT = 7
 """Results of a march: way east and north, height and force where it came out, or of an anchored leg
 by how much it misses its anchor; then by how much it begins off the seabed."""
@@ -87,10 +103,11 @@ class NetProblem(NamedTuple):
     held : (·, 6) places of the ends of each leg that are held, where its march begins and ends [m]
     state : numbers of each leg: `STAGE` and those after it
     passed : (·, `OUT`) what each march came out with
-    first, last, ends : node of each piece's ends; place and tension there
+    first, last : node of each piece's ends
     found, kept, slopes, way : what is left, by shares of `rows`, now and before, its slopes by
         shares of `scale`, and the step that they ask for
     trial, paper, order : room to find it
+    coarse, better : the unknowns on coarse segments, and as extrapolated
     scale : of the unknowns; that of the forces on a leg is its own
     errors : of depths [m] and tensions [N]
     nodes_at : first unknown of the nodes
@@ -107,7 +124,6 @@ class NetProblem(NamedTuple):
     passed: Sequence[MutableSequence[float]]
     first: Sequence[MutableSequence[int]]
     last: Sequence[MutableSequence[int]]
-    ends: Sequence[Sequence[MutableSequence[float]]]
     found: MutableSequence[float]
     kept: MutableSequence[float]
     slopes: Sequence[MutableSequence[float]]
@@ -115,6 +131,8 @@ class NetProblem(NamedTuple):
     trial: MutableSequence[float]
     paper: Sequence[MutableSequence[float]]
     order: MutableSequence[int]
+    coarse: MutableSequence[float]
+    better: MutableSequence[float]
     scale: MutableSequence[float]
     rows: Sequence[float]
     errors: MutableSequence[float]

@@ -11,11 +11,14 @@ from math import degrees, inf, sqrt
 
 from calm.physics.compiled import set_row
 from calm.physics.line import (
+    ENDS,
     GOES_ON,
     NO_BALANCE,
     NO_ROOM,
+    NO_SEGMENT,
     RUNS_OFF,
     SEGMENT,
+    SPLITS,
     Record,
     State,
     off_bed,
@@ -240,6 +243,10 @@ def turn_round(record: Record, nodes: int) -> None:
         while a < b:
             column[a], column[b] = column[b], column[a]
             a, b = a + 1, b - 1
+    ends = record[SEGMENT]  # a part of a split segment ends it now if it began it
+    for n in range(2, nodes):
+        if ends[n] != NO_SEGMENT:
+            ends[n] = SPLITS if n + 1 < nodes and ends[n + 1] == SPLITS else ENDS
     write_element(record, 1, 0, -1, 0.0, 0.0)
 
 
