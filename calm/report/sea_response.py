@@ -220,7 +220,7 @@ def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line]:
 
 
 def _measured(state: MooringInSea, band: MeasuredBand) -> str:
-    """Return what tensions measured at sea would make of those at the top."""
+    """Return the range of the tension at the top by the band measured at sea, as a sentence."""
     low, high = state.components[0].measured_low, state.components[0].measured_high
     assert low is not None and high is not None
     height = state.sea.significant_height

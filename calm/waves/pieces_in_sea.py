@@ -1,4 +1,4 @@
-"""Tensions and motions of the pieces of a mooring in one sea, and what they would otherwise be."""
+"""Tensions and motions of a mooring in one sea, with other cut-offs and the measured band."""
 
 from __future__ import annotations
 
@@ -23,10 +23,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PieceLoads:
-    """Tensions of a piece in a sea [N]: at its upper end, and anywhere along it.
+    """Tensions of a piece in a sea [N].
 
-    Maximum and minimum, `greatest` and `least` are the most probable ones of the duration, the
-    latter two anywhere along the piece; `slack_probability` is that of falling slack in it.
+    `tension_max` and `tension_min` are the most probable extremes of the duration at the upper end,
+    `greatest` and `least` those anywhere along the piece. `slack_probability` is the probability
+    that the upper end falls slack in the duration.
     """
 
     tension_std: float
@@ -43,9 +44,9 @@ class PieceInWaves:
 
     Attributes
     ----------
-    half_cut_off, twice_cut_off : with half and with twice the cut-off frequency of the waves
-    measured_low, measured_high : with standard deviations at the ends of the band in which those
-        measured at sea are; None without such a band
+    half_cut_off, twice_cut_off : tensions with half and with twice the cut-off frequency
+    measured_low, measured_high : tensions at the ends of the band measured at sea; None without a
+        band
     """
 
     index: int
@@ -67,8 +68,8 @@ class PieceInWaves:
 
 
 PieceMoments = tuple[tuple[float, Floats], ...]
-"""Mean of the tension [N] and its moments m0, m1, m2, m4 by frequency, of each piece where the
-tension varies most."""
+"""Mean tension [N] and spectral moments m0, m1, m2, m4 of each piece, at the spring with the
+greatest deviation."""
 
 
 class CutOffs(NamedTuple):
@@ -149,7 +150,7 @@ class _Tensions:
         )
 
     def most_moved(self, mean: float, own: slice) -> tuple[float, Floats]:
-        """Return mean and moments of the tension where it varies most; none on the seabed."""
+        """Return mean and moments at the spring with the greatest deviation, 0 on the seabed."""
         if own == slice(0):
             return mean, np.zeros(4)
         at = own.start + int(self.deviation[own].argmax())
@@ -203,8 +204,8 @@ def mooring_in_sea(
                 tilt_std=pitch if pitch is not None and on_top else tilt,
                 half_cut_off=half.loads(at, mean, own),
                 twice_cut_off=twice.loads(at, mean, own),
-                measured_low=band and full.loads(at, mean, own, band.low),
-                measured_high=band and full.loads(at, mean, own, band.high),
+                measured_low=full.loads(at, mean, own, band.low) if band else None,
+                measured_high=full.loads(at, mean, own, band.high) if band else None,
                 **asdict(full.loads(at, mean, own)),
             )
         )
@@ -224,7 +225,7 @@ def mooring_in_sea(
 
 
 def _springs(line: LumpedLine, piece: int) -> slice:
-    """Return the springs of a piece; none of one on the seabed."""
+    """Return the springs of a piece, an empty slice on the seabed."""
     first = int(line.piece_spring[piece])
     if first < 0:
         return slice(0)
