@@ -224,7 +224,9 @@ def _measured(state: MooringInSea, band: MeasuredBand) -> str:
     low, high = state.components[0].measured_low, state.components[0].measured_high
     assert low is not None and high is not None
     height = state.sea.significant_height
-    outside = "" if COMPARED[0] <= height <= COMPARED[1] else " This sea is outside that range."
+    outside = (
+        "" if COMPARED[0] <= height <= COMPARED[1] else " This sea is outside the heights compared."
+    )
     return (
         f"Measured at sea: in seas of Hs {band.from_height:g} to {band.to_height:g} m the standard "
         "deviation of the tension below five buoys of the Southern Ocean Flux Station was "

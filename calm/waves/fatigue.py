@@ -49,7 +49,8 @@ YEAR = 365.25 * 86_400.0
 """[s]"""
 
 BAND = 0.15
-"""How far off deviations of tension may be, as a share: SOFS-5 is met within it at every height."""
+"""Change of the deviations of tension for `life_low` and `life_high`, as a share; the band of
+tensions measured at sea is wider (`calm.waves.measured`)."""
 
 
 @dataclass(frozen=True)
