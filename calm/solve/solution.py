@@ -6,7 +6,7 @@ first as much as `COLD`. `CALM_COMPILED=never` and `always` settle what is left 
 """
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
 from importlib.util import find_spec
@@ -136,6 +136,14 @@ class Solution:
     moment_residual: float = nan
     pulled: bool = False
     marched: Trace | None = None
+
+    @property
+    def as_marched(self) -> "Solution":
+        """The shape on fine segments that passed the audit, before extrapolation."""
+        closed = self.marched
+        if closed is None:
+            return self
+        return replace(self, position=closed.position, force=closed.force, marched=None)
 
     @property
     def surface(self) -> bool:

@@ -228,7 +228,7 @@ def test_the_anchor_holds_the_sum_of_all_loads(number) -> None:
 @some
 @given(draws)
 def test_quartering_the_angle_step_brings_the_error_down_sixteenfold(number) -> None:
-    """Judged by the change to a solution at 0.05°, which itself errs by a 25th of the finer one.
+    """Of the march, judged by the change to a solution at 0.05°, which itself errs by a 25th of the finer one.
 
     Cuts at levels and clamps stir the ratio, by up to two; at 1° some are still on the way to
     second order and gain more. Moorings whose segments had to be finer than the angle step asks
@@ -236,7 +236,8 @@ def test_quartering_the_angle_step_brings_the_error_down_sixteenfold(number) -> 
     """
     line, water = mooring(Random(number))
     exact, fine, coarse = (
-        solved(line, water, Settings(radians(degrees), 1e-9)) for degrees in (0.05, 0.25, 1.0)
+        solved(line, water, Settings(radians(degrees), 1e-9)).as_marched
+        for degrees in (0.05, 0.25, 1.0)
     )
     assume(2.5 <= fine.segments / coarse.segments <= 5.0)
     assume(apart(coarse, exact) > 1e-6)  # else the tolerance of the root is what is seen

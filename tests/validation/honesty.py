@@ -1,5 +1,8 @@
 """How the error that a solution states compares with the error it has.
 
+That is the error of the figures reported, which are extrapolated, or of the shape as it was marched,
+whose error the stated one is an estimate of.
+
 The true error is the departure from the same case solved at a tenth of the angle step, closed to
 1e-10: a hundredth of the error, and itself held against the independent referee in the tests of
 random moorings, floats and tows. Slack moorings, which somewhere carry less than 1e-5 of their
@@ -43,8 +46,11 @@ class Honesty:
     weight: float
 
 
-def honesty(family: str, number: int) -> Honesty | str:
-    """That of a case of a family, or why it counts for nothing: its status, or that it is slack."""
+def honesty(family: str, number: int, marched: bool = False) -> Honesty | str:
+    """That of a case of a family, or why it counts for nothing: its status, or that it is slack.
+
+    Of the shape as it was `marched`, or as reported.
+    """
     case = FAMILIES[family](Random(f"{family} {number}"))
     try:
         solution = case(Settings())
@@ -59,6 +65,7 @@ def honesty(family: str, number: int) -> Honesty | str:
         return f"at a tenth of the step {refusal.status}"
     if (solution.landed, solution.afloat) != (fine.landed, fine.afloat):
         return "on the limit between two ways to stand"
+    solution = solution.as_marched if marched else solution
     at, there = _ends(solution), _ends(fine)
     place = np.abs(solution.position[at] - fine.position[there]).max()
     tension = np.abs(solution.tension[at] - fine.tension[there]).max()

@@ -22,16 +22,22 @@ CASES = 6
 @pytest.fixture(scope="module")
 def measured() -> dict[str, list[Honesty]]:
     """The first cases of every family that count."""
-    return {family: _first(family) for family in FAMILIES}
+    return {family: _first(family, False) for family in FAMILIES}
 
 
-def _first(family: str) -> list[Honesty]:
+@pytest.fixture(scope="module")
+def marched() -> dict[str, list[Honesty]]:
+    """The same of the shapes that were marched, before extrapolation."""
+    return {family: _first(family, True) for family in FAMILIES}
+
+
+def _first(family: str, marched: bool) -> list[Honesty]:
     found: list[Honesty] = []
     number = 0
     while len(found) < CASES:
         number += 1
         assert number <= 10 * CASES, f"{family}: hardly a case stands"
-        case = honesty(family, number)
+        case = honesty(family, number, marched)
         if isinstance(case, Honesty):
             found.append(case)
     return found
@@ -44,21 +50,23 @@ def test_no_error_is_ten_times_the_stated_one(measured, family) -> None:
 
 
 @pytest.mark.parametrize("what", ["anchor", "weight"])
-def test_errors_at_the_anchor_are_as_stated(measured, what) -> None:
-    """Of the pull on the anchor and of the weight that it needs: 90 % within, 98 % within twice."""
-    ratios = np.array([getattr(case, what) for cases in measured.values() for case in cases])
-    ratios = ratios[ratios > 0.0]  # a tow has no anchor
-    assert np.mean(ratios <= 1.0) >= 0.9
-    assert np.mean(ratios <= 2.0) >= 0.98
-    assert np.median(ratios) >= 0.3  # nor idle
+def test_errors_at_the_anchor_are_as_stated(measured, marched, what) -> None:
+    """Of the pull on the anchor and of the weight that it needs: 95 % within, all within thrice."""
+    for cases in (measured, marched):
+        ratios = np.array([getattr(case, what) for found in cases.values() for case in found])
+        ratios = ratios[ratios > 0.0]  # a tow has no anchor
+        assert np.mean(ratios <= 1.0) >= (0.95 if cases is measured else 0.9)
+        assert np.mean(ratios <= 3.0) >= (1.0 if cases is measured else 0.98)
+    assert np.median(ratios) >= 0.3  # nor idle, of the shape that was marched
 
 
 @pytest.mark.parametrize("what", ["place", "tension", "shape", "pull"])
-def test_most_errors_are_within_three_times_the_stated_one(measured, what) -> None:
-    ratios = [getattr(case, what) for cases in measured.values() for case in cases]
-    assert np.mean(np.array(ratios) <= 3.0) >= 0.95
+def test_most_errors_are_within_the_stated_one(measured, what) -> None:
+    ratios = np.array([getattr(case, what) for cases in measured.values() for case in cases])
+    assert np.mean(ratios <= 1.0) >= 0.95
+    assert np.mean(ratios <= 3.0) >= 0.99
 
 
-def test_the_stated_error_is_not_idle(measured) -> None:
-    ratios = [case.place for cases in measured.values() for case in cases]
+def test_the_stated_error_is_that_of_the_shape_that_was_marched(marched) -> None:
+    ratios = [case.place for cases in marched.values() for case in cases]
     assert np.median(ratios) >= 0.5

@@ -206,7 +206,8 @@ def test_offsets_are_those_the_way_the_free_end_is_off():
     result = calm.load("plumb.yaml", text=text.replace("{UNSURE}", said)).solve()
     found = uncertain(result, 64)
     off = sqrt(result.top.x**2 + result.top.y**2)
-    assert found.offset[:, 0] == pytest.approx([off] * 3, rel=1e-9)
+    # the result is extrapolated, the draws are not
+    assert found.offset[:, 0] == pytest.approx([off] * 3, abs=2.0 * result.accuracy.depth)
     assert off > 10.0
     assert (np.diff(found.offset[1]) < 0.0).all()  # down the line, to the anchor
 
