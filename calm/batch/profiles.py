@@ -284,8 +284,6 @@ class Batch:
         pieces = mooring.file.pieces[:-1]
         paper = ProfileArrays(
             on=on,
-            first=np.zeros(len(pieces), np.int64),
-            last=np.zeros(len(pieces), np.int64),
             may_lie=np.array([one.component.kind == "chain" for one in pieces], np.int64),
         )
         find = by_address(find_asked, AskedSearch(search, referee))

@@ -11,13 +11,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from calm.physics.compiled import record_type, set_row
-from calm.physics.line import NO_ROOM, Floats, Integers, Water
+from calm.physics.line import BETTER, NO_ROOM, Floats, Integers, Water
 from calm.physics.passing import FAILURE
 from calm.physics.profile import Interval, Sea
 from calm.physics.referee import RefereeShape, find_ends
-from calm.solve.mooring import HANGING, LANDED, NODES, SOUGHT, UNKNOWN_VALUE, AskedSearch
-from calm.solve.problem import BELOW, COARSE, FINE, Limits, LineProblem, Search
-from calm.solve.refine import is_segment
+from calm.solve.mooring import HANGING, NODES, SHARE_IN_USE, SOUGHT, AskedSearch
+from calm.solve.problem import BELOW, FINE, Limits, LineProblem, Search
 from calm.solve.search import Referee
 from calm.solve.solution import FOLDED, FOUND, MARCH_STOPPED, SUPPORTED, TOO_HEAVY, UNSUPPORTED
 
@@ -71,13 +70,10 @@ class ProfileArrays(NamedTuple):
 
     Attributes
     ----------
-    first, last : node of every piece in the coarse shape
     may_lie : whether a piece may lie on the seabed below a line that stands under water
     """
 
     on: ProfileLevels
-    first: Any
-    last: Any
     may_lie: Integers
 
 
@@ -188,21 +184,14 @@ def measure(
     problem: LineProblem, referee: Referee, paper: ProfileArrays, results: Results, case: int
 ) -> None:
     """Write what the shape of a profile leads to in its row."""
-    told, records = problem.work.found, problem.work.records
-    fine, coarse = records[FINE], records[COARSE]
+    told, record = problem.work.found, problem.work.records[FINE]
     nodes = int(told[NODES])
-    before = nodes_before(problem, nodes, int(told[HANGING]), told[LANDED] > 0.0)
-    find_ends(RefereeShape(fine, nodes, nodes - 1, referee.first, referee.last))
-    last = paper.last
-    if before > 0:
-        find_ends(RefereeShape(coarse, before, before - 1, paper.first, last))
+    find_ends(RefereeShape(record, nodes, nodes - 1, referee.first, referee.last))
     pieces, _, ends = results
     head = referee.moored.head
     for p in range(len(referee.first)):
-        a, b = referee.first[p], referee.last[p]
-        c, d = (paper.first[p], last[p]) if before > 0 else (-1, -1)
-        x, y, z, fx, fy, fz = node_of(fine, coarse, nodes, before, a, c)
-        i, j, k, gx, gy, gz = node_of(fine, coarse, nodes, before, b, d)
+        x, y, z, fx, fy, fz = node_of(record, nodes, referee.first[p])
+        i, j, k, gx, gy, gz = node_of(record, nodes, referee.last[p])
         row = pieces[case]
         row[DEPTH, p], row[EAST, p], row[NORTH, p] = -z, x, y
         row[TENSION_TOP, p] = sqrt(fx * fx + fy * fy + fz * fz)
@@ -218,7 +207,7 @@ def measure(
     ends[case, 3] = used_buoyancy(problem)
     if head > 1:
         lean_of_head(problem, referee, results, case, head)
-    measure_clamps(problem, before, results, case)
+    measure_clamps(problem, results, case)
 
 
 def lean_of_head(
@@ -234,60 +223,28 @@ def lean_of_head(
         results.pieces[case, TILT, p] = tilt_of(dx, dy, dz)
 
 
-def nodes_before(problem: LineProblem, nodes: int, hanging: int, landed: bool) -> int:
-    """Nodes of the coarse shape; 0 where it is not that of the fine one.
-
-    A segment of the coarse shape is two of the fine one. Where the line lands both need not have
-    the same elements; their pieces have.
-    """
-    coarse = problem.work.records[COARSE]
-    count, n = 1, 1
-    while n < nodes:
-        n += 2 if is_segment(problem, coarse, count) else 1
-        count += 1
-    if landed:
-        return 0
-    return count if n == nodes else 0
-
-
-def node_of(
-    fine: Any, coarse: Any, nodes: int, before: int, n: int, c: int
-) -> tuple[float, float, float, float, float, float]:
-    """Place [m], from the line's end, and force [N] at a node, extrapolated from both shapes."""
+def node_of(record: Any, nodes: int, n: int) -> tuple[float, float, float, float, float, float]:
+    """Extrapolated place [m], from the line's end, and force [N] at a node."""
+    x, y, z = record[BETTER], record[BETTER + 1], record[BETTER + 2]
+    fx, fy, fz = record[BETTER + 3], record[BETTER + 4], record[BETTER + 5]
     end = nodes - 1
-    x, y, z = fine[0][n] - fine[0][end], fine[1][n] - fine[1][end], fine[2][n]
-    fx, fy, fz = fine[3][n], fine[4][n], fine[5][n]
-    if before == 0:
-        return x, y, z, fx, fy, fz
-    last = before - 1
-    return (
-        x + (x - (coarse[0][c] - coarse[0][last])) / 3.0,
-        y + (y - (coarse[1][c] - coarse[1][last])) / 3.0,
-        z + (z - coarse[2][c]) / 3.0,
-        fx + (fx - coarse[3][c]) / 3.0,
-        fy + (fy - coarse[4][c]) / 3.0,
-        fz + (fz - coarse[5][c]) / 3.0,
-    )
+    return x[n] - x[end], y[n] - y[end], z[n], fx[n], fy[n], fz[n]
 
 
-def measure_clamps(problem: LineProblem, before: int, results: Results, case: int) -> None:
+def measure_clamps(problem: LineProblem, results: Results, case: int) -> None:
     """Write what the shape leads to at the clamps, down the line."""
-    fine, coarse = problem.work.records[FINE], problem.work.records[COARSE]
-    nodes, row, c = int(problem.work.found[NODES]), 0, 0
+    record = problem.work.records[FINE]
+    nodes, row = int(problem.work.found[NODES]), 0
     for n in range(1, nodes):
-        if fine[7][n] < 0.0:
+        if record[7][n] < 0.0:
             continue
-        if before > 0:
-            c += 1
-            while coarse[7][c] < 0.0:
-                c += 1
-        x, y, z, fx, fy, fz = node_of(fine, coarse, nodes, before, n - 1, c - 1)
-        _, _, _, gx, gy, gz = node_of(fine, coarse, nodes, before, n, c)
+        x, y, z, fx, fy, fz = node_of(record, nodes, n - 1)
+        _, _, _, gx, gy, gz = node_of(record, nodes, n)
         clamp = results.clamps[case]
         upper, lower = sqrt(fx * fx + fy * fy + fz * fz), sqrt(gx * gx + gy * gy + gz * gz)
         clamp[0, row], clamp[1, row], clamp[2, row] = -z, x, y
         clamp[3, row] = max(upper, lower)
-        piece = int(fine[6][n])
+        piece = int(record[6][n])
         tilt = tilt_of(fx + gx, fy + gy, fz + gz)
         if not problem.flexible[piece]:
             tilt = results.pieces[case, TILT, piece]
@@ -303,7 +260,7 @@ def used_buoyancy(problem: LineProblem) -> float:
         return 1.0
     total = used = 0.0
     for k in range(sought + 1):
-        share = told[UNKNOWN_VALUE] if k == sought else problem.work.shares[0][k]
+        share = told[SHARE_IN_USE] if k == sought else problem.work.shares[0][k]
         lift = problem.surfacing[k].surface_lift
         total += lift
         used += share * lift

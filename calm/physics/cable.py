@@ -16,7 +16,7 @@ from calm.physics.drag import (
     turning_friction,
 )
 from calm.physics.line import NO_BALANCE, Bed, State, off_bed
-from calm.physics.profile import Sea, distance_to_level, water_at
+from calm.physics.profile import Sea, counts_across, distance_to_level, water_at
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
 from calm.physics.strumming import Vibration, amplified_share, strummed
@@ -25,9 +25,11 @@ from calm.physics.track import CableStretch
 PASSES, STALLED = 200, 50
 """The most passes of a segment, and those after which they go half the way: one that nothing pulls
 would hang plumb and trail by turns where the current begins."""
-NEAR_A_TURN, SHORTEST = 1e-6, 1e-3
-"""How exactly it is found where the flow along a segment turns round, and the shortest segment that
-ends there, as shares of the segment: a turn nearer to its top is at its top."""
+NEAR_A_TURN = 1e-6
+"""Accuracy of the place where the flow along a segment turns round, as a share of the segment."""
+AT_A_LEVEL, TRIALS = 1e-9, 10
+"""Distance from a level at which a part of a segment ends there, as a share of the depth range of
+the segment, and the most passes that look for it."""
 LITTLE_TURN = 1e-6
 """How much the last of a few steps may turn a segment, squared [rad²], and be good enough where it
 need not settle to the last digits."""
@@ -240,6 +242,64 @@ def touchdown(
     return hanging
 
 
+def until_level(
+    cable: CableStretch,
+    knots: Sequence[Knot],
+    vibration: Vibration,
+    sea: Sea,
+    state: State,
+    below: State,
+    cut: float,
+    near: float,
+    k: int,
+    share: float,
+) -> tuple[float, State, float]:
+    """Pass the part of a segment down to a level of the profile.
+
+    The first trial follows from the mean load of the segment, the others are secants.
+
+    Parameters
+    ----------
+    below : the state below the whole segment
+    k, share : see `counts_across`
+
+    Returns
+    -------
+    Length of the part [m], the state below it, and its strain.
+    """
+    _, _, z, fx, fy, fz, _, _ = state
+    level, start, whole = sea.levels[k], -z, z - below[2]
+    load = (below[3] - fx) / cut, (below[4] - fy) / cut, (below[5] - fz) / cut
+    part = cut * (level - start) / whole
+    last = sinking(fx, fy, fz, load, cut)
+    for _ in range(3 if last != 0.0 else 0):
+        sinks = sinking(fx, fy, fz, load, part)
+        if sinks * last > 0.0:
+            part = min(cut * (level - start) / whole * (last / sinks), cut)
+    before, above = 0.0, start
+    passed, strain = below, NO_BALANCE
+    for _ in range(TRIALS):
+        passed, strain = pass_segment(cable, knots, vibration, sea, state, part, near, load)
+        depth = -passed[2]
+        off, depths = abs(depth - level), abs(depth - start)
+        if strain == NO_BALANCE or off <= AT_A_LEVEL * abs(whole) or depth == above:
+            break
+        if not counts_across(sea, k, off, depths, share):
+            break
+        following = part + (level - depth) * (part - before) / (depth - above)
+        before, above = part, depth
+        part = following if 0.0 < following < cut else 0.5 * part
+    return part, passed, strain
+
+
+def sinking(fx: float, fy: float, fz: float, load: Vector, length: float) -> float:
+    """Depth gained per metre along a segment under an even load [N/m], from the force above it."""
+    half = 0.5 * length
+    x, y, z = fx + half * load[0], fy + half * load[1], fz + half * load[2]
+    size = sqrt(x * x + y * y + z * z)
+    return z / size if size > 0.0 else 0.0
+
+
 def until_turn(
     cable: CableStretch,
     knots: Sequence[Knot],
@@ -258,8 +318,6 @@ def until_turn(
     below, _ = pass_segment(cable, knots, vibration, sea, state, cut, near, expected)
     low, high = 0.0, cut
     at_low, at_high = flow_along(sea, state), flow_along(sea, below)
-    if not at_low * at_high < 0.0:
-        return cut
     for _ in range(PASSES):
         length = low + (high - low) * at_low / (at_low - at_high)
         below, _ = pass_segment(cable, knots, vibration, sea, state, length, near, expected)
@@ -270,7 +328,12 @@ def until_turn(
             high, at_high, at_low = length, here, 0.5 * at_low
         if here == 0.0 or high - low <= NEAR_A_TURN * cut:
             break
-    return high if high > SHORTEST * cut else cut
+    return high
+
+
+def flow_turns(sea: Sea, state: State, below: State) -> bool:
+    """Whether the flow along a segment turns round between its ends."""
+    return flow_along(sea, state) * flow_along(sea, below) < 0.0
 
 
 def flow_along(sea: Sea, state: State) -> float:

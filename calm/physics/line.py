@@ -80,7 +80,12 @@ def along_bed(bed: Bed, x: float, y: float, z: float) -> tuple[float, float, flo
 
 Record = Any
 """Columns of numbers, as written by `write_node`: lists, or the rows of an array."""
-COLUMNS = 10
+COLUMNS = 17
+SEGMENT, BETTER = 10, 11
+"""Column of how an element ends, see below, and the first of six with extrapolated places and
+forces."""
+NO_SEGMENT, ENDS, SPLITS = range(3)
+"""An element is no part of a hanging segment; it ends one; it ends at a level that splits one."""
 
 
 @within
@@ -104,6 +109,7 @@ def write_element(
     record[7][n] = clamp
     record[8][n] = cut
     record[9][n] = strain
+    record[SEGMENT][n] = NO_SEGMENT
 
 
 @dataclass(frozen=True)
@@ -117,6 +123,7 @@ class Trace:
     piece, clamp : (k,) the piece of each element, and the clamp that it is or -1
     cut : (k,) unstretched length [m]
     strain : (k,) of cables and chains
+    better : (k+1, 6) extrapolated place [m] and force [N] of each node, of a shape that was refined
     """
 
     position: Floats
@@ -125,6 +132,7 @@ class Trace:
     clamp: Integers
     cut: Floats
     strain: Floats
+    better: Floats
 
     @staticmethod
     def of(record: Record, nodes: int) -> Trace:
@@ -137,6 +145,7 @@ class Trace:
             clamp=columns[7, 1:].astype(np.int64),
             cut=columns[8, 1:],
             strain=columns[9, 1:],
+            better=columns[BETTER : BETTER + 6].T,
         )
 
 

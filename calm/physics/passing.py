@@ -4,26 +4,36 @@ The march knows where the free end is and that nothing pulls it from above; it f
 end comes out and with what force. What is unknown, and how the end is brought to the anchor, is the
 business of `calm.solve`.
 
-A cable or chain is passed in straight segments. Where no cuts are given the march chooses them:
-each turns by about the angle step and is short against the water depth, and none straddles a level
-of the profile. Given cuts are taken as they are, which makes the end of the line a smooth function
-of its start.
+A cable or chain is passed in straight segments. If no cuts are given the march chooses them: each
+segment turns by about the angle step, is short against the water depth, and ends at a level of the
+profile. Given cuts keep their lengths, which makes the end of the line a smooth function of its
+start. A segment that comes to straddle a level is split there.
 """
 
 from collections.abc import MutableSequence
 from math import isfinite
 from typing import NamedTuple
 
-from calm.physics.cable import pass_segment, segment_length, touchdown, until_turn
+from calm.physics.cable import (
+    flow_turns,
+    pass_segment,
+    segment_length,
+    touchdown,
+    until_level,
+    until_turn,
+)
 from calm.physics.drag import CONSTANT
 from calm.physics.line import (
     ENDLESS,
+    ENDS,
     GOES_ON,
     NO_BALANCE,
     NO_ROOM,
     ROD_UNBALANCED,
     RUNS_OFF,
+    SEGMENT,
     SEGMENT_UNBALANCED,
+    SPLITS,
     Bed,
     Record,
     State,
@@ -32,7 +42,7 @@ from calm.physics.line import (
     write_element,
     write_node,
 )
-from calm.physics.profile import Sea, interval_at
+from calm.physics.profile import Sea, interval_at, level_within
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
 from calm.physics.seabed import lay_line
 from calm.physics.track import CABLE, ROD, Course
@@ -48,6 +58,11 @@ LEFT = 10
 
 SHORT = 1e-6
 """Length of a segment, as a share of the longest, that says nothing of the load of the next."""
+EXACT, ROUGH = 1e-8, 3e-3
+"""Change of the mean flow along a segment, as a share of the flow, from which the segment is split
+at a level: of a shape to be closed to the last digits, and of other marches."""
+SLIVER = 0.01
+"""Part of a segment above a level, as a share of the segment, at which no chosen segment ends."""
 
 
 class How(NamedTuple):
@@ -173,6 +188,8 @@ def pass_cable(
     cable, knots, vibration = course.cables[place], course.knots, course.vibration
     first, done, hanging = used, 0.0, -1.0
     near, expected = how.near, (0.0, 0.0, 0.0)
+    share = EXACT if how.given and near == 0.0 else ROUGH
+    others = 3 * len(course.loads) + 2 * len(course.stages)
     while used - first < counts[place] if how.given else done < cable.length or used == first:
         if used == len(cuts):
             return state, hanging, used, nodes, NO_ROOM
@@ -181,34 +198,59 @@ def pass_cable(
             left = cable.length - done
             cut = segment_length(cable, knots, vibration, sea, state, how.angle_step, how.reach)
             cut = min(left, cut)
-            if left - cut < 0.01 * cut:
+            if left - cut < SLIVER * cut:
                 cut = left
-            if cable.friction == CONSTANT:
-                cut = until_turn(cable, knots, vibration, sea, state, cut, near, expected)
-            cuts[used] = cut
         used += 1
-        hung = cut
-        if lands and off_bed(how.bed, state[3], state[4], state[5]) > 0.0:
-            hung = touchdown(cable, knots, vibration, sea, state, cut, near, expected, how.bed)
-        _, _, _, ax, ay, az, _, _ = state
-        state, strain = pass_segment(cable, knots, vibration, sea, state, hung, near, expected)
-        x, y, z, fx, fy, fz, tz, level = state
-        if strain == NO_BALANCE:
-            return state, hanging, used, nodes, SEGMENT_UNBALANCED
-        if not isfinite(x + y + z + fx + fy + fz):
-            return state, hanging, used, nodes, RUNS_OFF
-        if hung > SHORT * how.reach:
-            expected = (fx - ax) / hung, (fy - ay) / hung, (fz - az) / hung
-        if hung < cut:
-            fx, fy, fz = along_bed(how.bed, fx, fy, fz)
-            state = x, y, z, fx, fy, fz, tz, level
-            hanging = done + hung
-        if how.recording:
-            write_element(record, nodes, cable.piece, -1, hung, strain)
-            write_node(record, nodes, state)
-        nodes += 1
-        done += cut
+        left, long = cut, 0.0
+        while hanging < 0.0:
+            part, ax, ay, az = left, state[3], state[4], state[5]
+            below, strain = pass_segment(cable, knots, vibration, sea, state, part, near, expected)
+            level = level_within(sea, state[7], -state[2], -below[2], share)
+            if level > 0:
+                part, below, strain = until_level(
+                    cable, knots, vibration, sea, state, below, part, near, level, share
+                )
+            if cable.friction == CONSTANT and flow_turns(sea, state, below):
+                part = until_turn(cable, knots, vibration, sea, state, part, near, expected)
+                below, strain = pass_segment(
+                    cable, knots, vibration, sea, state, part, near, expected
+                )
+            hung = part
+            if lands and off_bed(how.bed, state[3], state[4], state[5]) > 0.0:
+                hung = touchdown(cable, knots, vibration, sea, state, part, near, expected, how.bed)
+            if hung < part:
+                below, strain = pass_segment(
+                    cable, knots, vibration, sea, state, hung, near, expected
+                )
+            x, y, z, fx, fy, fz, tz, level_index = below
+            if strain == NO_BALANCE:
+                return below, hanging, used, nodes, SEGMENT_UNBALANCED
+            if not isfinite(x + y + z + fx + fy + fz):
+                return below, hanging, used, nodes, RUNS_OFF
+            if hung > SHORT * how.reach:
+                expected = (fx - ax) / hung, (fy - ay) / hung, (fz - az) / hung
+            if hung < part:
+                fx, fy, fz = along_bed(how.bed, fx, fy, fz)
+                below = x, y, z, fx, fy, fz, tz, level_index
+                hanging = done + hung
+            state, left, done, long = below, left - part, done + part, long + hung
+            splits = left > 0.0 and hanging < 0.0
+            if splits and not how.given and part > SLIVER * cut:
+                cut, left, splits = cut - left, 0.0, False
+            if not splits or near == 0.0:
+                if how.recording:
+                    if nodes + others >= len(record[0]):
+                        return state, hanging, used, nodes, NO_ROOM
+                    write_element(record, nodes, cable.piece, -1, long, strain)
+                    write_node(record, nodes, state)
+                    record[SEGMENT][nodes] = SPLITS if splits else ENDS
+                nodes, long = nodes + 1, 0.0
+            if left <= 0.0:
+                break
+        if not how.given:
+            cuts[used - 1] = cut
         if hanging >= 0.0:
+            done += left
             break
         if used - first > MOST_SEGMENTS:
             return state, hanging, used, nodes, ENDLESS

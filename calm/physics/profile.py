@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from functools import cached_property
-from math import inf, isfinite
+from math import inf, isfinite, sqrt
 from typing import NamedTuple
 
 from calm.physics.compiled import packed, within
@@ -112,6 +112,48 @@ def distance_to_level(
         i += ahead
         gap = (levels[i] - depth) / sinking
     return gap
+
+
+def level_within(sea: Sea, hint: int, start: float, end: float, share: float) -> int:
+    """Index of the first level that a straight segment has to be split at; 0 if there is none.
+
+    Parameters
+    ----------
+    hint : interval from which the start is searched
+    start, end : depths of the ends of the segment [m]
+    share : see `counts_across`
+    """
+    levels = sea.levels
+    if levels[hint] <= start < levels[hint + 1] and levels[hint] <= end < levels[hint + 1]:
+        return 0
+    i, last = interval_at(levels, start, hint), interval_at(levels, end, hint)
+    while i != last:
+        k = i + 1 if last > i else i
+        off = min(abs(levels[k] - start), abs(levels[k] - end))
+        if counts_across(sea, k, off, abs(end - start), share):
+            return k
+        i += 1 if last > i else -1
+    return 0
+
+
+def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> bool:
+    """Whether a segment that extends beyond a level needs to be split there.
+
+    The flow at the middle of a segment stands for the mean flow along it. If the slope of the
+    current changes by b at a level, the mean is off by b·off²/(2·length): twice that may be at most
+    `share` of the flow at the level.
+
+    Parameters
+    ----------
+    k : index of the level
+    off : depth range of the segment on the far side of the level [m]
+    length : depth range of the segment [m]
+    """
+    above, below = sea.intervals[k - 1], sea.intervals[k]
+    du, dv, dw = below.du - above.du, below.dv - above.dv, below.dw - above.dw
+    bend = sqrt(du * du + dv * dv + dw * dw)
+    flow = sqrt(below.u * below.u + below.v * below.v + below.w * below.w)
+    return bend * off * off > share * length * flow
 
 
 class Profile:

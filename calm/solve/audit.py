@@ -103,11 +103,12 @@ _OF_CLAMP = {
 
 
 def shape_of(solution: Solution) -> RefereeShape:
-    """The shape of a solution as the referee takes it."""
+    """The shape of a solution as the referee takes it: as it was marched."""
     nodes = len(solution.position)
     none = np.zeros(1)
     of_elements = solution.element_piece, solution.element_clamp, solution.cut, solution.strain
-    columns = [*solution.position.T, *solution.force.T]
+    closed = solution.marched or solution
+    columns = [*closed.position.T, *closed.force.T]
     columns += [np.concatenate([none, column]) for column in of_elements]
     first, last = solution.piece_nodes.T.tolist()
     record = [column.tolist() for column in columns]

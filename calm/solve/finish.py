@@ -8,9 +8,10 @@ from calm.errors import NoEquilibrium
 from calm.physics.line import FAILURES, Line, Trace, Water
 from calm.physics.track import Load
 from calm.solve import solution
+from calm.solve.accuracy import Errors
 from calm.solve.closing import Closed
 from calm.solve.problem import BELOW, CHANGED, FINE, MARCHES, MOST_AFLOAT, LineProblem
-from calm.solve.refine import Errors, Refined
+from calm.solve.refine import Refined
 from calm.solve.search import NO_OTHER, FoundShape, ending_of_audit
 from calm.solve.solution import Settings, Solution, Status, standing_lift, too_heavy
 
@@ -74,25 +75,27 @@ def solution_of(
     """
     closed = refined.closed
     trace = Trace.of(problem.work.records[FINE], closed.nodes)
-    position = trace.position
+    trace.position[:, :2] -= trace.position[-1, :2]
+    position, force = trace.better[:, :3].copy(), trace.better[:, 3:].copy()
     position[:, :2] -= position[-1, :2]
-    used, reserve = _buoyancy_in_use(problem, closed)
+    used, reserve = _buoyancy_in_use(problem, refined)
     unknown = closed.root.unknown
     floats = problem.surfacing[: unknown.sought + 1]
     riding = None
     if unknown.sought != BELOW and unknown.rides and line.floating is not None:
-        riding = line.floating.riding(closed.root.x)
+        riding = line.floating.riding(refined.share)
     return Solution(
         line=line,
         water=water,
         settings=settings,
         position=position,
-        force=trace.force,
+        force=force,
+        marched=trace,
         element_piece=trace.piece,
         element_clamp=trace.clamp,
         landed=bool(closed.landed),
         hanging=closed.hanging,
-        grounded_length=closed.grounded,
+        grounded_length=refined.grounded,
         cut=trace.cut,
         strain=trace.strain,
         afloat=tuple(int(each[0]) for each in floats),
@@ -111,13 +114,13 @@ def solution_of(
     )
 
 
-def _buoyancy_in_use(problem: LineProblem, closed: Closed) -> tuple[float, float]:
+def _buoyancy_in_use(problem: LineProblem, refined: Refined) -> tuple[float, float]:
     """Share in use of the buoyancy of the floats at the surface, and the rest of it [N]."""
-    sought = closed.root.unknown.sought
+    sought = refined.closed.root.unknown.sought
     if sought == BELOW:
         return 1.0, 0.0
     lifts = [float(each[6]) for each in problem.surfacing[: sought + 1]]
-    shares = [*problem.work.shares[0][:sought], closed.root.x]
+    shares = [*problem.work.shares[0][:sought], refined.share]
     total, used = sum(lifts), sum(a * b for a, b in zip(shares, lifts, strict=True))
     return float(used / total), float(total - used)
 
@@ -145,13 +148,12 @@ def solution_found(
     """
     if found.ending != solution.FOUND:
         raise refusal_of(found, line, water)
-    other = None if found.other_depth == NO_OTHER else found.other_depth
+    other = None if found.other == NO_OTHER else found.other
     return replace(
         solution_of(problem, line, water, settings, found.refined, found.errors),
         closure=found.closure,
         moment_residual=found.moment,
-        other_depth=other,
-        other_grounded_length=found.other_grounded,
+        other=other,
     )
 
 

@@ -243,4 +243,5 @@ def _joined(upper: Trace, lower: Trace, pieces: int) -> Trace:
         clamp=np.concatenate([upper.clamp, lower.clamp[::-1]]),
         cut=np.concatenate([upper.cut, lower.cut[::-1]]),
         strain=np.concatenate([upper.strain, lower.strain[::-1]]),
+        better=np.concatenate([upper.better, lower.better[-2::-1]]),
     )

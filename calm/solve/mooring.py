@@ -17,6 +17,7 @@ from calm.physics.compiled import by_address, outcome
 from calm.physics.line import NO_ROOM, Floats, Line, Trace, Water
 from calm.physics.passing import FAILURE
 from calm.physics.track import Track
+from calm.solve.accuracy import Errors, take_as_marched
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root, miss_at, not_closed, planned, polish, whole_line
 from calm.solve.finish import closing_refusal, solution_found
@@ -33,12 +34,13 @@ from calm.solve.problem import (
     Unknown,
     problem_of,
 )
-from calm.solve.refine import Errors, Refined
+from calm.solve.refine import Refined
 from calm.solve.search import FoundShape, Referee, audited, find_shape
 from calm.solve.solution import (
     FOUND,
     MARCH_STOPPED,
     SLACK_ON_DIGITS,
+    OtherEquilibrium,
     Settings,
     Solution,
     Status,
@@ -59,10 +61,9 @@ BREATH = 1e-3
 
 
 def stirred(water: Water) -> Water | None:
-    """Return the same water with a breath of current wherever it has less; None if nowhere.
+    """Return the same water with a weak current where it has none; None if it has one everywhere.
 
-    A slack line that hangs in still water folds plumb, which is the limit of a weak current; but
-    how it turns where nothing pulls it sideways no march can say.
+    The slack part of a line in the still layer of a current folds plumb, as in the weakest current.
     """
     still = np.hypot(water.u, water.v) < BREATH
     return replace(water, u=np.where(still, BREATH, water.u)) if still.any() else None
@@ -99,7 +100,8 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         if not lacks_room(problem):
             break
         room *= MORE_ROOM
-    if found.ending == SLACK_ON_DIGITS and (moving := stirred(water)):
+    slack_in_a_current = found.ending == SLACK_ON_DIGITS and water.moving
+    if slack_in_a_current and (moving := stirred(water)):
         return solve_mooring(line, moving, settings)
     return solution_found(found, problem, line, water, settings)
 
@@ -170,8 +172,9 @@ def find_now(find: Callable[[AskedSearch, float], float], asked: AskedSearch) ->
 
 ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
 NODES, HANGING, LANDED, GROUNDED, SEGMENTS, FIRST_ERROR = range(11, 17)
-CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED = range(22, 26)
-"""Where it stands in what a search tells; from `FIRST_ERROR` on the errors."""
+CLOSURE, MOMENT, SHARE_IN_USE, LIES, FIRST_OTHER = range(22, 27)
+"""Where it stands in what a search tells; from `FIRST_ERROR` on the errors, and
+from `FIRST_OTHER` on another equilibrium."""
 
 
 def tell(found: FoundShape, told: MutableSequence[float]) -> None:
@@ -189,8 +192,12 @@ def tell(found: FoundShape, told: MutableSequence[float]) -> None:
     told[FIRST_ERROR], told[FIRST_ERROR + 1] = errors.depth, errors.tension
     told[FIRST_ERROR + 2] = errors.relative
     told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
+    told[SHARE_IN_USE], told[LIES] = found.refined.share, found.refined.grounded
     told[CLOSURE], told[MOMENT] = found.closure, found.moment
-    told[OTHER_DEPTH], told[OTHER_GROUNDED] = found.other_depth, found.other_grounded
+    other = found.other
+    told[FIRST_OTHER], told[FIRST_OTHER + 1] = other.depth, other.grounded_length
+    told[FIRST_OTHER + 2], told[FIRST_OTHER + 3] = other.used_buoyancy, other.anchor_vertical
+    told[FIRST_OTHER + 4] = other.anchor_horizontal
 
 
 def as_told(told: Sequence[float]) -> FoundShape:
@@ -202,8 +209,10 @@ def as_told(told: Sequence[float]) -> FoundShape:
     value = float(told[VALUE])
     closed = Closed(ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]))
     errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
-    last = [float(told[i]) for i in (CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED)]
-    return FoundShape(ending, value, piece, Refined(closed, segments, errors), errors, *last)
+    other = OtherEquilibrium(*(float(figure) for figure in told[FIRST_OTHER : FIRST_OTHER + 5]))
+    refined = Refined(closed, segments, errors, float(told[SHARE_IN_USE]), float(told[LIES]))
+    audit = float(told[CLOSURE]), float(told[MOMENT])
+    return FoundShape(ending, value, piece, refined, errors, *audit, other)
 
 
 WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
@@ -288,8 +297,10 @@ class Nearby:
             raise Status.NOT_CONVERGED.because("It lies on the seabed, or hangs, unlike the other.")
         errors = Errors(base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error)
         referee = referee_of(line, water, 0.0, compiled)
-        refined = Refined(closed, len(self._cuts), errors)
+        refined = Refined(closed, len(self._cuts), errors, closed.root.x, closed.grounded)
         problem = search.problem
+        record = problem.work.records[FINE]
+        outcome(take_as_marched, compiled, record, closed.nodes)
         found = outcome(audited, compiled, problem, referee, refined)
         return solution_found(found, problem, line, water, self._settings)
 

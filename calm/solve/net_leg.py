@@ -18,6 +18,7 @@ from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
 from calm.physics.track import CableStretch, Course, Load, Stage
 from calm.solve import net_march
+from calm.solve.accuracy import Errors, take_as_marched
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root
 from calm.solve.finish import carried_by, risen, solution_of, touching
@@ -35,7 +36,7 @@ from calm.solve.problem import (
     problem_of,
     work_for,
 )
-from calm.solve.refine import Errors, Refined
+from calm.solve.refine import Refined
 from calm.solve.search import residuals
 from calm.solve.solution import FOUND, Settings, Solution, Status
 
@@ -232,7 +233,9 @@ def leg_found(
         float(state[net_march.GROUNDED]),
     )  # fmt: skip
     told = Errors(deep, taut, 0.0, taut, taut)
-    refined = Refined(closed, int(sum(work.counts[HALVED])), told)
+    outcome(take_as_marched, compiled, work.records[FINE], closed.nodes)
+    segments = int(sum(work.counts[HALVED]))
+    refined = Refined(closed, segments, told, share, closed.grounded)
     found = solution_of(problem, laid.line, water, settings, refined, told)
     referee = referee_of(carried_by(laid.line, problem), water, 0.0, compiled)
     shape = RefereeShape(
@@ -255,6 +258,7 @@ def leg_found(
         hanging=found.hanging - first,
         cut=found.cut[first:],
         strain=found.strain[first:],
+        marched=None,
         marches=int(state[net_march.MARCHES]),
         closure=closure,
         moment_residual=moment,

@@ -1,6 +1,7 @@
 """A towed line: how deep its free end runs behind a ship that steams on steadily."""
 
 from dataclasses import dataclass, replace
+from math import nan
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from calm.physics.line import Floats, Line, MarchError, Water
 from calm.solve.finish import refuse_unbalanced, solution_of
 from calm.solve.least_change import bracketed_root
 from calm.solve.search import audit_shape, stated_errors
-from calm.solve.solution import Settings, Solution, Status
+from calm.solve.solution import OtherEquilibrium, Settings, Solution, Status
 from calm.solve.towing import Towed, Waterline, half_out
 
 SURFACE_BAND = 1e-7
@@ -100,7 +101,8 @@ def solve_tow(
     _refuse_misplaced(solution, towing)
     closure, moment = outcome(audit_shape, tow.compiled, problem, tow.referee, refined.closed)
     refuse_unbalanced(closure, moment)
-    return replace(solution, closure=closure, moment_residual=moment, other_depth=other_depth)
+    other = None if other_depth is None else OtherEquilibrium(other_depth, 0.0, 1.0, nan, nan)
+    return replace(solution, closure=closure, moment_residual=moment, other=other)
 
 
 def _refuse_limp(towed: Line) -> None:

@@ -12,6 +12,7 @@ from calm.physics.drag import Vector
 from calm.physics.line import FAILURES, Line, MarchError, Trace, Water
 from calm.physics.passing import FAILURE, FX, FY, FZ, NODES
 from calm.physics.track import Track
+from calm.solve.accuracy import Errors, bent, extrapolate, take_as_marched
 from calm.solve.audit import referee_of
 from calm.solve.closing import (
     Closed,
@@ -38,15 +39,7 @@ from calm.solve.problem import (
     Search,
     problem_of,
 )
-from calm.solve.refine import (
-    MOST_ROUNDS,
-    MOST_SEGMENTS,
-    Errors,
-    Refined,
-    errors_of,
-    excess_of,
-    with_bends,
-)
+from calm.solve.refine import MOST_ROUNDS, MOST_SEGMENTS, Refined, excess_of
 from calm.solve.search import Referee
 from calm.solve.solution import FOUND, MARCH_STOPPED, Settings, Status, runs_compiled
 
@@ -168,14 +161,18 @@ class Towed:
             coarse = self.closed
             polish(HALVED, FINE)
             problem = self.search.problem
-            errors: Errors = outcome(errors_of, self.compiled, problem, coarse, self.closed)
-            refined = Refined(self.closed, segments, errors)
-            excess = excess_of(problem, errors, False)
+            records = problem.work.records
+            errors: Errors = outcome(
+                extrapolate, self.compiled, records[COARSE], coarse, records[FINE], self.closed
+            )
+            excess = excess_of(problem, errors)
             if excess <= 1.0 or segments > MOST_SEGMENTS:
                 break
             step *= max(0.8 / sqrt(excess), 0.2)
-        bent: Refined = outcome(with_bends, self.compiled, problem, refined)
-        return bent
+        kinked, errors = outcome(bent, self.compiled, problem, self.closed, errors)
+        if kinked:
+            outcome(take_as_marched, self.compiled, records[FINE], self.closed.nodes)
+        return Refined(self.closed, segments, errors, self.closed.root.x, 0.0)
 
     def _planned(self, step: float) -> Root:
         root: Root = outcome(planned, self.compiled, self.search, self.root, step)

@@ -97,7 +97,8 @@ def closure(solution: Solution, profile: Profile | None = None) -> float:
     touchdown; where a rigid piece or a clamp comes down there, it and the seabed settle the
     vertical ones between them.
     """
-    line, position = solution.carried, solution.position
+    closed = solution.marched or solution
+    line, position = solution.carried, closed.position
     gravity = solution.water.gravity
     profile, total = profile or Profile(solution.water), np.zeros(3)
 
@@ -123,7 +124,7 @@ def closure(solution: Solution, profile: Profile | None = None) -> float:
             if cut > 0.0:
                 stretched = np.linalg.norm(ends[1] - ends[0]) / cut
                 total += cut * pull(load, *ends, stretched ** line.thinning[piece])
-    anchor = solution.force[-1]
+    anchor = closed.force[-1]
     if solution.landed:
         around = slice(solution.hanging - 1, solution.hanging + 1)
         piece, segment = solution.element_piece[around], solution.element_clamp[around] < 0

@@ -1,0 +1,257 @@
+"""Error of a shape closed on coarse and on halved segments, and the extrapolation from both.
+
+The march is of second order: a third of the change from the coarse to the fine shape is the error
+of the fine one, and is added to it (Richardson's extrapolation). Nodes inside the segments of the
+coarse shape, and those at levels that split a segment, take the change of their neighbours.
+
+A load or a stretch that bends inside a segment, where a law of drag switches or an elongation curve
+has a knot, may count for the same on coarse and on halved segments. It shows as a bend between
+neighbours, and adds to the error; if it is as large as the rest, nothing is extrapolated.
+"""
+
+from math import sqrt
+from typing import Any, NamedTuple
+
+from calm.physics.drag import Vector
+from calm.physics.line import BETTER, ENDS, NO_SEGMENT, SEGMENT, SPLITS, Record
+from calm.physics.profile import interval_at
+from calm.solve.closing import Closed
+from calm.solve.problem import FINE, LineProblem
+
+KINKED = 0.5
+"""Error of a bend inside a segment, as a share of the rest, from which nothing is extrapolated."""
+AT_A_LEVEL = 0.05
+"""How near to a level, in segments, a node is as good as there: bends are at home at levels."""
+
+
+class Errors(NamedTuple):
+    """Own estimates of the errors of a shape: of depths and offsets [m], of tensions [N] and
+    relative, and of the upward and the horizontal force at its end [N]."""
+
+    depth: float
+    tension: float
+    relative: float
+    lift: float
+    pull: float
+
+
+UNKNOWN_ERRORS = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def tension_at(record: Record, node: int) -> float:
+    """Tension at a node [N]."""
+    fx, fy, fz = record[3][node], record[4][node], record[5][node]
+    return sqrt(fx * fx + fy * fy + fz * fz)
+
+
+def next_node(record: Record, node: int, last: int, segments: int) -> int:
+    """The node that ends so many segments, or elements that are none, after a node; at most the
+    last."""
+    for _ in range(segments):
+        node += 1
+        while node < last and record[SEGMENT][node] == SPLITS:
+            node += 1
+    return min(node, last)
+
+
+def extrapolate(before: Record, coarse: Closed, after: Record, fine: Closed) -> Errors:
+    """Extrapolate a shape, in the columns from `BETTER` on of the fine record; its errors.
+
+    Nodes that both shapes have correspond: the ends of segments that hang, the touchdowns, and
+    what lies below them.
+
+    Parameters
+    ----------
+    before, coarse : record of the shape on coarse segments, and how it closed
+    after, fine : the same on halved ones
+    """
+    end = fine.nodes - 1
+    greatest = 0.0
+    for m in range(fine.nodes):
+        greatest = max(greatest, tension_at(after, m))
+    floor = max(1e-3 * greatest, 1e-300)
+    place = worst = relative = 0.0
+    n = m = before_m = 0
+    while True:
+        hangs = n < coarse.hanging or not coarse.landed
+        strayed, changed = add_third(before, coarse.nodes - 1, n, after, end, m)
+        fill_between(after, before_m, m)
+        if hangs:
+            place = max(place, strayed)
+        if hangs or n != coarse.hanging:
+            worst = max(worst, changed)
+            relative = max(relative, changed / max(tension_at(after, m), floor))
+        if n == coarse.nodes - 1:
+            break
+        before_m = m
+        n, m = next_pair(before, coarse, n, after, fine, m)
+    last = coarse.nodes - 1
+    # a little more is stated for the end: these are two figures and no worst of many
+    east, north = before[3][last] - after[3][end], before[4][last] - after[4][end]
+    return Errors(
+        place, worst, relative, abs(before[5][last] - after[5][end]) / 2.5,
+        sqrt(east * east + north * north) / 2.5,
+    )  # fmt: skip
+
+
+def next_pair(
+    before: Record, coarse: Closed, n: int, after: Record, fine: Closed, m: int
+) -> tuple[int, int]:
+    """The next nodes of a coarse and of a fine shape that correspond."""
+    last, end = coarse.nodes - 1, fine.nodes - 1
+    if not coarse.landed or not fine.landed:
+        following = next_node(before, n, last, 1)
+        if following == last:
+            return last, end
+        halves = 2 if before[SEGMENT][following] == ENDS else 1
+        return following, next_node(after, m, end, halves)
+    if n < coarse.hanging:
+        following = next_node(before, n, coarse.hanging, 1)
+        halves = 2 if before[SEGMENT][following] == ENDS else 1
+        there = next_node(after, m, fine.hanging, halves)
+        if following == coarse.hanging or there == fine.hanging:
+            return coarse.hanging, fine.hanging
+        return following, there
+    if last - n != end - m:
+        return last, end
+    return n + 1, m + 1
+
+
+def add_third(
+    before: Record, last: int, n: int, after: Record, end: int, m: int
+) -> tuple[float, float]:
+    """Extrapolate a node of both shapes; a third of its change of place [m] and of tension [N].
+
+    Places are those from the line's end.
+    """
+    place = 0.0
+    for column in range(6):
+        was, now = before[column][n], after[column][m]
+        third = (now - was) / 3.0
+        if column < 2:
+            third -= (after[column][end] - before[column][last]) / 3.0
+        if column < 3:
+            place = max(place, abs(third))
+        after[BETTER + column][m] = now + third
+    return place, abs(tension_at(before, n) - tension_at(after, m)) / 3.0
+
+
+def fill_between(record: Record, first: int, last: int) -> None:
+    """Extrapolate the nodes between two as these are, by the length between."""
+    length = way = 0.0
+    for m in range(first + 1, last + 1):
+        length += record[8][m]
+    for m in range(first + 1, last):
+        way += record[8][m]
+        share = way / length if length > 0.0 else 0.0
+        for column in range(6):
+            above = record[BETTER + column][first] - record[column][first]
+            below = record[BETTER + column][last] - record[column][last]
+            record[BETTER + column][m] = record[column][m] + above + share * (below - above)
+
+
+def bent(problem: LineProblem, fine: Closed, errors: Errors) -> tuple[bool, Errors]:
+    """Add what bends inside the segments of the record `FINE` may cost to its errors.
+
+    Returns
+    -------
+    Whether they cost so much that the shape is not to be extrapolated; and the errors.
+    """
+    strayed, lost = abrupt_change(problem, fine)
+    whole = Errors(
+        errors.depth + strayed, errors.tension + lost, errors.relative, errors.lift + lost,
+        errors.pull + lost,
+    )  # fmt: skip
+    return strayed > KINKED * errors.depth or lost > KINKED * errors.tension, whole
+
+
+def take_as_marched(record: Record, nodes: int) -> None:
+    """Report the places and forces of a shape as they were marched, not extrapolated."""
+    for column in range(6):
+        for m in range(nodes):
+            record[BETTER + column][m] = record[column][m]
+
+
+def abrupt_change(problem: LineProblem, fine: Closed) -> tuple[float, float]:
+    """Return what the worst abrupt change inside a segment may cost: in place [m], in tension [N].
+
+    If the slope of what a segment adds per metre bends by Δ inside one of length h, its value at
+    the middle is off by up to Δh²/8. Where the curve is smooth the segments two away bend alike:
+    only what exceeds their bend is abrupt.
+    """
+    record, sizes = problem.work.records[FINE], problem.work.elements
+    levels, hanging = problem.sea.levels, fine.hanging
+    level, smooth_before = 0, False
+    for k in range(hanging + 1):
+        sizes[0][k] = sizes[1][k] = -1.0
+    for k in range(1, hanging):  # the joint between elements k and k + 1, at node k
+        smooth = (
+            record[SEGMENT][k] == ENDS
+            and record[SEGMENT][k + 1] != NO_SEGMENT
+            and record[6][k] == record[6][k + 1]
+            and record[8][k] > 0.0
+            and record[8][k + 1] > 0.0
+        )
+        if smooth:
+            depth = -record[2][k]
+            level = interval_at(levels, depth, level)
+            off = min(depth - levels[level], levels[level + 1] - depth)
+            smooth = off > AT_A_LEVEL * max(record[8][k], record[8][k + 1])
+        if smooth and smooth_before:
+            for part in range(2):
+                x, y, z = bend_in(record, k, 3 * part)
+                sizes[part][k] = sqrt(x * x + y * y + z * z)
+        smooth_before = smooth
+    strayed = lost = 0.0
+    pull = tension_at(record, hanging)
+    for k in range(2, hanging):
+        for part in range(2):
+            size = sizes[part][k]
+            usual = max(sizes[part][k - 2], sizes[part][k + 2] if k + 2 < hanging else -1.0)
+            if size < 0.0 or not (usual >= 0.0 and size > usual):
+                continue
+            share = (size - usual) / size
+            if part == 0:
+                strayed = max(strayed, share * size)
+                continue
+            x, y, z = bend_in(record, k, 3)
+            # what a force adds to the tension there, and where the line hangs from in the end
+            here = along(record, k, tension_at(record, k), x, y, z)
+            there = along(record, hanging, pull, x, y, z)
+            lost = max(lost, share * max(here, there))
+    return strayed, lost
+
+
+def bend_in(record: Any, k: int, column: int) -> Vector:
+    """Return what a bend inside element k may cost of a place, or of a force, by its neighbours'
+    slopes.
+
+    `column` : the first of the three in the record
+    """
+    above, own, below = record[8][k - 1], record[8][k], record[8][k + 1]
+    rise, fall = 0.5 * (above + own), 0.5 * (own + below)
+    scale = own * own / 8.0
+    return (
+        bend_of(record[column], k, above, own, below, rise, fall) * scale,
+        bend_of(record[column + 1], k, above, own, below, rise, fall) * scale,
+        bend_of(record[column + 2], k, above, own, below, rise, fall) * scale,
+    )
+
+
+def bend_of(
+    values: Any, k: int, above: float, own: float, below: float, rise: float, fall: float
+) -> float:
+    """By how much the slope of what is added per metre changes along element k."""
+    first = (values[k - 1] - values[k - 2]) / above
+    second = (values[k] - values[k - 1]) / own
+    third = (values[k + 1] - values[k]) / below
+    bend: float = (third - second) / fall - (second - first) / rise
+    return bend
+
+
+def along(record: Record, node: int, tension: float, x: float, y: float, z: float) -> float:
+    """Return how much of a vector is along the force at a node."""
+    if tension == 0.0:
+        return 0.0
+    pulled: float = abs(x * record[3][node] + y * record[4][node] + z * record[5][node])
+    return pulled / tension
