@@ -170,6 +170,37 @@ def pass_segment(
     )
 
 
+def pass_part(
+    cable: CableStretch,
+    knots: Sequence[Knot],
+    vibration: Vibration,
+    sea: Sea,
+    state: State,
+    length: float,
+    halves: bool,
+    near: float,
+    expected: Vector,
+) -> tuple[State, float, State, float]:
+    """Pass a part of a segment, straight or as two straight halves.
+
+    `near` and `expected` are as in `pass_segment`.
+
+    Returns
+    -------
+    The state in the middle and the strain above it, if there are halves; the state below the part
+    and the strain above that.
+    """
+    if not halves:
+        below, strain = pass_segment(cable, knots, vibration, sea, state, length, near, expected)
+        return below, strain, below, strain
+    half = 0.5 * length
+    middle, upper = pass_segment(cable, knots, vibration, sea, state, half, near, expected)
+    if upper == NO_BALANCE:
+        return middle, upper, middle, upper
+    below, strain = pass_segment(cable, knots, vibration, sea, middle, half, near, expected)
+    return middle, upper, below, strain
+
+
 def vibrating_share(
     vibration: Vibration,
     beat: float,
@@ -213,6 +244,7 @@ def touchdown(
     sea: Sea,
     state: State,
     cut: float,
+    halves: bool,
     near: float,
     expected: Vector,
     bed: Bed,
@@ -220,13 +252,13 @@ def touchdown(
     """Return how much of a segment hangs before its end has nothing left to carry above the bed
     [m]; at most `cut`.
 
-    `near` and `expected` are as in `pass_segment`.
+    `halves`, `near` and `expected` are as in `pass_part`.
     """
     low, high, hanging = 0.0, cut, cut
     carried = off_bed(bed, state[3], state[4], state[5])
     for _ in range(PASSES):
-        (_, _, _, fx, fy, fz, _, _), _ = pass_segment(
-            cable, knots, vibration, sea, state, hanging, near, expected
+        _, _, (_, _, _, fx, fy, fz, _, _), _ = pass_part(
+            cable, knots, vibration, sea, state, hanging, halves, near, expected
         )
         fz = off_bed(bed, fx, fy, fz)
         if hanging == cut and fz > 0.0:
@@ -250,22 +282,20 @@ def until_level(
     state: State,
     below: State,
     cut: float,
+    halves: bool,
     near: float,
     k: int,
     share: float,
-) -> tuple[float, State, float]:
-    """Pass the part of a segment down to a level of the profile.
+) -> float:
+    """Length of the part of a segment down to a level of the profile [m].
 
     The first trial follows from the mean load of the segment, the others are secants.
 
     Parameters
     ----------
     below : the state below the whole segment
+    halves, near : as in `pass_part`
     k, share : see `counts_across`
-
-    Returns
-    -------
-    Length of the part [m], the state below it, and its strain.
     """
     _, _, z, fx, fy, fz, _, _ = state
     level, start, whole = sea.levels[k], -z, z - below[2]
@@ -277,9 +307,10 @@ def until_level(
         if sinks * last > 0.0:
             part = min(cut * (level - start) / whole * (last / sinks), cut)
     before, above = 0.0, start
-    passed, strain = below, NO_BALANCE
     for _ in range(TRIALS):
-        passed, strain = pass_segment(cable, knots, vibration, sea, state, part, near, load)
+        _, _, passed, strain = pass_part(
+            cable, knots, vibration, sea, state, part, halves, near, load
+        )
         depth = -passed[2]
         off, depths = abs(depth - level), abs(depth - start)
         if strain == NO_BALANCE or off <= AT_A_LEVEL * abs(whole) or depth == above:
@@ -289,7 +320,7 @@ def until_level(
         following = part + (level - depth) * (part - before) / (depth - above)
         before, above = part, depth
         part = following if 0.0 < following < cut else 0.5 * part
-    return part, passed, strain
+    return part
 
 
 def sinking(fx: float, fy: float, fz: float, load: Vector, length: float) -> float:
@@ -307,20 +338,24 @@ def until_turn(
     sea: Sea,
     state: State,
     cut: float,
+    halves: bool,
     near: float,
     expected: Vector,
 ) -> float:
     """Return how much of a segment there is before the flow along it turns round [m].
 
-    There a friction of constant size jumps from one direction to the other. At most `cut`; `near`
-    and `expected` are as in `pass_segment`. By regula falsi, whose end that stays is halved.
+    There a friction of constant size jumps from one direction to the other. At most `cut`;
+    `halves`, `near` and `expected` are as in `pass_part`. By regula falsi, whose end that stays is
+    halved.
     """
-    below, _ = pass_segment(cable, knots, vibration, sea, state, cut, near, expected)
+    _, _, below, _ = pass_part(cable, knots, vibration, sea, state, cut, halves, near, expected)
     low, high = 0.0, cut
     at_low, at_high = flow_along(sea, state), flow_along(sea, below)
     for _ in range(PASSES):
         length = low + (high - low) * at_low / (at_low - at_high)
-        below, _ = pass_segment(cable, knots, vibration, sea, state, length, near, expected)
+        _, _, below, _ = pass_part(
+            cable, knots, vibration, sea, state, length, halves, near, expected
+        )
         here = flow_along(sea, below)
         if here * at_low > 0.0:
             low, at_low, at_high = length, here, 0.5 * at_high

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from calm.physics.cable import (
     flow_turns,
-    pass_segment,
+    pass_part,
     segment_length,
     touchdown,
     until_level,
@@ -27,6 +27,7 @@ from calm.physics.line import (
     ENDLESS,
     ENDS,
     GOES_ON,
+    HALVES,
     NO_BALANCE,
     NO_ROOM,
     ROD_UNBALANCED,
@@ -79,6 +80,7 @@ class How(NamedTuple):
         across that vanishes; the rest lies there
     bed : the seabed
     given : whether the segments are given, else chosen
+    halves : whether each part of a segment is passed in two halves
     recording : whether every node and element is recorded
     """
 
@@ -89,6 +91,7 @@ class How(NamedTuple):
     lands: bool
     bed: Bed
     given: bool
+    halves: bool
     recording: bool
 
 
@@ -187,9 +190,9 @@ def pass_cable(
     """
     cable, knots, vibration = course.cables[place], course.knots, course.vibration
     first, done, hanging = used, 0.0, -1.0
-    near, expected = how.near, (0.0, 0.0, 0.0)
+    near, halves, expected = how.near, how.halves, (0.0, 0.0, 0.0)
     share = EXACT if how.given and near == 0.0 else ROUGH
-    others = 3 * len(course.loads) + 2 * len(course.stages)
+    others = 3 * len(course.loads) + 2 * len(course.stages) + 1
     while used - first < counts[place] if how.given else done < cable.length or used == first:
         if used == len(cuts):
             return state, hanging, used, nodes, NO_ROOM
@@ -201,50 +204,65 @@ def pass_cable(
             if left - cut < SLIVER * cut:
                 cut = left
         used += 1
-        left, long = cut, 0.0
+        left, long, whole = cut, 0.0, True
         while hanging < 0.0:
-            part, ax, ay, az = left, state[3], state[4], state[5]
-            below, strain = pass_segment(cable, knots, vibration, sea, state, part, near, expected)
+            part, passed = left, left
+            middle, upper, below, strain = pass_part(
+                cable, knots, vibration, sea, state, part, halves, near, expected
+            )
             level = level_within(sea, state[7], -state[2], -below[2], share)
             if level > 0:
-                part, below, strain = until_level(
-                    cable, knots, vibration, sea, state, below, part, near, level, share
+                part = until_level(
+                    cable, knots, vibration, sea, state, below, part, halves, near, level, share
+                )
+            if part < passed:
+                passed = part
+                middle, upper, below, strain = pass_part(
+                    cable, knots, vibration, sea, state, part, halves, near, expected
                 )
             if cable.friction == CONSTANT and flow_turns(sea, state, below):
-                part = until_turn(cable, knots, vibration, sea, state, part, near, expected)
-                below, strain = pass_segment(
-                    cable, knots, vibration, sea, state, part, near, expected
-                )
+                part = until_turn(cable, knots, vibration, sea, state, part, halves, near, expected)
             hung = part
             if lands and off_bed(how.bed, state[3], state[4], state[5]) > 0.0:
-                hung = touchdown(cable, knots, vibration, sea, state, part, near, expected, how.bed)
-            if hung < part:
-                below, strain = pass_segment(
-                    cable, knots, vibration, sea, state, hung, near, expected
+                hung = touchdown(
+                    cable, knots, vibration, sea, state, part, halves, near, expected, how.bed
+                )
+            if hung < passed:
+                middle, upper, below, strain = pass_part(
+                    cable, knots, vibration, sea, state, hung, halves, near, expected
                 )
             x, y, z, fx, fy, fz, tz, level_index = below
             if strain == NO_BALANCE:
                 return below, hanging, used, nodes, SEGMENT_UNBALANCED
             if not isfinite(x + y + z + fx + fy + fz):
                 return below, hanging, used, nodes, RUNS_OFF
-            if hung > SHORT * how.reach:
-                expected = (fx - ax) / hung, (fy - ay) / hung, (fz - az) / hung
+            above, way = (middle, 0.5 * hung) if halves else (state, hung)
+            if way > SHORT * how.reach:
+                ax, ay, az = above[3], above[4], above[5]
+                expected = (fx - ax) / way, (fy - ay) / way, (fz - az) / way
             if hung < part:
                 fx, fy, fz = along_bed(how.bed, fx, fy, fz)
                 below = x, y, z, fx, fy, fz, tz, level_index
                 hanging = done + hung
+            if how.recording and nodes + others >= len(record[0]):
+                return state, hanging, used, nodes, NO_ROOM
+            if halves and (whole or near == 0.0):
+                if how.recording:
+                    write_element(record, nodes, cable.piece, -1, way, upper)
+                    write_node(record, nodes, middle)
+                    record[SEGMENT][nodes] = HALVES
+                nodes, long = nodes + 1, long - way
             state, left, done, long = below, left - part, done + part, long + hung
             splits = left > 0.0 and hanging < 0.0
             if splits and not how.given and part > SLIVER * cut:
                 cut, left, splits = cut - left, 0.0, False
             if not splits or near == 0.0:
                 if how.recording:
-                    if nodes + others >= len(record[0]):
-                        return state, hanging, used, nodes, NO_ROOM
                     write_element(record, nodes, cable.piece, -1, long, strain)
                     write_node(record, nodes, state)
                     record[SEGMENT][nodes] = SPLITS if splits else ENDS
                 nodes, long = nodes + 1, 0.0
+            whole = False
             if left <= 0.0:
                 break
         if not how.given:

@@ -117,11 +117,10 @@ def miss_at(about: About, x: float) -> float:
         unknown.lands,
         problem.limits.bed,
         about.given,
+        about.cuts == HALVED,
         about.record != NOT_RECORDED,
     )
-    cuts = work.halved if about.cuts == HALVED else work.chosen
-    record = work.records[max(about.record, 0)]
-    counts = work.counts[about.cuts]
+    cuts, counts, record = work.chosen, work.counts[CHOSEN], work.records[max(about.record, 0)]
     pass_line(problem.course, problem.sea, how, depth, out, cuts, counts, record, work.left)
     work.left[LAST] = x
     if unknown.stages == len(problem.course.stages):

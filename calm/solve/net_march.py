@@ -16,7 +16,7 @@ from calm.physics.passing import GROUNDED as LIES
 from calm.physics.profile import Sea
 from calm.physics.track import Course, Load
 from calm.solve.closing import place
-from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, SearchArrays, Unknown
+from calm.solve.problem import BELOW, CHOSEN, HALVED, OTHER, LineProblem, SearchArrays, Unknown
 
 STANDING, HANGING_DOWN, PULLED = range(3)
 """Legs marched from a free upper end, from a free lower end, and from an upper end that is held."""
@@ -194,13 +194,13 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
     leg, state, problem = net.legs[i], net.state[i], leg_of(net, how.sea, i)
     course, work = problem.course, problem.work
     depth, out = begun(net, problem, i, x)
-    cuts = work.halved if how.cuts == HALVED else work.chosen
+    cuts, counts = work.chosen, work.counts[CHOSEN]
     record, left = work.records[how.record], work.left
     reach = degrees(how.step) * leg.longest
     lands = state[LANDS] > 0.0
     near, bed = problem.limits.near, bed_of(net, i)
-    asked = How(how.step, reach, near, leg.stages, lands, bed, how.given, True)
-    pass_line(course, how.sea, asked, depth, out, cuts, work.counts[how.cuts], record, left)
+    asked = How(how.step, reach, near, leg.stages, lands, bed, how.given, how.cuts == HALVED, True)
+    pass_line(course, how.sea, asked, depth, out, cuts, counts, record, left)
     state[MARCHES] += 1.0
     if left[FAILURE] != GOES_ON:
         return int(left[FAILURE])

@@ -17,6 +17,7 @@ from tests.validation.agreement import (
     difference,
     ends_of,
     inside_cables,
+    integrated_ends,
     size_of,
 )
 from tests.validation.batched import in_company
@@ -79,6 +80,8 @@ def compared(family: str, number: int) -> Comparison:
         found = _with_batch(found, case, solution)
     if solution is None or referee is None:
         return found
+    if solution.other is not None and _stand_apart(solution, referee):
+        return replace(found, refusal="CALM reports another equilibrium", undecided=True)
     error = difference(solution, referee)
     pull, weight = _at_the_anchor(solution, referee)
     inside = inside_cables(solution, referee)
@@ -110,6 +113,13 @@ def _solved(case: Case, *, compiled: bool) -> tuple[Solution | None, str]:
         return case(Settings(compiled=compiled)), CONVERGED
     except NoEquilibrium as refusal:
         return None, refusal.status
+
+
+def _stand_apart(solution: Solution, referee: Equilibrium | Towed) -> bool:
+    """Whether of two equilibria CALM and the referee have each another one."""
+    lands = referee.shape.grounded is not None
+    off = np.abs(ends_of(solution)[0] - integrated_ends(referee)[0]).max()
+    return solution.landed != lands or bool(off > 1e-3 * size_of(solution))
 
 
 def _bytes(solution: Solution | None) -> bytes:
