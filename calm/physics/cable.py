@@ -6,6 +6,7 @@ from math import inf, sqrt
 from calm.physics.compiled import within
 from calm.physics.drag import (
     BERTEAUX,
+    CONSTANT,
     HOERNER,
     Vector,
     axis_along,
@@ -16,7 +17,14 @@ from calm.physics.drag import (
     turning_friction,
 )
 from calm.physics.line import NO_BALANCE, Bed, State, off_bed
-from calm.physics.profile import Sea, counts_across, distance_to_level, water_at
+from calm.physics.profile import (
+    Sea,
+    counts_across,
+    distance_to_level,
+    in_interval,
+    level_within,
+    water_at,
+)
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
 from calm.physics.strumming import Vibration, amplified_share, strummed
@@ -30,6 +38,10 @@ NEAR_A_TURN = 1e-6
 AT_A_LEVEL, TRIALS = 1e-9, 10
 """Distance from a level at which a part of a segment ends there, as a share of the depth range of
 the segment, and the most passes that look for it."""
+Passed = tuple[float, State, float, State, float]
+"""How long a part of a segment is that was passed [m]; where it is passed in two halves the state
+between and the strain of the upper one, else the state above it and 0; the state below it, and the
+strain of the lower half, or of all of it."""
 LITTLE_TURN = 1e-6
 """How much the last of a few steps may turn a segment, squared [rad²], and be good enough where it
 need not settle to the last digits."""
@@ -170,35 +182,29 @@ def pass_segment(
     )
 
 
-def pass_part(
+def pass_halves(
     cable: CableStretch,
     knots: Sequence[Knot],
     vibration: Vibration,
     sea: Sea,
     state: State,
-    length: float,
+    cut: float,
     halves: bool,
     near: float,
     expected: Vector,
-) -> tuple[State, float, State, float]:
-    """Pass a part of a segment, straight or as two straight halves.
+) -> Passed:
+    """Pass a segment, or a part of one: straight, or in two straight halves.
 
     `near` and `expected` are as in `pass_segment`.
-
-    Returns
-    -------
-    The state in the middle and the strain above it, if there are halves; the state below the part
-    and the strain above that.
     """
-    if not halves:
-        below, strain = pass_segment(cable, knots, vibration, sea, state, length, near, expected)
-        return below, strain, below, strain
-    half = 0.5 * length
-    middle, upper = pass_segment(cable, knots, vibration, sea, state, half, near, expected)
-    if upper == NO_BALANCE:
-        return middle, upper, middle, upper
-    below, strain = pass_segment(cable, knots, vibration, sea, middle, half, near, expected)
-    return middle, upper, below, strain
+    half = 0.5 * cut if halves else cut
+    above, upper, below, strain = state, 0.0, state, 0.0
+    for _ in range(2 if halves else 1):
+        above, upper = below, strain
+        below, strain = pass_segment(cable, knots, vibration, sea, above, half, near, expected)
+        if strain == NO_BALANCE:
+            break
+    return cut, above, upper, below, strain
 
 
 def vibrating_share(
@@ -248,22 +254,19 @@ def touchdown(
     near: float,
     expected: Vector,
     bed: Bed,
-) -> float:
-    """Return how much of a segment hangs before its end has nothing left to carry above the bed
-    [m]; at most `cut`.
+) -> Passed:
+    """Pass the part of a segment that hangs: to where it has nothing left to carry above the bed.
 
-    `halves`, `near` and `expected` are as in `pass_part`.
+    `halves`, `near` and `expected` are as in `pass_halves`.
     """
     low, high, hanging = 0.0, cut, cut
     carried = off_bed(bed, state[3], state[4], state[5])
+    passed = hanging, state, 0.0, state, 0.0
     for _ in range(PASSES):
-        _, _, (_, _, _, fx, fy, fz, _, _), _ = pass_part(
-            cable, knots, vibration, sea, state, hanging, halves, near, expected
-        )
-        fz = off_bed(bed, fx, fy, fz)
-        if hanging == cut and fz > 0.0:
-            return cut
-        if abs(fz) <= 1e-12 * carried:
+        passed = pass_halves(cable, knots, vibration, sea, state, hanging, halves, near, expected)
+        below = passed[3]
+        fz = off_bed(bed, below[3], below[4], below[5])
+        if (hanging == cut and fz > 0.0) or abs(fz) <= 1e-12 * carried:
             break
         if fz > 0.0:
             low = hanging
@@ -271,7 +274,62 @@ def touchdown(
             high = hanging
         following = hanging * carried / (carried - fz)
         hanging = following if low < following < high else 0.5 * (low + high)
-    return hanging
+    return passed
+
+
+@within
+def pass_part(
+    cable: CableStretch,
+    knots: Sequence[Knot],
+    vibration: Vibration,
+    sea: Sea,
+    state: State,
+    cut: float,
+    halves: bool,
+    near: float,
+    expected: Vector,
+    share: float,
+) -> Passed:
+    """Pass a segment as far as the first level or turn of the flow that splits it.
+
+    Parameters
+    ----------
+    halves, near, expected : see `pass_halves`
+    share : see `counts_across`
+    """
+    passed = pass_halves(cable, knots, vibration, sea, state, cut, halves, near, expected)
+    _, _, _, below, _ = passed
+    within_levels = in_interval(sea, below[7], -state[2], -below[2])
+    if within_levels and cable.friction != CONSTANT:
+        return passed
+    return split_part(cable, knots, vibration, sea, state, passed, halves, near, expected, share)
+
+
+def split_part(
+    cable: CableStretch,
+    knots: Sequence[Knot],
+    vibration: Vibration,
+    sea: Sea,
+    state: State,
+    passed: Passed,
+    halves: bool,
+    near: float,
+    expected: Vector,
+    share: float,
+) -> Passed:
+    """`pass_part` of a segment that may have to be split; `passed` is all of it."""
+    cut, _, _, below, _ = passed
+    level = level_within(sea, below[7], -state[2], -below[2], share)
+    if level > 0:
+        passed = until_level(
+            cable, knots, vibration, sea, state, below, cut, halves, near, level, share
+        )
+    part, _, _, below, _ = passed
+    if cable.friction == CONSTANT and flow_along(sea, state) * flow_along(sea, below) < 0.0:
+        passed = until_turn(
+            cable, knots, vibration, sea, state, below, part, halves, near, expected
+        )
+    return passed
 
 
 def until_level(
@@ -286,15 +344,15 @@ def until_level(
     near: float,
     k: int,
     share: float,
-) -> float:
-    """Length of the part of a segment down to a level of the profile [m].
+) -> Passed:
+    """Pass the part of a segment down to a level of the profile.
 
     The first trial follows from the mean load of the segment, the others are secants.
 
     Parameters
     ----------
     below : the state below the whole segment
-    halves, near : as in `pass_part`
+    halves, near : see `pass_halves`
     k, share : see `counts_across`
     """
     _, _, z, fx, fy, fz, _, _ = state
@@ -307,11 +365,11 @@ def until_level(
         if sinks * last > 0.0:
             part = min(cut * (level - start) / whole * (last / sinks), cut)
     before, above = 0.0, start
+    passed = part, state, 0.0, below, NO_BALANCE
     for _ in range(TRIALS):
-        _, _, passed, strain = pass_part(
-            cable, knots, vibration, sea, state, part, halves, near, load
-        )
-        depth = -passed[2]
+        passed = pass_halves(cable, knots, vibration, sea, state, part, halves, near, load)
+        _, _, _, reached, strain = passed
+        depth = -reached[2]
         off, depths = abs(depth - level), abs(depth - start)
         if strain == NO_BALANCE or off <= AT_A_LEVEL * abs(whole) or depth == above:
             break
@@ -320,7 +378,7 @@ def until_level(
         following = part + (level - depth) * (part - before) / (depth - above)
         before, above = part, depth
         part = following if 0.0 < following < cut else 0.5 * part
-    return part
+    return passed
 
 
 def sinking(fx: float, fy: float, fz: float, load: Vector, length: float) -> float:
@@ -337,38 +395,35 @@ def until_turn(
     vibration: Vibration,
     sea: Sea,
     state: State,
+    below: State,
     cut: float,
     halves: bool,
     near: float,
     expected: Vector,
-) -> float:
-    """Return how much of a segment there is before the flow along it turns round [m].
+) -> Passed:
+    """Pass the part of a segment above where the flow along it turns round.
 
-    There a friction of constant size jumps from one direction to the other. At most `cut`;
-    `halves`, `near` and `expected` are as in `pass_part`. By regula falsi, whose end that stays is
-    halved.
+    There a friction of constant size jumps from one direction to the other. By regula falsi, whose
+    end that stays is halved.
+
+    Parameters
+    ----------
+    below : the state below the whole segment
+    halves, near, expected : see `pass_halves`
     """
-    _, _, below, _ = pass_part(cable, knots, vibration, sea, state, cut, halves, near, expected)
     low, high = 0.0, cut
     at_low, at_high = flow_along(sea, state), flow_along(sea, below)
     for _ in range(PASSES):
         length = low + (high - low) * at_low / (at_low - at_high)
-        _, _, below, _ = pass_part(
-            cable, knots, vibration, sea, state, length, halves, near, expected
-        )
-        here = flow_along(sea, below)
+        passed = pass_halves(cable, knots, vibration, sea, state, length, halves, near, expected)
+        here = flow_along(sea, passed[3])
         if here * at_low > 0.0:
             low, at_low, at_high = length, here, 0.5 * at_high
         else:
             high, at_high, at_low = length, here, 0.5 * at_low
         if here == 0.0 or high - low <= NEAR_A_TURN * cut:
             break
-    return high
-
-
-def flow_turns(sea: Sea, state: State, below: State) -> bool:
-    """Whether the flow along a segment turns round between its ends."""
-    return flow_along(sea, state) * flow_along(sea, below) < 0.0
+    return pass_halves(cable, knots, vibration, sea, state, high, halves, near, expected)
 
 
 def flow_along(sea: Sea, state: State) -> float:

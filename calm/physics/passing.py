@@ -14,15 +14,7 @@ from collections.abc import MutableSequence
 from math import isfinite
 from typing import NamedTuple
 
-from calm.physics.cable import (
-    flow_turns,
-    pass_part,
-    segment_length,
-    touchdown,
-    until_level,
-    until_turn,
-)
-from calm.physics.drag import CONSTANT
+from calm.physics.cable import pass_part, segment_length, touchdown
 from calm.physics.line import (
     ENDLESS,
     ENDS,
@@ -43,7 +35,7 @@ from calm.physics.line import (
     write_element,
     write_node,
 )
-from calm.physics.profile import Sea, interval_at, level_within
+from calm.physics.profile import Sea, interval_at
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
 from calm.physics.seabed import lay_line
 from calm.physics.track import CABLE, ROD, Course
@@ -80,7 +72,7 @@ class How(NamedTuple):
         across that vanishes; the rest lies there
     bed : the seabed
     given : whether the segments are given, else chosen
-    halves : whether each part of a segment is passed in two halves
+    halves : whether each segment, or part of one, is passed in two halves
     recording : whether every node and element is recorded
     """
 
@@ -206,39 +198,23 @@ def pass_cable(
         used += 1
         left, long, whole = cut, 0.0, True
         while hanging < 0.0:
-            part, passed = left, left
-            middle, upper, below, strain = pass_part(
-                cable, knots, vibration, sea, state, part, halves, near, expected
+            passed = pass_part(
+                cable, knots, vibration, sea, state, left, halves, near, expected, share
             )
-            level = level_within(sea, state[7], -state[2], -below[2], share)
-            if level > 0:
-                part = until_level(
-                    cable, knots, vibration, sea, state, below, part, halves, near, level, share
-                )
-            if part < passed:
-                passed = part
-                middle, upper, below, strain = pass_part(
-                    cable, knots, vibration, sea, state, part, halves, near, expected
-                )
-            if cable.friction == CONSTANT and flow_turns(sea, state, below):
-                part = until_turn(cable, knots, vibration, sea, state, part, halves, near, expected)
-            hung = part
+            part = passed[0]
             if lands and off_bed(how.bed, state[3], state[4], state[5]) > 0.0:
-                hung = touchdown(
+                passed = touchdown(
                     cable, knots, vibration, sea, state, part, halves, near, expected, how.bed
                 )
-            if hung < passed:
-                middle, upper, below, strain = pass_part(
-                    cable, knots, vibration, sea, state, hung, halves, near, expected
-                )
+            hung, middle, upper, below, strain = passed
             x, y, z, fx, fy, fz, tz, level_index = below
             if strain == NO_BALANCE:
                 return below, hanging, used, nodes, SEGMENT_UNBALANCED
             if not isfinite(x + y + z + fx + fy + fz):
                 return below, hanging, used, nodes, RUNS_OFF
-            above, way = (middle, 0.5 * hung) if halves else (state, hung)
+            way = 0.5 * hung if halves else hung
             if way > SHORT * how.reach:
-                ax, ay, az = above[3], above[4], above[5]
+                _, _, _, ax, ay, az, _, _ = middle
                 expected = (fx - ax) / way, (fy - ay) / way, (fz - az) / way
             if hung < part:
                 fx, fy, fz = along_bed(how.bed, fx, fy, fz)

@@ -13,7 +13,7 @@ from math import sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.drag import Vector
-from calm.physics.line import BETTER, ENDS, HALVES, NO_SEGMENT, SEGMENT, Record
+from calm.physics.line import BETTER, HALVES, NO_SEGMENT, SEGMENT, Record
 from calm.physics.profile import interval_at
 from calm.solve.closing import Closed
 from calm.solve.problem import FINE, LineProblem
@@ -52,7 +52,7 @@ def next_node(record: Record, node: int, last: int) -> int:
     return min(node, last)
 
 
-def extrapolate(before: Record, coarse: Closed, after: Record, fine: Closed) -> Errors:
+def extrapolate(before: Record, coarse: Closed, after: Record, fine: Closed, near: float) -> Errors:
     """Extrapolate a shape, in the columns from `BETTER` on of the fine record; its errors.
 
     Nodes that both shapes have correspond: the ends of segments that hang, the touchdowns, and
@@ -62,23 +62,25 @@ def extrapolate(before: Record, coarse: Closed, after: Record, fine: Closed) -> 
     ----------
     before, coarse : record of the shape on coarse segments, and how it closed
     after, fine : the same on halved ones
+    near : see `calm.physics.passing.How`; the middles of the segments of one of many are not read
     """
     end = fine.nodes - 1
     greatest = 0.0
-    for m in range(fine.nodes):
-        greatest = max(greatest, tension_at(after, m))
+    for n in range(coarse.nodes):
+        greatest = max(greatest, tension_at(before, n))
     floor = max(1e-3 * greatest, 1e-300)
     place = worst = relative = 0.0
     n = m = before_m = 0
     while True:
         hangs = n < coarse.hanging or not coarse.landed
-        strayed, changed = add_third(before, coarse.nodes - 1, n, after, end, m)
-        fill_between(after, before_m, m)
+        strayed, changed, tension = add_third(before, coarse.nodes - 1, n, after, end, m)
+        if near == 0.0 or m > before_m + 2:
+            fill_between(after, before_m, m)
         if hangs:
             place = max(place, strayed)
         if hangs or n != coarse.hanging:
             worst = max(worst, changed)
-            relative = max(relative, changed / max(tension_at(after, m), floor))
+            relative = max(relative, changed / max(tension, floor))
         if n == coarse.nodes - 1:
             break
         before_m = m
@@ -115,10 +117,12 @@ def next_pair(
 
 def add_third(
     before: Record, last: int, n: int, after: Record, end: int, m: int
-) -> tuple[float, float]:
-    """Extrapolate a node of both shapes; a third of its change of place [m] and of tension [N].
+) -> tuple[float, float, float]:
+    """Extrapolate a node of both shapes, its place as from the line's end.
 
-    Places are those from the line's end.
+    Returns
+    -------
+    A third of its change of place [m] and of tension [N]; and its tension in the fine shape.
     """
     place = 0.0
     for column in range(6):
@@ -129,7 +133,8 @@ def add_third(
         if column < 3:
             place = max(place, abs(third))
         after[BETTER + column][m] = now + third
-    return place, abs(tension_at(before, n) - tension_at(after, m)) / 3.0
+    tension = tension_at(after, m)
+    return place, abs(tension_at(before, n) - tension) / 3.0, tension
 
 
 def fill_between(record: Record, first: int, last: int) -> None:

@@ -90,7 +90,7 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
             fine = polish_hanging(search, coarse.root, HALVED, FINE, hangs)
         if fine.ending != FOUND:
             return unrefined(fine)
-        errors = extrapolate(records[COARSE], coarse, records[FINE], fine)
+        errors = extrapolate(records[COARSE], coarse, records[FINE], fine, problem.limits.near)
         excess = excess_of(problem, errors)
         if excess <= 1.0 or segments > MOST_SEGMENTS:
             break

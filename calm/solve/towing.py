@@ -163,7 +163,7 @@ class Towed:
             problem = self.search.problem
             records = problem.work.records
             errors: Errors = outcome(
-                extrapolate, self.compiled, records[COARSE], coarse, records[FINE], self.closed
+                extrapolate, self.compiled, records[COARSE], coarse, records[FINE], self.closed, 0.0
             )
             excess = excess_of(problem, errors)
             if excess <= 1.0 or segments > MOST_SEGMENTS:
