@@ -38,6 +38,10 @@ NEAR_A_TURN = 1e-6
 AT_A_LEVEL, TRIALS = 1e-9, 10
 """Distance from a level at which a part of a segment ends there, as a share of the depth range of
 the segment, and the most passes that look for it."""
+Passed = tuple[float, State, float, State, float]
+"""How long a part of a segment is that was passed [m]; where it is passed in two halves the state
+between and the strain of the upper one, else the state above it and 0; the state below it, and the
+strain of the lower half, or of all of it."""
 LITTLE_TURN = 1e-6
 """How much the last of a few steps may turn a segment, squared [rad²], and be good enough where it
 need not settle to the last digits."""
@@ -176,6 +180,31 @@ def pass_segment(
     )
 
 
+def pass_halves(
+    cable: CableStretch,
+    knots: Sequence[Knot],
+    vibration: Vibration,
+    sea: Sea,
+    state: State,
+    cut: float,
+    halves: bool,
+    near: float,
+    expected: Vector,
+) -> Passed:
+    """Pass a segment, or a part of one: straight, or in two straight halves.
+
+    `near` and `expected` are as in `pass_segment`.
+    """
+    half = 0.5 * cut if halves else cut
+    above, upper, below, strain = state, 0.0, state, 0.0
+    for _ in range(2 if halves else 1):
+        above, upper = below, strain
+        below, strain = pass_segment(cable, knots, vibration, sea, above, half, near, expected)
+        if strain == NO_BALANCE:
+            break
+    return cut, above, upper, below, strain
+
+
 def vibrating_share(
     vibration: Vibration,
     ax: float,
@@ -217,23 +246,21 @@ def touchdown(
     sea: Sea,
     state: State,
     cut: float,
+    halves: bool,
     near: float,
     expected: Vector,
     bed: Bed,
-) -> tuple[float, State, float]:
+) -> Passed:
     """Pass the part of a segment that hangs: to where it has nothing left to carry above the bed.
 
-    `near` and `expected` are as in `pass_segment`.
-
-    Returns
-    -------
-    Length of the part [m], at most `cut`, the state below it, and its strain.
+    `halves`, `near` and `expected` are as in `pass_halves`.
     """
     low, high, hanging = 0.0, cut, cut
     carried = off_bed(bed, state[3], state[4], state[5])
-    below, strain = state, 0.0
+    passed = hanging, state, 0.0, state, 0.0
     for _ in range(PASSES):
-        below, strain = pass_segment(cable, knots, vibration, sea, state, hanging, near, expected)
+        passed = pass_halves(cable, knots, vibration, sea, state, hanging, halves, near, expected)
+        below = passed[3]
         fz = off_bed(bed, below[3], below[4], below[5])
         if (hanging == cut and fz > 0.0) or abs(fz) <= 1e-12 * carried:
             break
@@ -243,7 +270,7 @@ def touchdown(
             high = hanging
         following = hanging * carried / (carried - fz)
         hanging = following if low < following < high else 0.5 * (low + high)
-    return hanging, below, strain
+    return passed
 
 
 @within
@@ -254,28 +281,24 @@ def pass_part(
     sea: Sea,
     state: State,
     cut: float,
+    halves: bool,
     near: float,
     expected: Vector,
     share: float,
-) -> tuple[float, State, float]:
+) -> Passed:
     """Pass a segment as far as the first level or turn of the flow that splits it.
 
     Parameters
     ----------
-    near, expected : see `pass_segment`
+    halves, near, expected : see `pass_halves`
     share : see `counts_across`
-
-    Returns
-    -------
-    Length of the part [m], the state below it, and its strain.
     """
-    below, strain = pass_segment(cable, knots, vibration, sea, state, cut, near, expected)
+    passed = pass_halves(cable, knots, vibration, sea, state, cut, halves, near, expected)
+    _, _, _, below, _ = passed
     within_levels = in_interval(sea, below[7], -state[2], -below[2])
     if within_levels and cable.friction != CONSTANT:
-        return cut, below, strain
-    return split_part(
-        cable, knots, vibration, sea, state, below, strain, cut, near, expected, share
-    )
+        return passed
+    return split_part(cable, knots, vibration, sea, state, passed, halves, near, expected, share)
 
 
 def split_part(
@@ -284,25 +307,25 @@ def split_part(
     vibration: Vibration,
     sea: Sea,
     state: State,
-    below: State,
-    strain: float,
-    cut: float,
+    passed: Passed,
+    halves: bool,
     near: float,
     expected: Vector,
     share: float,
-) -> tuple[float, State, float]:
-    """`pass_part` of a segment that may have to be split; `below` and `strain` are those of all of
-    it."""
-    part = cut
+) -> Passed:
+    """`pass_part` of a segment that may have to be split; `passed` is all of it."""
+    cut, _, _, below, _ = passed
     level = level_within(sea, below[7], -state[2], -below[2], share)
     if level > 0:
-        part, below, strain = until_level(
-            cable, knots, vibration, sea, state, below, cut, near, level, share
+        passed = until_level(
+            cable, knots, vibration, sea, state, below, cut, halves, near, level, share
         )
+    part, _, _, below, _ = passed
     if cable.friction == CONSTANT and flow_along(sea, state) * flow_along(sea, below) < 0.0:
-        part = until_turn(cable, knots, vibration, sea, state, part, near, expected)
-        below, strain = pass_segment(cable, knots, vibration, sea, state, part, near, expected)
-    return part, below, strain
+        passed = until_turn(
+            cable, knots, vibration, sea, state, below, part, halves, near, expected
+        )
+    return passed
 
 
 def until_level(
@@ -313,10 +336,11 @@ def until_level(
     state: State,
     below: State,
     cut: float,
+    halves: bool,
     near: float,
     k: int,
     share: float,
-) -> tuple[float, State, float]:
+) -> Passed:
     """Pass the part of a segment down to a level of the profile.
 
     The first trial follows from the mean load of the segment, the others are secants.
@@ -324,11 +348,8 @@ def until_level(
     Parameters
     ----------
     below : the state below the whole segment
+    halves, near : see `pass_halves`
     k, share : see `counts_across`
-
-    Returns
-    -------
-    Length of the part [m], the state below it, and its strain.
     """
     _, _, z, fx, fy, fz, _, _ = state
     level, start, whole = sea.levels[k], -z, z - below[2]
@@ -340,10 +361,11 @@ def until_level(
         if sinks * last > 0.0:
             part = min(cut * (level - start) / whole * (last / sinks), cut)
     before, above = 0.0, start
-    passed, strain = below, NO_BALANCE
+    passed = part, state, 0.0, below, NO_BALANCE
     for _ in range(TRIALS):
-        passed, strain = pass_segment(cable, knots, vibration, sea, state, part, near, load)
-        depth = -passed[2]
+        passed = pass_halves(cable, knots, vibration, sea, state, part, halves, near, load)
+        _, _, _, reached, strain = passed
+        depth = -reached[2]
         off, depths = abs(depth - level), abs(depth - start)
         if strain == NO_BALANCE or off <= AT_A_LEVEL * abs(whole) or depth == above:
             break
@@ -352,7 +374,7 @@ def until_level(
         following = part + (level - depth) * (part - before) / (depth - above)
         before, above = part, depth
         part = following if 0.0 < following < cut else 0.5 * part
-    return part, passed, strain
+    return passed
 
 
 def sinking(fx: float, fy: float, fz: float, load: Vector, length: float) -> float:
@@ -369,29 +391,35 @@ def until_turn(
     vibration: Vibration,
     sea: Sea,
     state: State,
+    below: State,
     cut: float,
+    halves: bool,
     near: float,
     expected: Vector,
-) -> float:
-    """Return how much of a segment there is before the flow along it turns round [m].
+) -> Passed:
+    """Pass the part of a segment above where the flow along it turns round.
 
-    There a friction of constant size jumps from one direction to the other. At most `cut`; `near`
-    and `expected` are as in `pass_segment`. By regula falsi, whose end that stays is halved.
+    There a friction of constant size jumps from one direction to the other. By regula falsi, whose
+    end that stays is halved.
+
+    Parameters
+    ----------
+    below : the state below the whole segment
+    halves, near, expected : see `pass_halves`
     """
-    below, _ = pass_segment(cable, knots, vibration, sea, state, cut, near, expected)
     low, high = 0.0, cut
     at_low, at_high = flow_along(sea, state), flow_along(sea, below)
     for _ in range(PASSES):
         length = low + (high - low) * at_low / (at_low - at_high)
-        below, _ = pass_segment(cable, knots, vibration, sea, state, length, near, expected)
-        here = flow_along(sea, below)
+        passed = pass_halves(cable, knots, vibration, sea, state, length, halves, near, expected)
+        here = flow_along(sea, passed[3])
         if here * at_low > 0.0:
             low, at_low, at_high = length, here, 0.5 * at_high
         else:
             high, at_high, at_low = length, here, 0.5 * at_low
         if here == 0.0 or high - low <= NEAR_A_TURN * cut:
             break
-    return high
+    return pass_halves(cable, knots, vibration, sea, state, high, halves, near, expected)
 
 
 def flow_along(sea: Sea, state: State) -> float:

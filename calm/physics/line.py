@@ -84,8 +84,9 @@ COLUMNS = 17
 SEGMENT, BETTER = 10, 11
 """Column of how an element ends, see below, and the first of six with extrapolated places and
 forces."""
-NO_SEGMENT, ENDS, SPLITS = range(3)
-"""An element is no part of a hanging segment; it ends one; it ends at a level that splits one."""
+NO_SEGMENT, ENDS, HALVES, SPLITS = range(4)
+"""An element is no part of a hanging segment; it ends one; it ends in the middle of a part that is
+passed in two halves; it ends at a level that splits one."""
 
 
 @within

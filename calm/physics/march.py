@@ -110,7 +110,7 @@ def march(
     """
     course, sea = (track.packed, profile.packed) if compiled else (track.course, profile.sea)
     stages, level = len(course.stages), Bed(0.0, 0.0, 0.0, 0.0)
-    how = How(angle_step, reach, 0.0, stages, False, level, cuts is not None, record)
+    how = How(angle_step, reach, 0.0, stages, False, level, cuts is not None, False, record)
     room = ROOM if cuts is None else len(cuts.lengths)
     while True:
         most = room + 3 * len(course.loads) + 2 * len(course.stages) + 1 if record else 1

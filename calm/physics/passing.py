@@ -19,6 +19,7 @@ from calm.physics.line import (
     ENDLESS,
     ENDS,
     GOES_ON,
+    HALVES,
     NO_BALANCE,
     NO_ROOM,
     ROD_UNBALANCED,
@@ -74,6 +75,7 @@ class How(NamedTuple):
         across that vanishes; the rest lies there
     bed : the seabed
     given : whether the segments are given, else chosen
+    halves : whether each segment, or part of one, is passed in two halves
     recording : whether every node and element is recorded
     """
 
@@ -84,6 +86,7 @@ class How(NamedTuple):
     lands: bool
     bed: Bed
     given: bool
+    halves: bool
     recording: bool
 
 
@@ -183,9 +186,9 @@ def pass_cable(
     cable, knots = course.cables[place], course.knots
     vibration = with_beat(course.vibration, course.vibration.beat * cable.diameter)
     first, done, hanging = used, 0.0, -1.0
-    near, expected = how.near, (0.0, 0.0, 0.0)
+    near, halves, expected = how.near, how.halves, (0.0, 0.0, 0.0)
     share = EXACT if how.given and near == 0.0 else ROUGH
-    others = 3 * len(course.loads) + 2 * len(course.stages)
+    others = 3 * len(course.loads) + 2 * len(course.stages) + 1
     whole = (1.0 - ROUNDING) * cable.length
     while used - first < counts[place] if how.given else done < whole or used == first:
         if used == len(cuts):
@@ -198,40 +201,49 @@ def pass_cable(
             if left - cut < SLIVER * cut:
                 cut = left
         used += 1
-        left, long = cut, 0.0
+        left, long, uncut = cut, 0.0, True
         while hanging < 0.0:
-            _, _, _, ax, ay, az, _, _ = state
-            part, below, strain = pass_part(
-                cable, knots, vibration, sea, state, left, near, expected, share
+            passed = pass_part(
+                cable, knots, vibration, sea, state, left, halves, near, expected, share
             )
-            hung = part
-            if lands and off_bed(how.bed, ax, ay, az) > 0.0:
-                hung, below, strain = touchdown(
-                    cable, knots, vibration, sea, state, part, near, expected, how.bed
+            part = passed[0]
+            if lands and off_bed(how.bed, state[3], state[4], state[5]) > 0.0:
+                passed = touchdown(
+                    cable, knots, vibration, sea, state, part, halves, near, expected, how.bed
                 )
+            hung, middle, upper, below, strain = passed
             x, y, z, fx, fy, fz, tz, level_index = below
             if strain == NO_BALANCE:
                 return below, hanging, used, nodes, SEGMENT_UNBALANCED
             if not isfinite(x + y + z + fx + fy + fz):
                 return below, hanging, used, nodes, RUNS_OFF
-            if hung > SHORT * how.reach:
-                expected = (fx - ax) / hung, (fy - ay) / hung, (fz - az) / hung
+            way = 0.5 * hung if halves else hung
+            if way > SHORT * how.reach:
+                _, _, _, ax, ay, az, _, _ = middle
+                expected = (fx - ax) / way, (fy - ay) / way, (fz - az) / way
             if hung < part:
                 fx, fy, fz = along_bed(how.bed, fx, fy, fz)
                 below = x, y, z, fx, fy, fz, tz, level_index
                 hanging = done + hung
+            if how.recording and nodes + others >= len(record[0]):
+                return state, hanging, used, nodes, NO_ROOM
+            if halves and (uncut or near == 0.0):
+                if how.recording:
+                    write_element(record, nodes, cable.piece, -1, way, upper)
+                    write_node(record, nodes, middle)
+                    record[SEGMENT][nodes] = HALVES
+                nodes, long = nodes + 1, long - way
             state, left, done, long = below, left - part, done + part, long + hung
             splits = left > 0.0 and hanging < 0.0
             if splits and not how.given and part > SLIVER * cut:
                 cut, left, splits = cut - left, 0.0, False
             if not splits or near == 0.0:
                 if how.recording:
-                    if nodes + others >= len(record[0]):
-                        return state, hanging, used, nodes, NO_ROOM
                     write_element(record, nodes, cable.piece, -1, long, strain)
                     write_node(record, nodes, state)
                     record[SEGMENT][nodes] = SPLITS if splits else ENDS
                 nodes, long = nodes + 1, 0.0
+            uncut = False
             if left <= 0.0:
                 break
         if not how.given:

@@ -13,7 +13,7 @@ from math import sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.drag import Vector
-from calm.physics.line import BETTER, ENDS, NO_SEGMENT, SEGMENT, SPLITS, Record
+from calm.physics.line import BETTER, HALVES, NO_SEGMENT, SEGMENT, Record
 from calm.physics.profile import interval_at
 from calm.solve.problem import FINE, LineProblem
 
@@ -51,13 +51,11 @@ def tension_at(record: Record, node: int) -> float:
     return sqrt(fx * fx + fy * fy + fz * fz)
 
 
-def next_node(record: Record, node: int, last: int, segments: int) -> int:
-    """The node that ends so many segments, or elements that are none, after a node; at most the
-    last."""
-    for _ in range(segments):
+def next_node(record: Record, node: int, last: int) -> int:
+    """The next node that ends a segment, or an element that is none; at most the last."""
+    node += 1
+    while node < last and record[SEGMENT][node] >= HALVES:
         node += 1
-        while node < last and record[SEGMENT][node] == SPLITS:
-            node += 1
     return min(node, last)
 
 
@@ -109,15 +107,13 @@ def next_pair(
     """The next nodes of a coarse and of a fine shape that correspond."""
     last, end = coarse.nodes - 1, fine.nodes - 1
     if not coarse.landed or not fine.landed:
-        following = next_node(before, n, last, 1)
+        following = next_node(before, n, last)
         if following == last:
             return last, end
-        halves = 2 if before[SEGMENT][following] == ENDS else 1
-        return following, next_node(after, m, end, halves)
+        return following, next_node(after, m, end)
     if n < coarse.hanging:
-        following = next_node(before, n, coarse.hanging, 1)
-        halves = 2 if before[SEGMENT][following] == ENDS else 1
-        there = next_node(after, m, fine.hanging, halves)
+        following = next_node(before, n, coarse.hanging)
+        there = next_node(after, m, fine.hanging)
         if following == coarse.hanging or there == fine.hanging:
             return coarse.hanging, fine.hanging
         return following, there
@@ -198,7 +194,7 @@ def abrupt_change(problem: LineProblem, hanging: int) -> tuple[float, float]:
         sizes[0][k] = sizes[1][k] = -1.0
     for k in range(1, hanging):  # the joint between elements k and k + 1, at node k
         smooth = (
-            record[SEGMENT][k] == ENDS
+            NO_SEGMENT < record[SEGMENT][k] <= HALVES
             and record[SEGMENT][k + 1] != NO_SEGMENT
             and record[6][k] == record[6][k + 1]
             and record[8][k] > 0.0

@@ -116,11 +116,10 @@ def miss_at(about: About, x: float) -> float:
         unknown.lands,
         problem.limits.bed,
         about.given,
+        about.cuts == HALVED,
         about.record != NOT_RECORDED,
     )
-    cuts = work.halved if about.cuts == HALVED else work.chosen
-    record = work.records[max(about.record, 0)]
-    counts = work.counts[about.cuts]
+    cuts, counts, record = work.chosen, work.counts, work.records[max(about.record, 0)]
     pass_line(problem.course, problem.sea, how, depth, out, cuts, counts, record, work.left)
     work.left[LAST] = x
     if unknown.stages == len(problem.course.stages):
@@ -269,16 +268,11 @@ def planned(search: Search, root: Root, step: float) -> Root:
     return Root(True, found.unknown, x, found.miss, found.slope)
 
 
-def halve(problem: LineProblem) -> int:
-    """Halve the chosen cuts; returns how many that makes."""
-    work, chosen = problem.work, 0
+def segments_of(problem: LineProblem) -> int:
+    """Number of halves of the chosen segments."""
+    chosen = 0
     for k in range(len(problem.course.cables)):
-        chosen += work.counts[CHOSEN][k]
-        work.counts[HALVED][k] = 2 * work.counts[CHOSEN][k]
-    for i in range(chosen):
-        half = 0.5 * work.chosen[i]
-        work.halved[2 * i] = half
-        work.halved[2 * i + 1] = half
+        chosen += problem.work.counts[k]
     return 2 * chosen
 
 

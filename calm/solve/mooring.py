@@ -246,7 +246,7 @@ class Nearby:
         if closed.ending != FOUND:
             raise closing_refusal(closed, False)
         self._root, work = closed.root, problem.work
-        self._counts = np.array(work.counts[CHOSEN])
+        self._counts = np.array(work.counts)
         self._cuts = np.array(work.chosen[: int(self._counts.sum())])
         self._shares = np.array(work.shares)
         self._trace = Trace.of(work.records[FINE], closed.nodes)
@@ -313,7 +313,7 @@ class Nearby:
         longer = line.length[cables].sum() / given.length[cables].sum() if cables.any() else 1.0
         work = problem.work
         work.chosen[: len(self._cuts)] = (longer * self._cuts).tolist()
-        work.counts[CHOSEN][:] = self._counts.tolist()
+        work.counts[:] = self._counts.tolist()
         for row in range(2):
             work.shares[row][:] = self._shares[row].tolist()
         search = search_of(problem, compiled)

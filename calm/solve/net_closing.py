@@ -12,7 +12,6 @@ from calm.physics.line import GOES_ON, NO_ROOM
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
 from calm.solve.accuracy import Extent, bent, extrapolate, take_as_marched, tension_at
-from calm.solve.closing import halve
 from calm.solve.net_march import left_over, take_scales
 from calm.solve.net_problem import (
     COARSE_COUNT,
@@ -218,7 +217,6 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
             state = net.state[i]
             state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
             state[COARSE_STAGE] = state[STAGE]
-            halve(leg_of(net, sea, i))
         ending = close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
         if ending != CAME_OUT:
             return ending

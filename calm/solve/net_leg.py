@@ -28,7 +28,6 @@ from calm.solve.problem import (
     BELOW,
     CHANGED,
     FINE,
-    HALVED,
     ROUGH_REACH,
     BuoyantPiece,
     LineProblem,
@@ -289,7 +288,7 @@ def leg_found(
         float(state[net_problem.GROUNDED]),
     )  # fmt: skip
     told = Errors(deep, taut, 0.0, taut, taut)
-    segments = int(sum(work.counts[HALVED]))
+    segments = 2 * int(sum(work.counts))
     refined = Refined(closed, segments, told, share, closed.grounded)
     found = solution_of(problem, laid.line, water, settings, refined, told, frequency)
     referee = referee_of(carried_by(laid.line, problem), water, frequency, compiled)

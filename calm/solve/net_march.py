@@ -100,13 +100,13 @@ def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
     leg, state, problem = net.legs[i], net.state[i], leg_of(net, how.sea, i)
     course, work = problem.course, problem.work
     depth, out = begun(net, problem, i, x)
-    cuts = work.halved if how.cuts == HALVED else work.chosen
+    cuts, counts = work.chosen, work.counts
     record, left = work.records[how.record], work.left
     reach = degrees(how.step) * leg.longest
     lands = leg.kind == STANDING and leg.seabed > -inf
     near, bed = problem.limits.near, bed_of(net, i)
-    asked = How(how.step, reach, near, leg.stages, lands, bed, how.given, True)
-    pass_line(course, how.sea, asked, depth, out, cuts, work.counts[how.cuts], record, left)
+    asked = How(how.step, reach, near, leg.stages, lands, bed, how.given, how.cuts == HALVED, True)
+    pass_line(course, how.sea, asked, depth, out, cuts, counts, record, left)
     state[MARCHES] += 1.0
     if left[FAILURE] != GOES_ON:
         return int(left[FAILURE])

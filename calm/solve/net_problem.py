@@ -167,7 +167,7 @@ def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
         own.wind_north, own.wind_area, own.wind_cd,
     )  # fmt: skip
     work = SearchArrays(
-        work.left[i], work.chosen[i], work.halved[i], work.counts[i], work.records[i],
+        work.left[i], work.chosen[i], work.counts[i], work.records[i],
         work.shares[i], work.samples[i], work.even[i], work.elements[i], work.found[i],
     )  # fmt: skip
     return LineProblem(

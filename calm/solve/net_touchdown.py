@@ -13,12 +13,12 @@ from calm.physics.compiled import set_row
 from calm.physics.line import (
     ENDS,
     GOES_ON,
+    HALVES,
     NO_BALANCE,
     NO_ROOM,
     NO_SEGMENT,
     RUNS_OFF,
     SEGMENT,
-    SPLITS,
     Record,
     State,
     off_bed,
@@ -182,9 +182,7 @@ def pass_hung(
     their cable asks for, so that the march is a smooth function of that.
     """
     leg, cuts = net.legs[i], net.cuts
-    of_step, counts = work.chosen, work.counts[how.cuts]
-    if how.cuts == HALVED:
-        of_step = work.halved
+    of_step, counts = work.chosen, work.counts
     reach, near = degrees(how.step) * leg.longest, net.lines.limits.near
     skipped = leg.cables
     for stage in range(len(course.stages) - 1, -1, -1):
@@ -209,7 +207,17 @@ def pass_hung(
                 cuts[fill] = length * share
                 fill += 1
             read += counts[k]
-    asked = How(how.step, reach, near, len(course.stages), False, bed_of(net, i), how.given, True)
+    asked = How(
+        how.step,
+        reach,
+        near,
+        len(course.stages),
+        False,
+        bed_of(net, i),
+        how.given,
+        how.cuts == HALVED,
+        True,
+    )
     record, left = work.records[how.record], work.left
     pass_line(course, how.sea, asked, depth, 0.0, cuts, counts, record, left)
     net.state[i][MARCHES] += 1.0
@@ -243,10 +251,10 @@ def turn_round(record: Record, nodes: int) -> None:
         while a < b:
             column[a], column[b] = column[b], column[a]
             a, b = a + 1, b - 1
-    ends = record[SEGMENT]  # a part of a split segment ends it now if it began it
+    ends = record[SEGMENT]  # of the node at the lower end of an element, now that it is turned
     for n in range(2, nodes):
         if ends[n] != NO_SEGMENT:
-            ends[n] = SPLITS if n + 1 < nodes and ends[n + 1] == SPLITS else ENDS
+            ends[n] = ends[n + 1] if n + 1 < nodes and ends[n + 1] >= HALVES else ENDS
     write_element(record, 1, 0, -1, 0.0, 0.0)
 
 

@@ -124,8 +124,8 @@ class SearchArrays(NamedTuple):
     Attributes
     ----------
     left : see `calm.physics.passing` and above
-    chosen, halved : the segments as the march chose them, and halved [m]
-    counts : how many of them each cable has, in rows CHOSEN and HALVED
+    chosen : the segments as the march chose them [m]
+    counts : how many of them each cable has
     records : of shapes, COARSE to OTHER
     shares : share in use of every float at the surface, the slope of its miss, and the shares of
         the shapes in the records KEPT and OTHER
@@ -137,7 +137,6 @@ class SearchArrays(NamedTuple):
 
     left: MutableSequence[float]
     chosen: MutableSequence[float]
-    halved: MutableSequence[float]
     counts: Sequence[MutableSequence[int]]
     records: Any
     shares: Sequence[MutableSequence[float]]
@@ -310,8 +309,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
         return SearchArrays(
             left=zeros(LAST + 1),
             chosen=zeros(room),
-            halved=zeros(2 * room),
-            counts=zeros((2, cables), np.int64),
+            counts=zeros(cables, np.int64),
             records=zeros((OTHER + 1, COLUMNS, nodes)),
             shares=zeros((OTHER + 1, MOST_AFLOAT + 1)),
             samples=zeros((2, MOST_SAMPLES)),
@@ -326,8 +324,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
     return SearchArrays(
         left=[0.0] * (LAST + 1),
         chosen=[0.0] * room,
-        halved=[0.0] * (2 * room),
-        counts=[[0] * cables for _ in range(2)],
+        counts=[0] * cables,
         records=[rows(COLUMNS, nodes) for _ in range(OTHER + 1)],
         shares=rows(OTHER + 1, MOST_AFLOAT + 1),
         samples=rows(2, MOST_SAMPLES),

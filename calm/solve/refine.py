@@ -11,7 +11,7 @@ from typing import NamedTuple
 from calm.physics.line import ENDS, SEGMENT, Record, off_bed
 from calm.physics.passing import FAILURE, NODES
 from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, Extent, bent, extrapolate, take_as_marched
-from calm.solve.closing import Closed, Root, halve, not_closed, planned, polish
+from calm.solve.closing import Closed, Root, not_closed, planned, polish, segments_of
 from calm.solve.problem import (
     BELOW,
     CHOSEN,
@@ -79,7 +79,7 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
         root = planned(search, root, 2.0 * step)
         if isnan(root.miss):
             return unrefined(not_closed(MARCH_STOPPED, problem.work.left[FAILURE], root))
-        segments = halve(problem)
+        segments = segments_of(problem)
         coarse, fine = closed_between(search, root)
         if fine.ending == FOUND:
             fine = refused_far_below(problem, fine, FINE, hangs)

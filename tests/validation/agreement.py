@@ -11,6 +11,10 @@ from tests.validation.closing import Equilibrium
 from tests.validation.loads import DOWN, Load, Profile, Vector, on_clamp, on_piece
 from tests.validation.towed import Towed
 
+Ends = tuple[Vector, Vector]
+"""Places (2n+m, 3) at the tops and the lower ends of the n pieces and at the m clamps [m]; tensions
+(2n) at the tops and the lower ends [N]."""
+
 
 @dataclass(frozen=True)
 class Difference:
@@ -21,26 +25,72 @@ class Difference:
     place : of any depth or offset, as a share of the water depth, or of the length of a tow
     tension : of any tension, as a share of that tension, or of a thousandth of the line's
         greatest where it is smaller still
+    metres, newtons : the same as they are
     """
 
     place: float
     tension: float
+    metres: float
+    newtons: float
 
 
 def difference(solution: Solution, referee: Equilibrium | Towed) -> Difference:
     """CALM's solution against the referee's."""
-    nodes, shape = solution.piece_nodes, referee.shape
-    size = solution.line.length.sum() if isinstance(referee, Towed) else solution.water.depth
-    at = np.concatenate([*nodes.T, np.array(clamp_nodes(solution), dtype=int)])
-    place = np.abs(solution.position[at] - np.concatenate([shape.top, shape.bottom, shape.clamp]))
-    expected = np.linalg.norm(np.concatenate([shape.force_top, shape.force_bottom]), axis=1)
-    tension = np.abs(solution.tension[nodes.T.ravel()] - expected)
-    relative = tension / np.maximum(expected, 1e-3 * expected.max())
-    return Difference(float(place.max() / size), float(relative.max()))
+    return apart(ends_of(solution), integrated_ends(referee), size_of(solution))
+
+
+def apart(found: Ends, expected: Ends, size: float) -> Difference:
+    """By how much ends are off what is expected; `size` is what places are measured by [m]."""
+    (places, tensions), (there, right) = found, expected
+    metres, newtons = np.abs(places - there).max(), np.abs(tensions - right)
+    relative = newtons / np.maximum(right, 1e-3 * right.max())
+    return Difference(
+        float(metres / size), float(relative.max()), float(metres), float(newtons.max())
+    )
+
+
+def ends_of(solution: Solution) -> Ends:
+    """Those of a solution of CALM."""
+    nodes = solution.piece_nodes.T
+    at = np.concatenate([*nodes, np.array(clamp_nodes(solution), dtype=int)])
+    return solution.position[at], solution.tension[nodes.ravel()]
+
+
+def inside_cables(solution: Solution, referee: Equilibrium | Towed) -> tuple[float, float]:
+    """The worst departures at the nodes of hanging cables: of a place [m] and of a tension [N]."""
+    metres = newtons = 0.0
+    for piece in np.flatnonzero(solution.line.flexible):
+        first, last = solution.piece_nodes[piece]
+        s = np.concatenate([[0.0], np.cumsum(solution.cut[first:last])])
+        there = referee.shape.inside(int(piece), s)
+        known = np.isfinite(there[:, 0])
+        off = np.abs(solution.position[first : last + 1] - there[:, :3])[known]
+        tension = np.linalg.norm(there[known, 3:], axis=1)
+        more = np.abs(solution.tension[first : last + 1][known] - tension)
+        # above a clamp and below it there are two forces at one place
+        clamps = solution.line.clamp_at[solution.line.clamp_piece == piece]
+        more[np.isclose(s[known, None], clamps, rtol=0.0, atol=1e-9 * s[-1]).any(axis=1)] = 0.0
+        metres, newtons = max(metres, 0.0, *off.ravel()), max(newtons, 0.0, *more)
+    return float(metres), float(newtons)
+
+
+def integrated_ends(referee: Equilibrium | Towed) -> Ends:
+    """Those of an answer of the referee."""
+    shape = referee.shape
+    forces = np.concatenate([shape.force_top, shape.force_bottom])
+    places = np.concatenate([shape.top, shape.bottom, shape.clamp])
+    return places, np.linalg.norm(forces, axis=1)
+
+
+def size_of(solution: Solution) -> float:
+    """What places are measured by: the water depth, or the length of a tow [m]."""
+    line = solution.line
+    return float(line.length.sum() if line.towed else solution.water.depth)
 
 
 def closure(solution: Solution, profile: Profile | None = None) -> float:
-    """|sum of all loads − force at the line's end| / |force at the line's end|.
+    """|sum of all loads − force at the line's end| / |force at the line's end|, or a thousandth of
+    the greatest force where that is more.
 
     The loads are recomputed here from the final coordinates, by the referee's formulas, in the
     water of the solution or in that of `profile`. Of a line on the seabed they are those above the
@@ -80,7 +130,9 @@ def closure(solution: Solution, profile: Profile | None = None) -> float:
         piece, segment = solution.element_piece[around], solution.element_clamp[around] < 0
         in_cable = segment.all() and len(set(piece)) == 1 and line.flexible[piece[0]]
         total[2] *= float(in_cable)
-    return float(np.linalg.norm(total - anchor) / np.linalg.norm(anchor))
+    # of a line that lies on the seabed nothing may be left at the anchor
+    scale = max(float(np.linalg.norm(anchor)), 1e-3 * float(solution.tension.max()))
+    return float(np.linalg.norm(total - anchor) / scale)
 
 
 def clamp_nodes(solution: Solution) -> list[int]:

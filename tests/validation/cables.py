@@ -49,12 +49,16 @@ class Cable:
     thinning: float
 
 
+Path = tuple[float, float, Callable[[Vector], Vector]]
+
+
 @dataclass
 class Way:
     """What was followed: where it ends, with what force above, and after how much cable.
 
     `depths` are those of the points visited, its extremes among them; `slackest` is the least
-    tension, but for that of a bare end.
+    tension, but for that of a bare end; `paths` lead along it part by part, where asked for: place
+    and force by the unstretched length, from one to another.
     """
 
     position: Vector
@@ -62,11 +66,13 @@ class Way:
     length: float = 0.0
     depths: list[float] = field(default_factory=list)
     slackest: float = np.inf
+    paths: list[Path] = field(default_factory=list)
 
 
 def follow(
-    cable: Cable, position: Vector, force: Vector, profile: Profile, tolerance: float, lands: bool
-) -> Way:
+    cable: Cable, position: Vector, force: Vector, profile: Profile, tolerance: float, lands: bool,
+    keeps_path: bool = False,
+) -> Way:  # fmt: skip
     """Follow a cable from its upper end; one that `lands` only to where it comes down level.
 
     `tolerance` is the relative error of a step.
@@ -110,8 +116,10 @@ def follow(
         path = solve_ivp(
             slope, (way.length, cable.length), np.concatenate((way.position, way.force)),
             method="DOP853", rtol=tolerance, atol=scale,
-            events=(leaves_upward, leaves_downward, is_level),
+            events=(leaves_upward, leaves_downward, is_level), dense_output=keeps_path,
         )  # fmt: skip
+        if keeps_path:
+            way.paths.append((way.length, float(path.t[-1]), path.sol))
         way.length, way.position, way.force = float(path.t[-1]), path.y[:3, -1], path.y[3:, -1]
         upward, downward, level = (times.size for times in path.t_events)
         band += downward - upward

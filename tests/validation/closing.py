@@ -45,10 +45,13 @@ class Equilibrium:
     surface: bool
 
 
-def solve_continuous(line: Line, water: Water, hull: Hull | None = None) -> Equilibrium:
+def solve_continuous(
+    line: Line, water: Water, hull: Hull | None = None, friction: float = 0.0
+) -> Equilibrium:
     """The highest equilibrium of a mooring: clear of the seabed or else lying on it at the end.
 
-    `hull` is the form of its first float; without it the one that the line has.
+    `hull` is the form of its first float; without it the one that the line has. `friction` is that
+    on the seabed.
 
     Raises
     ------
@@ -58,7 +61,7 @@ def solve_continuous(line: Line, water: Water, hull: Hull | None = None) -> Equi
     refusals: list[NoContinuousSolution] = []
     for lands in (False, True):
         try:
-            found = _closed(line, water, lands, hull)
+            found = _closed(line, water, lands, hull, friction)
         except NoContinuousSolution as refusal:
             refusals.append(refusal)
             continue
@@ -67,16 +70,18 @@ def solve_continuous(line: Line, water: Water, hull: Hull | None = None) -> Equi
     raise refusals[0]
 
 
-def _closed(line: Line, water: Water, lands: bool, hull: Hull | None) -> Equilibrium:
+def _closed(
+    line: Line, water: Water, lands: bool, hull: Hull | None, friction: float
+) -> Equilibrium:
     # A line on the seabed ends there, not at the top of its anchor.
     bottom = water.depth - (0.0 if lands else line.anchor_height)
-    rough, fine = March(line, water, COARSE), March(line, water, FINE)
+    rough, fine = (March(line, water, tolerance, friction) for tolerance in (COARSE, FINE))
 
     def excess(march: March, depth: float, share: Vector) -> float:
         """How much deeper than it should the line ends [m]."""
         return float(-march.down(depth, share, lands=lands).bottom[-1, 2] - bottom)
 
-    riding = _riding(line, water, excess, hull)
+    riding = _riding(line, water, excess, hull, friction)
     if riding is not None:
         fine, share, depth = riding
         return _standing(fine, water, share, depth, lands, surface=True)
@@ -95,13 +100,17 @@ def _closed(line: Line, water: Water, lands: bool, hull: Hull | None) -> Equilib
 def _standing(
     march: March, water: Water, share: Vector, depth: float, lands: bool, surface: bool
 ) -> Equilibrium:
-    shape = march.down(depth, share, lands=lands)
+    shape = march.kept(depth, share, lands)
     _refuse_impossible(shape, march.line, water, share)
     return Equilibrium(shape.shifted(-shape.bottom[-1, :2]), share, depth, surface)
 
 
 def _riding(
-    line: Line, water: Water, excess: Callable[[March, float, Vector], float], hull: Hull | None
+    line: Line,
+    water: Water,
+    excess: Callable[[March, float, Vector], float],
+    hull: Hull | None,
+    friction: float,
 ) -> tuple[March, Vector, float] | None:
     """The first float alone at the surface, at its draft: the march, the parts in use, the depth.
 
@@ -115,7 +124,8 @@ def _riding(
 
     def placed(part: float, tolerance: float) -> tuple[March, Vector, float]:
         loaded, out = riding(line, water, hull, part)
-        march, share = March(loaded, water, tolerance), np.where(np.arange(n) == first, part, 1.0)
+        march = March(loaded, water, tolerance, friction)
+        share = np.where(np.arange(n) == first, part, 1.0)
         return march, share, depth_of_free_end(march, share, out)
 
     def lacking(part: float, tolerance: float) -> float:

@@ -3,8 +3,8 @@
 Nothing here is shared with the solver, which cuts cables into straight rods: cables are integrated
 (`cables`), rigid pieces turn until no moment is left (`rods`). Pieces that do not float, listed
 above the first float, make one rod with it. A line that lands comes down level on the seabed below
-its last float, and what is left of it lies there along its pull, out of the current, without
-friction.
+its last float, and what is left of it lies there along its pull, out of the current; friction
+takes its share of what presses on the seabed from the pull, until nothing is left of that.
 """
 
 from __future__ import annotations
@@ -13,9 +13,10 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
+from scipy.integrate import quad
 
 from calm.physics.line import Line, Water
-from tests.validation.cables import Cable, Folded, NoContinuousSolution, follow
+from tests.validation.cables import Cable, Folded, NoContinuousSolution, Path, follow
 from tests.validation.loads import DOWN, Load, Profile, Vector, on_clamp, on_piece
 from tests.validation.rods import rod_axis
 from tests.validation.ropes import strain_law
@@ -30,6 +31,7 @@ class Shape:
     x and y count from the free end. `depths` are those of the points visited above the seabed,
     the extremes among them; `slackest` is the least tension inside a cable, but for the bare end
     of one; `grounded` is the unstretched length on the seabed, None for a line that does not land.
+    `paths` lead down the hanging cables, where they are kept: piece, from where on it, and `Path`.
     """
 
     top: Vector
@@ -42,12 +44,27 @@ class Shape:
     depths: list[float] = field(default_factory=list)
     slackest: float = np.inf
     grounded: float | None = None
+    paths: list[tuple[int, float, Path]] = field(default_factory=list)
+    offset: Vector = field(default_factory=lambda: np.zeros(3))
 
     def shifted(self, by: Vector) -> Shape:
         """The same shape elsewhere: `by` (2,) added to every x, y [m]."""
         move = np.array([by[0], by[1], 0.0])
         top, bottom, clamp = self.top + move, self.bottom + move, self.clamp + move
-        return replace(self, top=top, bottom=bottom, clamp=clamp)
+        return replace(self, top=top, bottom=bottom, clamp=clamp, offset=self.offset + move)
+
+    def inside(self, piece: int, s: Vector) -> Vector:
+        """Place [m] and force above [N] (k, 6) at unstretched lengths (k,) down a hanging cable.
+
+        NaN where it lies on the seabed.
+        """
+        found = np.full((len(s), 6), np.nan)
+        for owner, start, (first, last, path) in self.paths:
+            here = (s >= start + first) & (s <= start + last)
+            if owner == piece and here.any():
+                found[here] = path(s[here] - start).T
+        found[:, :3] += self.offset
+        return found
 
 
 @dataclass
@@ -57,6 +74,7 @@ class Place:
     position: Vector
     force: Vector
     lying: bool = False
+    way: Vector | None = None
 
     def lie_down(self) -> None:
         """Leave the water: what the vertical force does not carry, the seabed does."""
@@ -65,20 +83,28 @@ class Place:
 
     def way_on(self) -> Vector:
         """The unit vector along the seabed, against the pull."""
+        if self.way is None:
+            pull = float(np.linalg.norm(self.force))
+            if pull == 0.0:
+                raise Folded("nothing pulls the line straight on the seabed")
+            self.way = -self.force / pull
+        return self.way
+
+    def hold_back(self, friction: float) -> None:
+        """Leave what a friction does not hold of the pull [N]."""
         pull = float(np.linalg.norm(self.force))
-        if pull == 0.0:
-            raise Folded("nothing pulls the line straight on the seabed")
-        return -self.force / pull
+        self.force = -max(pull - friction, 0.0) * self.way_on()
 
 
 class March:
     """Goes down one line in one water; `tolerance` is the relative error of a step.
 
-    The `frequency` [Hz] is that of a line that strums.
+    The `frequency` [Hz] is that of a line that strums, the `friction` that on the seabed.
     """
 
-    def __init__(self, line: Line, water: Water, tolerance: float) -> None:
+    def __init__(self, line: Line, water: Water, tolerance: float, friction: float = 0.0) -> None:
         self.line, self.profile, self.tolerance = line, Profile(water), tolerance
+        self.friction, self.keeps_paths = friction, False
         self.frequency = 0.0
         self.gravity, self.depth = float(water.gravity), float(water.depth)
         self.head = head(line)
@@ -87,6 +113,13 @@ class March:
             for piece in range(len(line.length))
         ]
         self.lowest_lift = lowest_lift(line, self.clamps)
+
+    def kept(self, depth: float, share: Vector, lands: bool = False) -> Shape:
+        """The shape, with the paths of its cables."""
+        self.keeps_paths = True
+        shape = self.down(depth, share, lands=lands)
+        self.keeps_paths = False
+        return shape
 
     def down(
         self, depth: float, share: Vector, until: int | None = None, lands: bool = False
@@ -121,6 +154,11 @@ class March:
     def _clamp(self, clamp: int) -> Load:
         return on_clamp(self.line, clamp, self.gravity)
 
+    def _pressing(self, load: Load) -> float:
+        """Friction of what lies on the seabed [N], or of a metre of it."""
+        density = self.profile.at(self.depth)[3]
+        return -self.friction * float(load.force((0.0, 0.0, 0.0, density), DOWN)[2])
+
     def _on_rod(self, rod: range, share: Vector) -> list[tuple[int, int, float, Load]]:
         """What loads a rod, downwards: piece, clamp or -1, distance from its upper end, load."""
         loads, top = [], 0.0
@@ -151,10 +189,14 @@ class March:
             if rests and not stands:
                 place.lie_down()  # it would tip over
         if place.lying:
-            axis, pulls = place.way_on(), [np.zeros(3)] * len(loads)
+            axis, pulls = place.way_on(), []
             shape.grounded = (shape.grounded or 0.0) + length
-        for (piece, c, at, _), pull in zip(loads, pulls, strict=True):
-            above, place.force = place.force, place.force + pull
+        for i, (piece, c, at, load) in enumerate(loads):
+            above = place.force
+            if place.lying:
+                place.hold_back(self._pressing(load))
+            else:
+                place.force = above + pulls[i]
             if c >= 0:
                 shape.clamp[c] = origin + at * axis
                 shape.clamp_above[c], shape.clamp_below[c] = above, place.force
@@ -184,6 +226,8 @@ class March:
                 may_land = lands and (piece, at, i) > self.lowest_lift
                 if may_land and carried > 0.0 >= place.force[2]:
                     place.lie_down()
+            else:
+                place.hold_back(self._pressing(self._clamp(c)))
             shape.clamp_below[c] = place.force
         self._stretch(piece, load, s, float(line.length[piece]), place, shape, lands)
         shape.bottom[piece], shape.force_bottom[piece] = place.position, place.force
@@ -198,7 +242,11 @@ class March:
         if not place.lying and length > 0.0:
             cable = Cable(load, length, strain, thinning)
             may_land = lands and (piece, end, 0) > self.lowest_lift
-            way = follow(cable, place.position, place.force, self.profile, self.tolerance, may_land)
+            way = follow(
+                cable, place.position, place.force, self.profile, self.tolerance, may_land,
+                self.keeps_paths,
+            )  # fmt: skip
+            shape.paths += [(piece, start, path) for path in way.paths]
             place.position, place.force = way.position, way.force
             shape.depths += way.depths
             shape.slackest = min(shape.slackest, way.slackest)
@@ -206,9 +254,13 @@ class March:
             if length > 0.0:
                 place.lie_down()
         if place.lying:
-            stretched = 1.0 + strain(float(np.linalg.norm(place.force)))
+            pull, held = float(np.linalg.norm(place.force)), self._pressing(load)
+            pulled = min(length, pull / held) if held > 0.0 else length
+            stretch, _ = quad(lambda s: strain(pull - s * held), 0.0, pulled, limit=200)
+            long = length + stretch + (length - pulled) * strain(0.0)
             shape.grounded = (shape.grounded or 0.0) + length
-            place.position = place.position + length * stretched * place.way_on()
+            place.position = place.position + long * place.way_on()
+            place.hold_back(length * held)
 
 
 def head(line: Line) -> int:

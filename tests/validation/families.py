@@ -1,35 +1,86 @@
 """Random moorings and tows of one kind each, where a solver's estimate of its error is put to test.
 
-A family draws a case from a `Random`: a function that solves it at given settings. The moorings
-are those of `tests.property.strategies`, chosen or changed to be deep, on the seabed, stretchy,
-in a sheared current and so on; the tows are those of `tests.validation.random_tows`.
+A family draws a case from a `Random`: what CALM and the referee are given. The moorings are those
+of `tests.property.strategies`, as they are or chosen or changed to be deep, on the seabed,
+stretchy, in a current of thin steps and so on; the tows those of `tests.validation.random_tows`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
-from functools import partial
-from math import exp, log, pi
+from dataclasses import dataclass, replace
+from math import cos, exp, log, pi, sin
 from random import Random
 
 import numpy as np
 
 from calm.physics.drag import Friction
 from calm.physics.line import Line, Water
-from calm.solve import Settings, Solution, solve_mooring, solve_tow
-from tests.property.strategies import hardware, mooring, sea
+from calm.solve import Settings, Solution, Towing, solve_mooring, solve_tow
+from tests.property.strategies import float_of, hardware, mooring, sea
+from tests.validation.afloat import Hull
+from tests.validation.closing import Equilibrium, solve_continuous
 from tests.validation.pieces import HALF_DENSITY, Piece, line_of, point
 from tests.validation.random_tows import tow
 from tests.validation.test_curves import curved
 from tests.validation.test_random_floats import surface_mooring
+from tests.validation.towed import Passing, Towed, solve_continuous_tow
 
-Case = Callable[[Settings], Solution]
+
+@dataclass(frozen=True)
+class MooringCase:
+    """A mooring; `friction` is that on the seabed, `hull` the referee's form of its float."""
+
+    line: Line
+    water: Water
+    friction: float = 0.0
+    hull: Hull | None = None
+
+    def __call__(self, settings: Settings) -> Solution:
+        """By CALM."""
+        return solve_mooring(self.line, self.water, self.settings(settings))
+
+    def settings(self, settings: Settings) -> Settings:
+        """Settings with its friction on the seabed."""
+        return replace(settings, seabed_friction=self.friction)
+
+    def integrated(self) -> Equilibrium:
+        """By the referee."""
+        return solve_continuous(self.line, self.water, self.hull, self.friction)
+
+    @property
+    def profile(self) -> None:
+        """The water that its loads are recomputed in: that of its solution."""
+
+
+@dataclass(frozen=True)
+class TowCase:
+    """A tow."""
+
+    line: Line
+    water: Water
+    towing: Towing
+
+    def __call__(self, settings: Settings) -> Solution:
+        """By CALM."""
+        return solve_tow(self.line, self.water, self.towing, settings)
+
+    def integrated(self) -> Towed:
+        """By the referee."""
+        return solve_continuous_tow(self.line, self.water, self.towing)
+
+    @property
+    def profile(self) -> Passing:
+        """The water that its loads are recomputed in."""
+        return Passing(self.water, self.towing)
+
+
+Case = MooringCase | TowCase
 Family = Callable[[Random], Case]
 
 
-def _moored(line: Line, water: Water, friction: float = 0.0) -> Case:
-    return lambda settings: solve_mooring(line, water, replace(settings, seabed_friction=friction))
+def _any(random: Random) -> Case:
+    return MooringCase(*mooring(random))
 
 
 def _of_depth(least: float, most: float) -> Family:
@@ -39,18 +90,18 @@ def _of_depth(least: float, most: float) -> Family:
         while True:
             line, water = mooring(random, surface=False)
             if least <= water.depth <= most:
-                return _moored(line, water)
+                return MooringCase(line, water)
 
     return family
 
 
 def _surface(random: Random) -> Case:
-    return _moored(*mooring(random, surface=True))
+    return MooringCase(*mooring(random, surface=True))
 
 
 def _at_its_draft(random: Random) -> Case:
-    line, water, _ = surface_mooring(random)
-    return _moored(line, water)
+    line, water, hull = surface_mooring(random)
+    return MooringCase(line, water, hull=hull)
 
 
 def _on_the_seabed(random: Random) -> Case:
@@ -68,7 +119,7 @@ def _on_the_seabed(random: Random) -> Case:
     buoyancy = 100.0 + weight * random.uniform(0.5, 3.0)
     pieces.insert(0, _float(buoyancy, random))
     friction = random.choice([0.0, random.uniform(0.1, 1.0)])
-    return _moored(line_of(*pieces), water, friction)
+    return MooringCase(line_of(*pieces), water, friction)
 
 
 def _stretchy(random: Random) -> Case:
@@ -77,13 +128,13 @@ def _stretchy(random: Random) -> Case:
     pull = float(line.total_buoyancy[line.total_buoyancy > 0.0].sum())
     stretch = np.where(line.flexible, random.uniform(0.05, 0.4) / pull, 0.0)
     line = replace(line, compliance=stretch)
-    return _moored(curved(line, random) if random.random() < 0.5 else line, water)
+    return MooringCase(curved(line, random) if random.random() < 0.5 else line, water)
 
 
 def _sheared(random: Random) -> Case:
     """A hundred levels, of a current that wanders from one to the next by up to 0.3 m/s."""
     line, water = mooring(random)
-    return _moored(line, _with_levels(water, random))
+    return MooringCase(line, _with_levels(water, random))
 
 
 def _with_levels(water: Water, random: Random) -> Water:
@@ -102,7 +153,7 @@ def _all_chain(random: Random) -> Case:
     pieces = [_chain(random.uniform(0.008, 0.02), length / 3.0) for _ in range(3)]
     weight = -sum(piece.total for piece in pieces)
     pieces.insert(0, _float(100.0 + weight * random.uniform(0.3, 3.0), random))
-    return _moored(line_of(*pieces), water)
+    return MooringCase(line_of(*pieces), water)
 
 
 def _many_clamps(random: Random) -> Case:
@@ -111,7 +162,7 @@ def _many_clamps(random: Random) -> Case:
     count = random.randint(20, 60)
     on = [random.choice(np.flatnonzero(line.flexible).tolist()) for _ in range(count)]
     lift = float(line.buoyancy[~line.flexible].max())
-    return _moored(
+    return MooringCase(
         replace(
             line,
             clamp_piece=on,
@@ -129,7 +180,7 @@ def _smooth(random: Random) -> Case:
     """Drag by the Reynolds number, ropes that stretch by a table, the three laws of friction."""
     line, water = mooring(random)
     line = replace(curved(line, random), friction=random.choice(list(Friction)))
-    return _moored(line, water)
+    return MooringCase(line, water)
 
 
 def _towed(wanted: Callable[[Line, float], bool]) -> Family:
@@ -137,7 +188,7 @@ def _towed(wanted: Callable[[Line, float], bool]) -> Family:
         while True:
             line, water, towing = tow(random)
             if wanted(line, towing.height):
-                return partial(solve_tow, line, water, towing)
+                return TowCase(line, water, towing)
 
     return family
 
@@ -146,7 +197,54 @@ def _tow_in_shear(random: Random) -> Case:
     line, water, towing = tow(random)
     depth = min(water.depth, 2.0 * float(line.length.sum()))
     sheared = _with_levels(replace(water, depth=depth), random)
-    return partial(solve_tow, line, replace(sheared, depth=water.depth), towing)
+    return TowCase(line, replace(sheared, depth=water.depth), towing)
+
+
+def _stepped(random: Random) -> Case:
+    """Layers of one current each, with steps of 1 cm to 1 m between them.
+
+    One line in three hangs in an S; the friction of one in three is constant.
+    """
+    line, water = _s_shaped(random) if random.random() < 0.33 else mooring(random)
+    if random.random() < 0.33:
+        line = replace(line, friction=Friction.CONSTANT)
+    return MooringCase(line, _in_layers(water, random))
+
+
+def _in_layers(water: Water, random: Random) -> Water:
+    """Three to twelve layers, each at least twice as thick as a step."""
+    count = random.randint(3, 12)
+    step = _log(random, 0.01, min(1.0, 0.25 * water.depth / count))
+    shares = np.array([random.uniform(0.1, 1.0) for _ in range(count)])
+    room = water.depth - 2.0 * step * count
+    below = np.cumsum(shares / shares.sum() * room + 2.0 * step)[:-1]
+    level = np.column_stack([below - 0.5 * step, below + 0.5 * step]).ravel()
+    fastest, veer = _log(random, 0.1, 1.5), random.choice([0.0, 0.5, pi])
+    toward, u, v = random.uniform(0.0, 2.0 * pi), [], []
+    for _ in range(count):
+        speed, angle = fastest * random.random(), toward + veer * random.uniform(-1.0, 1.0)
+        u.append(speed * cos(angle))
+        v.append(speed * sin(angle))
+    still, density = np.zeros(len(level)), float(water.density[0])
+    return replace(
+        water, level=level, u=np.repeat(u, 2)[1:-1], v=np.repeat(v, 2)[1:-1], w=still,
+        density=still + density,
+    )  # fmt: skip
+
+
+def _s_shaped(random: Random) -> tuple[Line, Water]:
+    """A surface float on a heavy line that sags above floats in its middle."""
+    water = _fitted(sea(random), _log(random, 20.0, 3000.0))
+    above, below = random.uniform(0.5, 0.8), random.uniform(0.4, 0.8)
+    upper, lower = hardware(random, above * water.depth), hardware(random, below * water.depth)
+    weight = [-sum(min(piece.total, 0.0) for piece in part) for part in (upper, lower)]
+    middle = float_of(random.uniform(0.2, 0.8) * weight[0] + weight[1] + 50.0, 0.6)
+    tension = 200.0 + sum(weight)
+    pieces = [*upper, middle, *lower]
+    for piece in pieces:
+        piece.compliance /= tension
+    pieces.insert(0, float_of((200.0 + weight[0]) * _log(random, 1.5, 10.0), 0.6))
+    return line_of(*pieces), water
 
 
 def _fitted(water: Water, depth: float) -> Water:
@@ -168,6 +266,8 @@ def _log(random: Random, low: float, high: float) -> float:
 
 
 FAMILIES: dict[str, Family] = {
+    "mooring": _any,
+    "stepped": _stepped,
     "deep": _of_depth(1000.0, 6000.0),
     "shallow": _of_depth(0.0, 200.0),
     "surface": _surface,

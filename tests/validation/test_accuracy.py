@@ -3,7 +3,7 @@
 Of any depth, offset or tension the true error is at most three times the stated one on 95 % of the
 cases, and never ten times. Nor is the estimate idle: on half of the cases the truth is more than
 half of it for depths and offsets. Of the anchor's load and needed weight 90 % are within the stated
-error and 98 % within twice that. `benchmarks/honesty.py` does the same with thousands.
+error and 98 % within twice that. `benchmarks/accuracy.py` holds more against the integration.
 """
 
 from __future__ import annotations

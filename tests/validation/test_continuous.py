@@ -138,3 +138,22 @@ def test_lines_that_cannot_stand_are_refused() -> None:
     dragged = line_of(point(60.0, 50.0), sagging, point(1.0, 0.0))
     with pytest.raises(NoContinuousSolution, match="seabed"):
         solve_continuous(dragged, stream(60.0, 2.0))
+
+
+def test_friction_takes_its_share_of_the_pull_along_the_seabed() -> None:
+    """T falls by μ w a metre from the touchdown on, until nothing is left; it stretches by ∫ T/EA.
+
+    10 m of chain beyond where nothing is left lie unstretched.
+    """
+    pull, weight, stiffness, friction = 500.0, 20.0, 1e5, 0.5
+    chain = Piece(140.0, True, -weight, compliance=1.0 / stiffness)
+    line, water = line_of(point(5000.0, pull), chain), stream(30.0, 1.0)
+    smooth, rough = (solve_continuous(line, water, friction=each) for each in (0.0, friction))
+    grounded = smooth.shape.grounded
+    assert rough.shape.grounded == pytest.approx(grounded, abs=1e-8)
+    held = pull / (friction * weight)
+    assert grounded is not None and grounded > held + 10.0
+    shorter = (grounded - 0.5 * held) * pull / stiffness
+    ends = [found.shape.top[0, 0] - found.shape.bottom[-1, 0] for found in (smooth, rough)]
+    assert ends[0] - ends[1] == pytest.approx(shorter, abs=1e-8)
+    assert rough.shape.force_bottom[-1] == pytest.approx([0.0, 0.0, 0.0], abs=1e-8)

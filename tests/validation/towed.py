@@ -71,10 +71,11 @@ class TowMarch(March):
         self.profile = Passing(water, towing)
         self.height = towing.height
 
-    def up(self, depth: float, frequency: float = 0.0) -> Shape:
+    def up(self, depth: float, frequency: float = 0.0, keeps_paths: bool = False) -> Shape:
         """The shape with the free end at a depth, strumming at a frequency."""
         self.frequency = frequency
-        return self.down(depth, np.ones(len(self.line.length)))
+        march = self.kept if keeps_paths else self.down
+        return march(depth, np.ones(len(self.line.length)))
 
     def excess(self, depth: float, frequency: float = 0.0) -> float:
         """How much higher than the tow point the line ends [m]."""
@@ -180,7 +181,7 @@ def _tuned(march: TowMarch, depth: float, frequency: float) -> tuple[float, floa
 def _answer(
     march: TowMarch, depth: float, frequency: float, others: tuple[float, ...] = ()
 ) -> Towed:
-    shape = march.up(depth, frequency)
+    shape = march.up(depth, frequency, keeps_paths=True)
     if abs(shape.bottom[-1, 2] - march.height) > CLOSED * float(march.line.length.sum()):
         raise HalfOut("a piece or a clamp is half out of the water")
     _refuse_impossible(shape, march)

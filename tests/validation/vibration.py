@@ -32,7 +32,8 @@ class Vibration:
             return highest if self.frequency > 0.0 else 1.0
         angle = degrees(asin(min(across / speed, 1.0)))
         amplitude = self.diameter * (model.a1 + model.b1 * angle + model.c1 * angle**2)
-        return min(power_factor(2.0 * pi * amplitude * self.frequency / across), highest)
+        ratio = 2.0 * pi * amplitude * self.frequency / across
+        return min(power_factor(min(ratio, 1e6)), highest)
 
 
 def power_factor(ratio: float) -> float:
