@@ -23,14 +23,15 @@ STANDING, HANGING_DOWN, PULLED = range(3)
 """Legs marched from a free upper end, from a free lower end, and from an upper end that is held."""
 JUMP = 1e-6
 """Share by which an unknown is moved for the slopes."""
-LANDS, STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG, FREQUENCY, YIELD = range(9)
+LANDS, STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG, FREQUENCY, LACKING, YIELD = range(10)
 """Of a leg as it was marched last: whether it may land, the stage where it did or -1, its length on
 the seabed [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and
-those of them that hang; the frequency of its cables [Hz], and how what that lacks changes with it."""
-OF_LEG = 9
-ROUGHLY_SETTLED, SETTLED, MOST_TURNS = 1e-3, 1e-9, 20
-"""What a frequency may lack, as a share of it, where segments are chosen and where they are given,
-and how often a leg is marched for it."""
+those of them that hang; the frequency of its cables, what that lacks of the one that is shed [Hz],
+and how that changes with it."""
+OF_LEG = 10
+ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-3, 1e-9, 50, -0.3
+"""What a frequency may lack, as a share of it, where segments are chosen and where they are given;
+how often a leg is marched for it, and the slope at which its secants are held."""
 
 
 class LegRow(NamedTuple):
@@ -206,20 +207,31 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
     """March a leg from what is unknown of it; how that ended, see `calm.physics.line`.
 
     One that strums until it does at the frequency of the vortices at its end. That falls as the
-    frequency assumed rises, since more drag lifts the line: there is one, found by secants.
+    frequency assumed rises, since more drag lifts the line: it is found by secants, and by halving
+    a bracket where these do not lead on.
     """
     leg, state = net.legs[i], net.state[i]
     failure = march_once(net, i, x, how)
-    before, lacked, settled = 0.0, 0.0, SETTLED if how.given else ROUGHLY_SETTLED
-    for turn in range(MOST_TURNS if leg.sheds > 0.0 else 0):
+    low, high, before, lacked = -inf, inf, 0.0, inf
+    settled = SETTLED if how.given else ROUGHLY_SETTLED
+    for _ in range(MOST_TURNS if leg.sheds > 0.0 else 0):
         frequency = state[FREQUENCY]
         lacking = shed_by(leg, net.passed[i]) - frequency
+        state[LACKING] = lacking
         if failure != GOES_ON or abs(lacking) <= settled * frequency:
             break
-        if turn > 0 and frequency != before:
+        if lacked < inf and frequency != before:
             state[YIELD] = (lacking - lacked) / (frequency - before)
-        before, lacked = frequency, lacking
-        state[FREQUENCY] = frequency - lacking / min(state[YIELD], -1.0)
+        if lacking > 0.0:
+            low = frequency
+        else:
+            high = frequency
+        following = frequency - lacking / min(state[YIELD], GENTLEST)
+        if high - low < inf and not (
+            abs(lacking) < 0.5 * abs(lacked) and low < following < high
+        ):
+            following = 0.5 * (low + high)
+        before, lacked, state[FREQUENCY] = frequency, lacking, following
         failure = march_once(net, i, x, how)
     return failure
 
