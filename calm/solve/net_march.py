@@ -29,7 +29,7 @@ the seabed [m], its share of a float's buoyancy in use, how often it was marched
 those of them that hang; the frequency of its cables, what that lacks of the one that is shed [Hz],
 and how that changes with it."""
 OF_LEG = 10
-ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-3, 1e-9, 50, -0.3
+ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-2, 1e-9, 50, -0.3
 """What a frequency may lack, as a share of it, where segments are chosen and where they are given;
 how often a leg is marched for it, and the slope at which its secants are held."""
 
