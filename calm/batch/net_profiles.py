@@ -28,14 +28,14 @@ from calm.files import CurrentTable
 from calm.files.legs import nodes_of
 from calm.files.mooring_file import clamps_down
 from calm.physics.compiled import by_address, outcome
-from calm.physics.line import Floats, Water
+from calm.physics.line import BETTER, Floats, Water
 from calm.physics.profile import Sea
 from calm.physics.track import head_count
 from calm.records.grids import SeabedGrid
-from calm.solve import expect_many, net_closing, net_march
+from calm.solve import expect_many, net_closing, net_problem
 from calm.solve.net import NetSearch, NetSolution
 from calm.solve.net_closing import AskedNet, ask_net, keep
-from calm.solve.net_march import Marching, NetProblem, above_bed, place_of
+from calm.solve.net_problem import Marching, NetProblem, above_bed, place_of
 from calm.solve.problem import CHOSEN, FINE
 
 ROUGHLY = 1e-6
@@ -68,7 +68,7 @@ class NetPaper(NamedTuple):
     Attributes
     ----------
     on, still : what a profile is laid out on; the water without it
-    start, slopes, lands : the unknowns, slopes and legs on the seabed of the net there
+    start, slopes, scale : the unknowns and slopes of the net there, and what scales them
     x : room for the unknowns
     piece, clamp : first of each leg in the rows
     weight : of the anchor of each leg, inf where it has none [N]
@@ -78,7 +78,7 @@ class NetPaper(NamedTuple):
     still: Sea
     start: Any
     slopes: Any
-    lands: Floats
+    scale: Any
     x: Any
     piece: Any
     clamp: Any
@@ -115,8 +115,7 @@ def solve_net_rows(
         keep(paper.start, paper.x)
         for k in range(len(paper.x)):
             keep(paper.slopes[k], net.slopes[k])
-        for i in range(len(net.legs)):
-            net.state[i][net_march.LANDS] = paper.lands[i]
+        keep(paper.scale, net.scale)
         how = Marching(sea, 4.0 * step, CHOSEN, False, FINE)
         ending = ask(AskedNet(net_closing.CLOSE, net, paper.x, how, net_closing.NEAR, True), 0.0)
         if ending == net_closing.CAME_OUT:
@@ -133,13 +132,13 @@ def stands(net: NetProblem, paper: NetPaper) -> bool:
     near = net.errors[net_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
     for i in range(len(net.legs)):
         leg, state, record = net.legs[i], net.state[i], net.lines.work.records[i][FINE]
-        count, first = int(state[net_march.COUNT]), 0
-        if leg.kind == net_march.STANDING and state[net_march.SHARE] < 1.0:
-            if state[net_march.SHARE] < 0.0:
+        count, first = int(state[net_problem.COUNT]), 0
+        if leg.kind == net_problem.STANDING and state[net_problem.SHARE] < 1.0:
+            if state[net_problem.SHARE] < 0.0:
                 return False
             first = net.last[i][net.lines.surfacing[i][0].piece] + 1
         for n in range(count):
-            if n < state[net_march.HUNG] and above_bed(net, i, paper.x, record, n) < -near:
+            if n < state[net_problem.HUNG] and above_bed(net, i, paper.x, record, n) < -near:
                 return False
             if n >= first and record[2][n] > near + leg.highest:
                 return False
@@ -152,29 +151,31 @@ def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None
     """Write what is found of a profile to its row."""
     for i in range(len(net.legs)):
         leg, record = net.legs[i], net.lines.work.records[i][FINE]
-        count = int(net.state[i][net_march.COUNT])
-        east, north, _ = place_of(net, i, paper.x, 1)
-        dx, dy = east - record[0][count - 1], north - record[1][count - 1]
-        rows.shares[case, i] = net.state[i][net_march.SHARE]
-        own = 1 if leg.kind == net_march.PULLED else 0
+        count = int(net.state[i][net_problem.COUNT])
+        east, north, _ = place_of(net, i, net.better, 1)
+        dx, dy = east - record[BETTER][count - 1], north - record[BETTER + 1][count - 1]
+        rows.shares[case, i] = net.state[i][net_problem.SHARE]
+        own = 1 if leg.own > 1 else 0
         for p in range(own, leg.pieces):
             row = rows.pieces[case, paper.piece[i] + p - own]
             for side in range(2):
                 n = net.first[i][p] if side == 0 else net.last[i][p]
                 for k in range(6):
-                    row[6 * side + k] = record[k][n]
+                    row[6 * side + k] = record[BETTER + k][n]
                 row[6 * side] += dx
                 row[6 * side + 1] += dy
         for n in range(1, count):
             if record[7][n] < 0.0:
                 continue
             row = rows.clamps[case, paper.clamp[i] + int(record[7][n])]
-            row[0], row[1], row[2] = record[0][n - 1] + dx, record[1][n - 1] + dy, record[2][n - 1]
+            row[0], row[1] = record[BETTER][n - 1] + dx, record[BETTER + 1][n - 1] + dy
+            row[2] = record[BETTER + 2][n - 1]
             above = below = 0.0
             for k in range(3, 6):
-                row[k] = record[k][n - 1] + record[k][n]
-                above += record[k][n - 1] * record[k][n - 1]
-                below += record[k][n] * record[k][n]
+                upper, lower = record[BETTER + k][n - 1], record[BETTER + k][n]
+                row[k] = upper + lower
+                above += upper * upper
+                below += lower * lower
             row[6] = sqrt(max(above, below))
 
 
@@ -214,25 +215,24 @@ class NetProfiles:
         return None
 
     @cached_property
-    def slopes(self) -> Floats | None:
-        """Slopes of the net there; None where profiles are to be solved alone."""
+    def slopes(self) -> tuple[Floats, Floats] | None:
+        """Slopes of the net there, and what scales them; None where profiles are to be solved
+        alone."""
         if self.base is None or isinstance(self.net.file.environment.seabed, SeabedGrid):
             return None
         search, step = self.search(), 4.0 * self.net.settings.angle_step
         search.put_in(self.net.water.still() if self.still else self.net.water)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        search.asked(net_closing.SLOPES, self.base.unknowns, how)
-        return np.array(search.net.slopes)
+        # unknowns closed already; near them the legs' own scales are taken and the slopes found
+        search.asked(net_closing.CLOSE, self.base.unknowns, how, np.inf)
+        return np.array(search.net.slopes), np.array(search.net.scale)
 
     def search(self) -> NetSearch:
         """The search for it, compiled."""
         settings = replace(self.net.settings, compiled=True)
         nodes = len(nodes_of(self.net.file.legs))
         water = self.water(*[(0.0,)] * 4)
-        search = NetSearch(self.net.legs, nodes, water, settings, rough=True)
-        if self.base is not None:
-            search.lie_as(self.base.lands)
-        return search
+        return NetSearch(self.net.legs, nodes, water, settings, rough=True)
 
     def solve(
         self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
@@ -274,6 +274,7 @@ class NetProfiles:
     ) -> None:
         search, water = self.search(), self.water(*[(0.0,)] * 4)
         assert self.base is not None
+        assert self.slopes is not None
         of_legs = self.net.file.legs
         weights = [
             line.anchor_weight if leg.bottom.anchor else inf
@@ -284,8 +285,8 @@ class NetProfiles:
             on=solving.levels_for(current[0].shape[1], water),
             still=search.sea,
             start=self.base.unknowns,
-            slopes=self.slopes,
-            lands=np.array(search.lands, float),
+            slopes=self.slopes[0],
+            scale=self.slopes[1],
             x=np.zeros(len(self.base.unknowns)),
             piece=np.array([leg.first for leg in of_legs]),
             clamp=np.array([sum(clamped[: leg.first]) for leg in of_legs]),

@@ -194,8 +194,7 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
         clamps=clamps,
         shape=shape,
         still_shape=still_shape,
-        other_depth=solution.other_depth,
-        other_grounded_length=solution.other_grounded_length,
+        other=solution.other,
     )
     return replace(result, warnings=warnings_of(result, solution))
 

@@ -197,20 +197,6 @@ class Net(ReadFromFile):
                     f"{say('length', dist(first, last))} apart.",
                     advice="Lengthen a leg, or bring the ends closer together.",
                 )
-        from calm.solve.net_start import start_of
-
-        tops = start_of(self.legs, len(nodes_of(self.file.legs)), water).first.tolist()
-        for leg, keys, (*at, up) in zip(self.legs, self.file.legs, tops, strict=True):
-            length = float(leg.line.length.sum())
-            foot, height = leg.lower.place, up - leg.lower.seabed  # inf where nothing anchors it
-            over = inf if foot is None else height + dist(at, foot[:2])
-            if length > over:
-                return Status.SLACK.because(
-                    f"Leg {keys.name} is {say('length', length)} long, and some "
-                    f"{say('length', over)} lead down from its upper end and along the seabed to "
-                    "its anchor: the rest lies there in no shape that a pull would give it.",
-                    advice="Shorten it, or anchor it farther away.",
-                )
         return None
 
     def solve(self, environment: OtherEnvironment | None = None) -> NetResult:

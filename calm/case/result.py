@@ -18,6 +18,7 @@ from calm.case.strumming import Strumming, StrummingBand, band_of
 from calm.files import Clamp, MooringFile, Piece
 from calm.files.legs import leg_numbers
 from calm.physics.line import Floats
+from calm.solve.solution import OtherEquilibrium
 
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring, ProfilerTravel
@@ -175,14 +176,14 @@ class ResultForms:
 class Solved(ResultForms):
     """Hold what the result of every single line has. Depths [m].
 
-    `other_depth` is that of the free end in another equilibrium that was found.
+    `other` is another equilibrium that was found.
     """
 
     strumming: Strumming | None
     components: Components
     clamps: Clamps
     shape: Shape
-    other_depth: float | None = None
+    other: OtherEquilibrium | None = None
 
     def __repr__(self) -> str:
         """Return the figures of both ends, in SI units and degrees."""
@@ -200,26 +201,22 @@ class Solved(ResultForms):
 class Result(Solved):
     """A converged mooring. Lengths and depths [m], forces [N], angles [degrees].
 
-    `still_shape` is the same line without current, None where that has no unique shape,
-    `other_grounded_length` what lies on the seabed in another equilibrium. `profilers` are on their
-    way; the rest of the result is of all of them at their upper stops.
+    `still_shape` is the same line without current, None where that has no unique shape. `profilers`
+    are on their way; the rest of the result is of all of them at their upper stops.
     """
 
     mooring: Mooring
     top: Top
     anchor: AnchorLoad
     still_shape: Shape | None
-    other_grounded_length: float = 0.0
     profilers: tuple[ProfilerTravel, ...] = ()
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
-        """Return where the free end is in another equilibrium, and what lies on the seabed there
-        [m].
+        """Depth of the free end, length on the seabed, buoyancy in use and anchor load of another
+        equilibrium; None if none was found.
         """
-        if self.other_depth is None:
-            return None
-        return {"depth": self.other_depth, "grounded_length": self.other_grounded_length}
+        return None if self.other is None else self.other._asdict()
 
     @property
     def file(self) -> MooringFile:

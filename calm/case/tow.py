@@ -68,7 +68,7 @@ class TowResult(Solved):
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
         """Depth of the free end in another equilibrium [m]."""
-        return None if self.other_depth is None else {"depth": self.other_depth}
+        return None if self.other is None else {"depth": self.other.depth}
 
     @property
     def file(self) -> MooringFile:
@@ -206,7 +206,7 @@ def _result_of(tow: Tow, solution: Solution) -> TowResult:
         components=components_of(pieces, solution),
         clamps=clamps_of(pieces, solution),
         shape=shape_of(solution),
-        other_depth=solution.other_depth,
+        other=solution.other,
     )
     return replace(result, warnings=warnings_of(result, solution))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from math import hypot
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -225,14 +226,22 @@ def _far_too_long(result: Result, solution: Solution) -> Iterator[str]:
 
 
 def _other_equilibrium(_: Result | TowResult, solution: Solution) -> Iterator[str]:
-    if solution.other_depth is not None:
-        lying = solution.other_grounded_length
-        both = lying != solution.grounded_length
-        on_the_bed = f" and {lying:.1f} m of line on the seabed" if both else ""
+    other = solution.other
+    if other is None:
+        return
+    if solution.surface and other.used_buoyancy < 1.0:
+        pull = say("force", hypot(other.anchor_vertical, other.anchor_horizontal))
         yield (
-            "Another equilibrium exists, with the free end at a depth of "
-            f"{solution.other_depth:.1f} m{on_the_bed}."
+            f"Another equilibrium exists, with {other.used_buoyancy:.1%} of the float's buoyancy "
+            f"in use and an anchor load of {pull}."
         )
+        return
+    both = other.grounded_length != solution.grounded_length
+    on_the_bed = f" and {other.grounded_length:.1f} m of line on the seabed" if both else ""
+    yield (
+        "Another equilibrium exists, with the free end at a depth of "
+        f"{other.depth:.1f} m{on_the_bed}."
+    )
 
 
 def _hull_unknown(result: Result, solution: Solution) -> Iterator[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from calm.case import Mooring
 from calm.checks.criterion import cited
@@ -14,6 +15,7 @@ from calm.errors import UsageError
 from calm.quantities import say
 from calm.waves.analysis import WaveAnalysis, analyse
 from calm.waves.fatigue import YEAR
+from calm.waves.pieces_in_sea import PieceInWaves
 
 _HOW = "Give `waves:` in the environment: a design sea, and a scatter table for fatigue."
 
@@ -55,16 +57,18 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
     factor, source = checks.waves_safety_factor, cited(mooring.file, "waves_safety_factor")
     for piece in mooring.file.pieces[:-1]:
         state = max(waves.states, key=lambda each: each.components[piece.index].greatest)
-        tension = state.components[piece.index].greatest
+        row = state.components[piece.index]
+        tension = row.greatest
         limit = lesser_load(piece.component, 1.0, factor)
         sea = f"Hs {state.sea.significant_height:.1f} m"
         bears = f"{piece.label} bears {say('tension', tension)} in waves of {sea}"
         if limit is None:
             if passes_load_on(mooring.file, piece.index):
                 message = f"{bears}; neither its working nor its breaking load is known."
+                message += _measured(row, "greatest")
                 yield unknown(piece, message, "Give its `breaking_load`.", tension)
             continue
-        message = f"{bears}; its loads allow {say('tension', limit)}."
+        message = f"{bears}; its loads allow {say('tension', limit)}.{_measured(row, 'greatest')}"
         remedy = "Take a stronger one, or let the line stretch more."
         yield _sure(waves, at_most(piece, tension, limit, message, remedy, source=source))
 
@@ -82,6 +86,7 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
             message = (
                 f"The least tension of {piece.label} is {say('tension', row.least)} in waves of "
                 f"Hs {state.sea.significant_height:.1f} m; below 0 it goes slack and snatches."
+                f"{_measured(row, 'least')}"
             )
             remedy = "Add weight or stretch, or solve it in the time domain: `calm export`"
             yield _sure(waves, at_least(piece, row.least, 0.0, message, f"{remedy}."))
@@ -115,6 +120,15 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
             remedy = "Take a thicker one, let the line stretch more, or renew it sooner."
             life = one.life * YEAR
             yield _sure(waves, at_least(piece, life, limit, message, remedy, source=source))
+
+
+def _measured(row: PieceInWaves, which: Literal["greatest", "least"]) -> str:
+    """Return the tension by the band of those measured at sea, as a sentence."""
+    if row.measured_low is None or row.measured_high is None:
+        return ""
+    tensions = sorted(getattr(each, which) for each in (row.measured_low, row.measured_high))
+    low, high = (say("tension", each) for each in tensions)
+    return f" The band measured at sea (SOFS) gives {low} to {high}."
 
 
 def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:

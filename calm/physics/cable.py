@@ -6,6 +6,7 @@ from math import inf, sqrt
 from calm.physics.compiled import within
 from calm.physics.drag import (
     BERTEAUX,
+    CONSTANT,
     HOERNER,
     Vector,
     axis_along,
@@ -16,7 +17,14 @@ from calm.physics.drag import (
     turning_friction,
 )
 from calm.physics.line import NO_BALANCE, Bed, State, off_bed
-from calm.physics.profile import Sea, counts_across, distance_to_level, water_at
+from calm.physics.profile import (
+    Sea,
+    counts_across,
+    distance_to_level,
+    in_interval,
+    level_within,
+    water_at,
+)
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
 from calm.physics.strumming import Vibration, amplified_share, strummed, with_beat
@@ -140,9 +148,7 @@ def pass_segment(
             if not doubt < LITTLE_TURN:
                 c = drag_share(ax, ay, az, 0.5 * kn * area, u, v, w)
         else:
-            c, factor = vibrating_share(
-                vibration, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz
-            )
+            c, factor = vibrating_share(vibration, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz)
         tx, ty, tz = axis_along(ax, ay, az, c, u, v, w)
         qx, qy, qz = segment_drag(friction, factor * kn * area, kt * area, u, v, w, tx, ty, tz)
         qz += lift
@@ -214,22 +220,22 @@ def touchdown(
     near: float,
     expected: Vector,
     bed: Bed,
-) -> float:
-    """Return how much of a segment hangs before its end has nothing left to carry above the bed
-    [m]; at most `cut`.
+) -> tuple[float, State, float]:
+    """Pass the part of a segment that hangs: to where it has nothing left to carry above the bed.
 
     `near` and `expected` are as in `pass_segment`.
+
+    Returns
+    -------
+    Length of the part [m], at most `cut`, the state below it, and its strain.
     """
     low, high, hanging = 0.0, cut, cut
     carried = off_bed(bed, state[3], state[4], state[5])
+    below, strain = state, 0.0
     for _ in range(PASSES):
-        (_, _, _, fx, fy, fz, _, _), _ = pass_segment(
-            cable, knots, vibration, sea, state, hanging, near, expected
-        )
-        fz = off_bed(bed, fx, fy, fz)
-        if hanging == cut and fz > 0.0:
-            return cut
-        if abs(fz) <= 1e-12 * carried:
+        below, strain = pass_segment(cable, knots, vibration, sea, state, hanging, near, expected)
+        fz = off_bed(bed, below[3], below[4], below[5])
+        if (hanging == cut and fz > 0.0) or abs(fz) <= 1e-12 * carried:
             break
         if fz > 0.0:
             low = hanging
@@ -237,7 +243,66 @@ def touchdown(
             high = hanging
         following = hanging * carried / (carried - fz)
         hanging = following if low < following < high else 0.5 * (low + high)
-    return hanging
+    return hanging, below, strain
+
+
+@within
+def pass_part(
+    cable: CableStretch,
+    knots: Sequence[Knot],
+    vibration: Vibration,
+    sea: Sea,
+    state: State,
+    cut: float,
+    near: float,
+    expected: Vector,
+    share: float,
+) -> tuple[float, State, float]:
+    """Pass a segment as far as the first level or turn of the flow that splits it.
+
+    Parameters
+    ----------
+    near, expected : see `pass_segment`
+    share : see `counts_across`
+
+    Returns
+    -------
+    Length of the part [m], the state below it, and its strain.
+    """
+    below, strain = pass_segment(cable, knots, vibration, sea, state, cut, near, expected)
+    within_levels = in_interval(sea, below[7], -state[2], -below[2])
+    if within_levels and cable.friction != CONSTANT:
+        return cut, below, strain
+    return split_part(
+        cable, knots, vibration, sea, state, below, strain, cut, near, expected, share
+    )
+
+
+def split_part(
+    cable: CableStretch,
+    knots: Sequence[Knot],
+    vibration: Vibration,
+    sea: Sea,
+    state: State,
+    below: State,
+    strain: float,
+    cut: float,
+    near: float,
+    expected: Vector,
+    share: float,
+) -> tuple[float, State, float]:
+    """`pass_part` of a segment that may have to be split; `below` and `strain` are those of all of
+    it."""
+    part = cut
+    level = level_within(sea, below[7], -state[2], -below[2], share)
+    if level > 0:
+        part, below, strain = until_level(
+            cable, knots, vibration, sea, state, below, cut, near, level, share
+        )
+    if cable.friction == CONSTANT and flow_along(sea, state) * flow_along(sea, below) < 0.0:
+        part = until_turn(cable, knots, vibration, sea, state, part, near, expected)
+        below, strain = pass_segment(cable, knots, vibration, sea, state, part, near, expected)
+    return part, below, strain
 
 
 def until_level(
@@ -327,11 +392,6 @@ def until_turn(
         if here == 0.0 or high - low <= NEAR_A_TURN * cut:
             break
     return high
-
-
-def flow_turns(sea: Sea, state: State, below: State) -> bool:
-    """Whether the flow along a segment turns round between its ends."""
-    return flow_along(sea, state) * flow_along(sea, below) < 0.0
 
 
 def flow_along(sea: Sea, state: State) -> float:

@@ -14,15 +14,7 @@ from collections.abc import MutableSequence
 from math import isfinite
 from typing import NamedTuple
 
-from calm.physics.cable import (
-    flow_turns,
-    pass_segment,
-    segment_length,
-    touchdown,
-    until_level,
-    until_turn,
-)
-from calm.physics.drag import CONSTANT
+from calm.physics.cable import pass_part, segment_length, touchdown
 from calm.physics.line import (
     ENDLESS,
     ENDS,
@@ -42,7 +34,7 @@ from calm.physics.line import (
     write_element,
     write_node,
 )
-from calm.physics.profile import Sea, interval_at, level_within
+from calm.physics.profile import Sea, interval_at
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
 from calm.physics.seabed import lay_line
 from calm.physics.strumming import with_beat
@@ -208,24 +200,14 @@ def pass_cable(
         used += 1
         left, long = cut, 0.0
         while hanging < 0.0:
-            part, ax, ay, az = left, state[3], state[4], state[5]
-            below, strain = pass_segment(cable, knots, vibration, sea, state, part, near, expected)
-            level = level_within(sea, state[7], -state[2], -below[2], share)
-            if level > 0:
-                part, below, strain = until_level(
-                    cable, knots, vibration, sea, state, below, part, near, level, share
-                )
-            if cable.friction == CONSTANT and flow_turns(sea, state, below):
-                part = until_turn(cable, knots, vibration, sea, state, part, near, expected)
-                below, strain = pass_segment(
-                    cable, knots, vibration, sea, state, part, near, expected
-                )
+            _, _, _, ax, ay, az, _, _ = state
+            part, below, strain = pass_part(
+                cable, knots, vibration, sea, state, left, near, expected, share
+            )
             hung = part
-            if lands and off_bed(how.bed, state[3], state[4], state[5]) > 0.0:
-                hung = touchdown(cable, knots, vibration, sea, state, part, near, expected, how.bed)
-            if hung < part:
-                below, strain = pass_segment(
-                    cable, knots, vibration, sea, state, hung, near, expected
+            if lands and off_bed(how.bed, ax, ay, az) > 0.0:
+                hung, below, strain = touchdown(
+                    cable, knots, vibration, sea, state, part, near, expected, how.bed
                 )
             x, y, z, fx, fy, fz, tz, level_index = below
             if strain == NO_BALANCE:

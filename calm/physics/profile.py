@@ -114,18 +114,23 @@ def distance_to_level(
     return gap
 
 
+@within
+def in_interval(sea: Sea, i: int, start: float, end: float) -> bool:
+    """Whether two depths are in an interval [m]."""
+    upper, lower = sea.levels[i], sea.levels[i + 1]
+    return upper <= start < lower and upper <= end < lower
+
+
 def level_within(sea: Sea, hint: int, start: float, end: float, share: float) -> int:
     """Index of the first level that a straight segment has to be split at; 0 if there is none.
 
     Parameters
     ----------
-    hint : interval from which the start is searched
+    hint : interval from which the ends are searched
     start, end : depths of the ends of the segment [m]
     share : see `counts_across`
     """
     levels = sea.levels
-    if levels[hint] <= start < levels[hint + 1] and levels[hint] <= end < levels[hint + 1]:
-        return 0
     i, last = interval_at(levels, start, hint), interval_at(levels, end, hint)
     while i != last:
         k = i + 1 if last > i else i

@@ -18,6 +18,8 @@ from calm.physics.strumming import Vibration, strummed
 
 ROUNDING = 32.0 * float_info.epsilon
 """Of a coordinate, or a force, as a share of the greatest."""
+SETTLED = 1e-10
+"""Share of its load to which the passes of a segment settle it: 4e-11 of one that stretches by 2 %."""
 
 
 class RefereeBody(NamedTuple):
@@ -264,12 +266,15 @@ def worst_moment(
     The forces follow from the loads. Or, where that is larger, departure of a cable's strain from
     what these forces ask for. Both beyond the rounding of the coordinates; of what hangs. Towards a
     limp end the tension vanishes, and with it what sets the direction: there counts what the force
-    across the line is beyond the rounding of the greatest tension.
+    across the line is beyond the rounding of the greatest tension and what segments leave unsettled.
     """
     rounding = ROUNDING * greatest_size(shape, 0)
-    least = max(ROUNDING * greatest_size(shape, 3), 1e-300)
     hanging = shape.hanging
     east, north, up = loads[0], loads[1], loads[2]
+    least = 1e-300
+    for i in range(hanging):
+        least += SETTLED * (abs(east[i]) + abs(north[i]) + abs(up[i]))
+    least = max(ROUNDING * greatest_size(shape, 3), least)
     worst = 0.0
     fx = fy = fz = 0.0
     for i in range(hanging):

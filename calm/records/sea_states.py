@@ -90,12 +90,16 @@ class SeaState:
     longest: float | None = None
     shortest: float | None = None
 
+    @property
+    def cut_off(self) -> float:
+        """Return the highest frequency that is solved for [rad/s]."""
+        peak = 2.0 * pi / (self.shortest or self.peak_period)
+        return min(BETWEEN[1] * peak, LARGEST_FREQUENCY)
+
     def frequencies(self, count: int) -> Floats:
         """Return angular frequencies to solve for [rad/s], evenly spread in their logarithm."""
-        peak = 2.0 * pi / (self.shortest or self.peak_period)
-        low, high = BETWEEN
         first = 2.0 * pi / (self.longest or self.peak_period)
-        return np.geomspace(low * first, min(high * peak, LARGEST_FREQUENCY), count)
+        return np.geomspace(BETWEEN[0] * first, self.cut_off, count)
 
 
 def bretschneider(height: float, period: float) -> Density:

@@ -1,6 +1,6 @@
 """Report of what waves do to a mooring."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import isnan
 
 from calm.checks.finding import State
@@ -10,18 +10,28 @@ from calm.records.sea_states import doubted
 from calm.report import blocks
 from calm.report.blocks import Prose, ReportPart, Table, number, table_of, words
 from calm.report.provenance import report_of
-from calm.waves.analysis import SLACK, MooringInSea, PieceInWaves, WaveAnalysis
+from calm.waves.analysis import SLACK, WaveAnalysis
 from calm.waves.fatigue import PieceFatigue
+from calm.waves.measured import COMPARED, MeasuredBand
+from calm.waves.pieces_in_sea import MooringInSea, PieceInWaves, PieceLoads
 
 _NOTE = (
     "Tension at the upper end: mean, standard deviation, most probable greatest and least. "
     "Tz: mean time between upward crossings of the mean. Heave and tilt: standard deviations. "
     "!: the piece goes slack."
 )
+_SEAS = (
+    "Measured: range of the standard deviation by tensions measured at sea. Half, twice: standard "
+    "deviation with half and with twice the cut-off frequency."
+)
+_CUT_OFFS = (
+    "Tension at the top if the waves are cut off at another frequency, with the same drag. Most "
+    "changed: the piece whose standard deviation changes most."
+)
 _LIFE = (
     "Life: years until the damage is 1 in these seas; low and high, with standard deviations of "
-    "tension 15 % greater and smaller. Curves are quoted from secondary sources: compare them "
-    "with the standard."
+    "tension 15 % greater and smaller; half, twice: with half and with twice the cut-off "
+    "frequency. Curves are quoted from secondary sources: compare them with the standard."
 )
 
 
@@ -42,6 +52,7 @@ def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
     shown: list[blocks.Block] = [
         _pieces(highest, f"In the highest sea, {title}" if several else ""),
         told,
+        _cut_offs(highest),
     ]
     if several:
         shown.insert(0, _seas(states))
@@ -80,6 +91,8 @@ def _lives(known: Sequence[PieceFatigue]) -> Table:
         years("life", "life"),
         years("low", "life_low"),
         years("high", "life_high"),
+        years("half", "life_half_cut_off"),
+        years("twice", "life_twice_cut_off"),
         words("curve"),
         note=_LIFE,
     )
@@ -115,16 +128,71 @@ def _percent(share: float) -> str:
     return f"{round(100.0 * share, 2):.3g}"
 
 
+def _cut_offs(state: MooringInSea) -> Table:
+    """Return the tension at the top and the piece most changed, by the cut-off frequency."""
+    top, tension = state.components[0], QUANTITIES["tension"]
+    cases = (("half", 0.5), ("", 1.0), ("twice", 2.0))
+
+    def most_changed(name: str) -> str:
+        if not name:
+            return ""
+        loaded = [one for one in state.components if one.tension_std > 0.0]
+        changes = {one.label: _loads(one, name).tension_std / one.tension_std for one in loaded}
+        if not changes:
+            return "-"
+        label = max(changes, key=lambda each: abs(changes[each] - 1.0))
+        change = 100.0 * (changes[label] - 1.0)
+        if abs(change) < 0.05:
+            return "none"
+        return f"{label} {change:+.1f} %".replace(" -", " \N{MINUS SIGN}")
+
+    def pull(heading: str, name: str) -> blocks.Field:
+        heading = f"{heading}\n{tension.display_unit}"
+        return number(heading, lambda case: tension.format(getattr(_loads(top, case[0]), name)))
+
+    return table_of(
+        "Cut-off frequency",
+        cases,
+        words("", lambda case: case[0] or "as above"),
+        number("rad/s", lambda case: f"{case[1] * state.cut_off:.1f}"),
+        pull("std", "tension_std"),
+        pull("max", "tension_max"),
+        pull("min", "tension_min"),
+        number("slack\n%", lambda case: _percent(_loads(top, case[0]).slack_probability)),
+        words("most changed", lambda case: most_changed(case[0])),
+        note=_CUT_OFFS,
+    )
+
+
+def _loads(piece: PieceInWaves, cut_off: str) -> PieceInWaves | PieceLoads:
+    return getattr(piece, f"{cut_off}_cut_off") if cut_off else piece
+
+
 def _seas(states: Sequence[MooringInSea]) -> Table:
+    def deviation(
+        heading: str, loads: Callable[[PieceInWaves], PieceInWaves | PieceLoads]
+    ) -> blocks.Field:
+        return number(heading, lambda state: f"{loads(state.components[0]).tension_std:.0f}")
+
+    def measured(state: MooringInSea) -> str:
+        top = state.components[0]
+        if top.measured_low is None or top.measured_high is None:
+            return ""
+        return f"{top.measured_low.tension_std:.0f} to {top.measured_high.tension_std:.0f}"
+
     return table_of(
         "",
         states,
         number("Hs\nm", lambda state: f"{state.sea.significant_height:.1f}"),
         number("Tp\ns", lambda state: f"{state.sea.peak_period:.1f}"),
         number("share\n%", lambda state: _percent(state.sea.share)),
-        number("std at the top\nN", lambda state: f"{state.components[0].tension_std:.0f}"),
+        deviation("std at the top\nN", lambda top: top),
+        number("measured\nN", measured),
+        deviation("half\nN", lambda top: top.half_cut_off),
+        deviation("twice\nN", lambda top: top.twice_cut_off),
         number("max at the top\nN", lambda state: f"{state.components[0].tension_max:.0f}"),
         words("slack", lambda state: ", ".join(state.slack) or "-"),
+        note=_SEAS,
     )
 
 
@@ -140,6 +208,8 @@ def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line]:
         said.append(f"The float pitches by {state.pitch_std:.1f}° (standard deviation).")
     elif analysis.pitch_unknown is not None:
         said.append(f"The pitch of the float is not computed: {analysis.pitch_unknown}.")
+    if state.band is not None:
+        said.append(_measured(state, state.band))
     one = analysis.accuracy
     good = (
         f"Standard deviations change by {one.mesh:.1%} with twice the elements, by "
@@ -147,6 +217,24 @@ def _told(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line]:
         "fifth less drag."
     ).replace("%", " %")
     return [*said, (blocks.Span(good, quiet=True),)]
+
+
+def _measured(state: MooringInSea, band: MeasuredBand) -> str:
+    """Return the range of the tension at the top by the band measured at sea, as a sentence."""
+    low, high = state.components[0].measured_low, state.components[0].measured_high
+    assert low is not None and high is not None
+    height = state.sea.significant_height
+    outside = (
+        "" if COMPARED[0] <= height <= COMPARED[1] else " This sea is outside the heights compared."
+    )
+    return (
+        f"Measured at sea: in seas of Hs {band.from_height:g} to {band.to_height:g} m the standard "
+        "deviation of the tension below five buoys of the Southern Ocean Flux Station was "
+        f"{band.low:.2f} to {band.high:.2f} times the computed one. That range is "
+        f"{say('tension', low.tension_std)} to {say('tension', high.tension_std)} here at the top, "
+        f"with a maximum of {say('tension', low.tension_max)} to "
+        f"{say('tension', high.tension_max)}.{outside} No other mooring was compared."
+    )
 
 
 def _drawn(analysis: WaveAnalysis, several: bool) -> str:

@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 from calm.physics.drag import Vector
 from calm.physics.line import BETTER, ENDS, NO_SEGMENT, SEGMENT, SPLITS, Record
 from calm.physics.profile import interval_at
-from calm.solve.closing import Closed
 from calm.solve.problem import FINE, LineProblem
 
 KINKED = 0.5
@@ -33,6 +32,14 @@ class Errors(NamedTuple):
     relative: float
     lift: float
     pull: float
+
+
+class Extent(NamedTuple):
+    """Size of a recorded shape: its nodes, its elements that hang, and whether it lands."""
+
+    nodes: int
+    hanging: int
+    landed: bool
 
 
 UNKNOWN_ERRORS = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -54,7 +61,7 @@ def next_node(record: Record, node: int, last: int, segments: int) -> int:
     return min(node, last)
 
 
-def extrapolate(before: Record, coarse: Closed, after: Record, fine: Closed) -> Errors:
+def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, near: float) -> Errors:
     """Extrapolate a shape, in the columns from `BETTER` on of the fine record; its errors.
 
     Nodes that both shapes have correspond: the ends of segments that hang, the touchdowns, and
@@ -62,25 +69,27 @@ def extrapolate(before: Record, coarse: Closed, after: Record, fine: Closed) -> 
 
     Parameters
     ----------
-    before, coarse : record of the shape on coarse segments, and how it closed
+    before, coarse : record of the shape on coarse segments, and its extent
     after, fine : the same on halved ones
+    near : see `calm.physics.passing.How`; the middles of the segments of one of many are not read
     """
     end = fine.nodes - 1
     greatest = 0.0
-    for m in range(fine.nodes):
-        greatest = max(greatest, tension_at(after, m))
+    for n in range(coarse.nodes):
+        greatest = max(greatest, tension_at(before, n))
     floor = max(1e-3 * greatest, 1e-300)
     place = worst = relative = 0.0
     n = m = before_m = 0
     while True:
         hangs = n < coarse.hanging or not coarse.landed
-        strayed, changed = add_third(before, coarse.nodes - 1, n, after, end, m)
-        fill_between(after, before_m, m)
+        strayed, changed, tension = add_third(before, coarse.nodes - 1, n, after, end, m)
+        if near == 0.0 or m > before_m + 2:
+            fill_between(after, before_m, m)
         if hangs:
             place = max(place, strayed)
         if hangs or n != coarse.hanging:
             worst = max(worst, changed)
-            relative = max(relative, changed / max(tension_at(after, m), floor))
+            relative = max(relative, changed / max(tension, floor))
         if n == coarse.nodes - 1:
             break
         before_m = m
@@ -95,7 +104,7 @@ def extrapolate(before: Record, coarse: Closed, after: Record, fine: Closed) -> 
 
 
 def next_pair(
-    before: Record, coarse: Closed, n: int, after: Record, fine: Closed, m: int
+    before: Record, coarse: Extent, n: int, after: Record, fine: Extent, m: int
 ) -> tuple[int, int]:
     """The next nodes of a coarse and of a fine shape that correspond."""
     last, end = coarse.nodes - 1, fine.nodes - 1
@@ -119,10 +128,12 @@ def next_pair(
 
 def add_third(
     before: Record, last: int, n: int, after: Record, end: int, m: int
-) -> tuple[float, float]:
-    """Extrapolate a node of both shapes; a third of its change of place [m] and of tension [N].
+) -> tuple[float, float, float]:
+    """Extrapolate a node of both shapes, its place as from the line's end.
 
-    Places are those from the line's end.
+    Returns
+    -------
+    A third of its change of place [m] and of tension [N]; and its tension in the fine shape.
     """
     place = 0.0
     for column in range(6):
@@ -133,7 +144,8 @@ def add_third(
         if column < 3:
             place = max(place, abs(third))
         after[BETTER + column][m] = now + third
-    return place, abs(tension_at(before, n) - tension_at(after, m)) / 3.0
+    tension = tension_at(after, m)
+    return place, abs(tension_at(before, n) - tension) / 3.0, tension
 
 
 def fill_between(record: Record, first: int, last: int) -> None:
@@ -150,14 +162,14 @@ def fill_between(record: Record, first: int, last: int) -> None:
             record[BETTER + column][m] = record[column][m] + above + share * (below - above)
 
 
-def bent(problem: LineProblem, fine: Closed, errors: Errors) -> tuple[bool, Errors]:
+def bent(problem: LineProblem, hanging: int, errors: Errors) -> tuple[bool, Errors]:
     """Add what bends inside the segments of the record `FINE` may cost to its errors.
 
     Returns
     -------
     Whether they cost so much that the shape is not to be extrapolated; and the errors.
     """
-    strayed, lost = abrupt_change(problem, fine)
+    strayed, lost = abrupt_change(problem, hanging)
     whole = Errors(
         errors.depth + strayed, errors.tension + lost, errors.relative, errors.lift + lost,
         errors.pull + lost,
@@ -172,7 +184,7 @@ def take_as_marched(record: Record, nodes: int) -> None:
             record[BETTER + column][m] = record[column][m]
 
 
-def abrupt_change(problem: LineProblem, fine: Closed) -> tuple[float, float]:
+def abrupt_change(problem: LineProblem, hanging: int) -> tuple[float, float]:
     """Return what the worst abrupt change inside a segment may cost: in place [m], in tension [N].
 
     If the slope of what a segment adds per metre bends by Δ inside one of length h, its value at
@@ -180,7 +192,7 @@ def abrupt_change(problem: LineProblem, fine: Closed) -> tuple[float, float]:
     only what exceeds their bend is abrupt.
     """
     record, sizes = problem.work.records[FINE], problem.work.elements
-    levels, hanging = problem.sea.levels, fine.hanging
+    levels = problem.sea.levels
     level, smooth_before = 0, False
     for k in range(hanging + 1):
         sizes[0][k] = sizes[1][k] = -1.0

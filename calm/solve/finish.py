@@ -148,13 +148,12 @@ def solution_found(
     """
     if found.ending != solution.FOUND:
         raise refusal_of(found, line, water)
-    other = None if found.other_depth == NO_OTHER else found.other_depth
+    other = None if found.other == NO_OTHER else found.other
     return replace(
         solution_of(problem, line, water, settings, found.refined, found.errors),
         closure=found.closure,
         moment_residual=found.moment,
-        other_depth=other,
-        other_grounded_length=found.other_grounded,
+        other=other,
     )
 
 

@@ -8,15 +8,26 @@ from calm.physics.hull import AWASH
 from calm.physics.passing import FAILURE, Z
 from calm.physics.profile import Interval, Sea
 from calm.solve.closing import (
+    COARSEST_BRACKET,
     Root,
     coarse_about,
     coarse_miss,
     coarse_root,
     down_to,
+    near_root,
     whole_line,
     with_sought,
 )
-from calm.solve.problem import BELOW, MOST_AFLOAT, About, LineProblem, Search, Unknown
+from calm.solve.problem import (
+    BELOW,
+    CHOSEN,
+    MOST_AFLOAT,
+    NOT_RECORDED,
+    About,
+    LineProblem,
+    Search,
+    Unknown,
+)
 from calm.solve.solution import (
     DRAGGED_DOWN,
     FOUND,
@@ -39,6 +50,11 @@ ROUNDING = 1e-12
 """Share of a current that is no growth of it: what a weaker one of the same direction leaves."""
 SHARES = (0.0, 0.4, 0.7, 0.85, 0.94, 1.0 - AWASH, 0.995)
 """Shares of its buoyancy in use at which a float that would be under water is tried afloat."""
+SHARE_STEPS, CURRENT_STEPS = 8, 10
+"""Steps of the buoyancy in use in which several roots are looked for, and of the current in which
+it is raised from zero to choose one of them."""
+WEAK = 0.1
+"""Speed, as a share of the greatest, below which it does not matter how a current turns."""
 
 Sample = tuple[float, float]
 """A value of the unknown and the miss there [m]."""
@@ -51,13 +67,14 @@ class CoarseRoots(NamedTuple):
     ----------
     ending, value : FOUND, or why there is none: see `calm.solve.solution`
     root : the highest
-    deeper : the deepest that the scan came upon; not `found` where that is the same
+    other : another one, the deepest that the scan came upon, or one with another share of the
+        float's buoyancy in use; not `found` if there is none
     """
 
     ending: int
     value: float
     root: Root
-    deeper: Root
+    other: Root
 
 
 def locate(search: Search, lands: bool) -> CoarseRoots:
@@ -80,12 +97,12 @@ def locate(search: Search, lands: bool) -> CoarseRoots:
     top, high = samples[0][0], samples[1][0]
     if isnan(high):
         return stopped(problem, none)
-    highest, deepest = none, none
+    highest = other = none
     if high < 0.0:
         at_surface = surface_root(search, unknown, high)
         if at_surface.ending != FOUND:
             return at_surface
-        highest = at_surface.root
+        highest, other = at_surface.root, at_surface.other
     elif top == 0.0:
         highest = awash(search, unknown, high)
         if isnan(highest.miss) and highest.found:
@@ -111,15 +128,15 @@ def locate(search: Search, lands: bool) -> CoarseRoots:
                 if isnan(root.miss):
                     return stopped(problem, none)
                 if highest.found:
-                    deepest = root
+                    other = root
                 else:
                     highest = root
                 if problem.limits.near > 0.0:
-                    return CoarseRoots(FOUND, 0.0, highest, deepest)
+                    return CoarseRoots(FOUND, 0.0, highest, other)
             before = lower
     if not highest.found:
         return CoarseRoots(DRAGGED_DOWN, 0.0, none, none)
-    return CoarseRoots(FOUND, 0.0, highest, deepest)
+    return CoarseRoots(FOUND, 0.0, highest, other)
 
 
 def stopped(problem: LineProblem, none: Root) -> CoarseRoots:
@@ -247,11 +264,27 @@ def in_even_current(problem: LineProblem, u: float, v: float, w: float) -> LineP
         here = sea.intervals[k]
         row = Interval(here.origin, u, 0.0, v, 0.0, w, 0.0, here.density, here.ddensity)
         set_row(even, k, row)
+    return in_sea(problem, Sea(sea.levels, even[: len(sea.intervals)], sea.gravity, sea.strata))
+
+
+def in_weaker_current(problem: LineProblem, share: float) -> LineProblem:
+    """Return the same problem with a share of the current at every level."""
+    sea, even = problem.sea, problem.work.even
+    for k in range(len(sea.intervals)):
+        here = sea.intervals[k]
+        row = Interval(
+            here.origin, share * here.u, share * here.du, share * here.v, share * here.dv,
+            share * here.w, share * here.dw, here.density, here.ddensity,
+        )  # fmt: skip
+        set_row(even, k, row)
+    return in_sea(problem, Sea(sea.levels, even[: len(sea.intervals)], sea.gravity, sea.strata))
+
+
+def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:
+    """Return the same problem in other water."""
     return LineProblem(
-        problem.course, Sea(sea.levels, even[: len(sea.intervals)], sea.gravity, sea.strata),
-        problem.loads,
-        problem.flexible, problem.surfacing, problem.afloat, problem.hull, problem.limits,
-        problem.starts, problem.work,
+        problem.course, sea, problem.loads, problem.flexible, problem.surfacing, problem.afloat,
+        problem.hull, problem.limits, problem.starts, problem.work,
     )  # fmt: skip
 
 
@@ -309,14 +342,17 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
         if isnan(unloaded):
             return stopped(problem, none)
         if unloaded > 0.0:
-            root = coarse_root(search, unknown, 1.0, deep, 0.0, unloaded)
-            stands = 0.0
+            other, stands = none, 0.0
+            if k == 0 and turns_back(problem.sea):
+                root, other = roots_afloat(search, unknown)
+            else:
+                root = coarse_root(search, unknown, 1.0, deep, 0.0, unloaded)
             if not isnan(root.miss) and k + 1 < count:
                 stands = height_at(search, root, k + 1)
             if isnan(root.miss) or isnan(stands):
                 return stopped(problem, none)
             if k + 1 == count or stands <= limits.allowed:
-                return CoarseRoots(FOUND, 0.0, root, none)
+                return CoarseRoots(FOUND, 0.0, root, other)
         if k + 1 == count:
             break
         rides = False
@@ -334,6 +370,74 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
         if deep >= 0.0:
             break
     return CoarseRoots(RISES, 0.0, none, none)
+
+
+def turns_back(sea: Sea) -> bool:
+    """Whether the current turns by more than 90° with depth.
+
+    Then a line at the surface may have several equilibria. Weak currents do not count.
+    """
+    last = len(sea.intervals)
+    greatest = 0.0
+    for k in range(1, last):
+        here = sea.intervals[k]
+        greatest = max(greatest, here.u * here.u + here.v * here.v)
+    least = WEAK * WEAK * greatest
+    for k in range(1, last):
+        here = sea.intervals[k]
+        if not here.u * here.u + here.v * here.v > least:
+            continue
+        for j in range(k + 1, last):
+            below = sea.intervals[j]
+            opposed = here.u * below.u + here.v * below.v < 0.0
+            if opposed and below.u * below.u + below.v * below.v > least:
+                return True
+    return False
+
+
+def roots_afloat(search: Search, unknown: Unknown) -> tuple[Root, Root]:
+    """The share of its buoyancy in use with which the top float rides, and another stable one.
+
+    Of several the first is that which a current rising from zero leads to. The second is not
+    `found` if there is only one.
+    """
+    lowest, highest = outer_roots(search, unknown)
+    if isnan(lowest.miss) or lowest.x == highest.x:
+        return lowest, Root(False, unknown, nan, nan, nan)
+    problem, root = search.problem, lowest
+    small = 1e-4 * problem.limits.span
+    for step in range(1, CURRENT_STEPS + 1):
+        weaker = in_weaker_current(problem, step / CURRENT_STEPS)
+        rising = Search(search.miss, weaker)
+        if step == 1:
+            root, _ = outer_roots(rising, unknown)
+        elif root.found:
+            root = near_root(
+                rising, root, problem.limits.coarse_step, CHOSEN, False, NOT_RECORDED, small,
+                COARSEST_BRACKET,
+            )  # fmt: skip
+    at = root.x if root.found and root.unknown.sought == unknown.sought else 1.0
+    if abs(lowest.x - at) < abs(highest.x - at):
+        return lowest, highest
+    return highest, lowest
+
+
+def outer_roots(search: Search, unknown: Unknown) -> tuple[Root, Root]:
+    """The stable roots with the least and with the greatest share of the buoyancy in use.
+
+    Stable is a line that more buoyancy in use draws down. A root that is not `found`, or a miss of
+    NaN where a march stopped, tells that there is none.
+    """
+    lowest = highest = Root(False, unknown, nan, nan, nan)
+    share, high = 0.0, coarse_miss(search, unknown, 0.0)
+    for k in range(1, SHARE_STEPS + 1):
+        following = k / SHARE_STEPS
+        low = coarse_miss(search, unknown, following)
+        if high > 0.0 >= low:
+            highest = coarse_root(search, unknown, following, low, share, high)
+            lowest = lowest if lowest.found else highest
+        share, high = following, low
+    return lowest, highest
 
 
 def height_at(search: Search, root: Root, lower: int) -> float:

@@ -40,6 +40,7 @@ from calm.solve.solution import (
     FOUND,
     MARCH_STOPPED,
     SLACK_ON_DIGITS,
+    OtherEquilibrium,
     Settings,
     Solution,
     Status,
@@ -60,10 +61,9 @@ BREATH = 1e-3
 
 
 def stirred(water: Water) -> Water | None:
-    """Return the same water with a breath of current wherever it has less; None if nowhere.
+    """Return the same water with a weak current where it has none; None if it has one everywhere.
 
-    A slack line that hangs in still water folds plumb, which is the limit of a weak current; but
-    how it turns where nothing pulls it sideways no march can say.
+    The slack part of a line in the still layer of a current folds plumb, as in the weakest current.
     """
     still = np.hypot(water.u, water.v) < BREATH
     return replace(water, u=np.where(still, BREATH, water.u)) if still.any() else None
@@ -100,7 +100,8 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         if not lacks_room(problem):
             break
         room *= MORE_ROOM
-    if found.ending == SLACK_ON_DIGITS and (moving := stirred(water)):
+    slack_in_a_current = found.ending == SLACK_ON_DIGITS and water.moving
+    if slack_in_a_current and (moving := stirred(water)):
         return solve_mooring(line, moving, settings)
     return solution_found(found, problem, line, water, settings)
 
@@ -171,8 +172,9 @@ def find_now(find: Callable[[AskedSearch, float], float], asked: AskedSearch) ->
 
 ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
 NODES, HANGING, LANDED, GROUNDED, SEGMENTS, FIRST_ERROR = range(11, 17)
-CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED, SHARE_IN_USE, LIES = range(22, 28)
-"""Where it stands in what a search tells; from `FIRST_ERROR` on the errors."""
+CLOSURE, MOMENT, SHARE_IN_USE, LIES, FIRST_OTHER = range(22, 27)
+"""Where it stands in what a search tells; from `FIRST_ERROR` on the errors, and
+from `FIRST_OTHER` on another equilibrium."""
 
 
 def tell(found: FoundShape, told: MutableSequence[float]) -> None:
@@ -192,7 +194,10 @@ def tell(found: FoundShape, told: MutableSequence[float]) -> None:
     told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
     told[SHARE_IN_USE], told[LIES] = found.refined.share, found.refined.grounded
     told[CLOSURE], told[MOMENT] = found.closure, found.moment
-    told[OTHER_DEPTH], told[OTHER_GROUNDED] = found.other_depth, found.other_grounded
+    other = found.other
+    told[FIRST_OTHER], told[FIRST_OTHER + 1] = other.depth, other.grounded_length
+    told[FIRST_OTHER + 2], told[FIRST_OTHER + 3] = other.used_buoyancy, other.anchor_vertical
+    told[FIRST_OTHER + 4] = other.anchor_horizontal
 
 
 def as_told(told: Sequence[float]) -> FoundShape:
@@ -204,9 +209,10 @@ def as_told(told: Sequence[float]) -> FoundShape:
     value = float(told[VALUE])
     closed = Closed(ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]))
     errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
-    last = [float(told[i]) for i in (CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED)]
+    other = OtherEquilibrium(*(float(figure) for figure in told[FIRST_OTHER : FIRST_OTHER + 5]))
     refined = Refined(closed, segments, errors, float(told[SHARE_IN_USE]), float(told[LIES]))
-    return FoundShape(ending, value, piece, refined, errors, *last)
+    audit = float(told[CLOSURE]), float(told[MOMENT])
+    return FoundShape(ending, value, piece, refined, errors, *audit, other)
 
 
 WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)

@@ -8,7 +8,6 @@ balance: see `calm.solve.net_march`.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import isfinite
 from typing import Any, TypeVar
 
 import numpy as np
@@ -17,18 +16,20 @@ from calm.errors import NoEquilibrium
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import FAILURES, GOES_ON, NO_ROOM, Floats, Line, Trace, Water
 from calm.physics.profile import Profile
-from calm.solve import net_closing, net_march
+from calm.solve import net_closing, net_problem
 from calm.solve.finish import refuse_unbalanced
 from calm.solve.mooring import stirred
-from calm.solve.net_closing import AskedNet, ask_net, ask_now
+from calm.solve.net_closing import AskedNet, ask_net, ask_now, keep
 from calm.solve.net_leg import LaidLeg, NetLeg, lay_net, leg_found, refuse_misplaced, unsettled
-from calm.solve.net_march import Marching
+from calm.solve.net_problem import Marching
 from calm.solve.net_start import NetStart, start_of
 from calm.solve.problem import CHOSEN, FINE, ROOM
 from calm.solve.solution import Settings, Solution, expect_many, runs_compiled
 
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
+MOST_LYING = 0.9
+"""Share of what may lie on the seabed that does at first, at most."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class NetSolution:
     miss : the worst distance of a leg's end from where it is held [m]
     depth_error, tension_error : own estimate of the worst errors [m], [N]
     marches : done for it
-    unknowns, lands : what it was found by, for nets that stand about alike
+    unknowns : what it was found by, for nets that stand about alike
     """
 
     legs: tuple[Solution, ...]
@@ -55,7 +56,6 @@ class NetSolution:
     tension_error: float
     marches: int
     unknowns: Floats
-    lands: tuple[bool, ...]
 
 
 class LacksRoom(Exception):
@@ -85,27 +85,20 @@ class NetSearch:
         x, first = np.zeros(len(self.net.found)), 0
         x[self.net.nodes_at :] = start.nodes.ravel()
         for i, each in enumerate(self.laid):
-            down, pull = each.kind == net_march.HANGING_DOWN, start.pull[i]
+            down, pull = each.kind == net_problem.HANGING_DOWN, start.pull[i]
             x[first : first + each.unknowns] = -(start.lower if down else start.first)[i][2]
-            if each.kind == net_march.PULLED:
+            if each.kind == net_problem.PULLED:
                 x[first : first + 3] = pull
+            elif each.kind == net_problem.ANCHORED:
+                x[first : first + 3] = start.held[i]
+                x[first + 3 : first + each.unknowns] = each.leg.lower.seabed
+                if (lying := each.may_lie[1]) > 0.0:
+                    x[first + 2] = min(x[first + 2], MOST_LYING * lying)
             elif x[first] < 0.0 and not down and each.problem.surfacing:  # what pulls is in use
                 share = pull[2] / each.problem.surfacing[0].surface_lift
                 x[first] = min(max(share, 0.01), 1.0) * each.stands - each.stands
             first += each.unknowns
-            anchored = isfinite(each.leg.lower.seabed) and each.kind != net_march.HANGING_DOWN
-            self.net.state[i][net_march.LANDS] = float(anchored and start.lies[i])
         return x
-
-    @property
-    def lands(self) -> tuple[bool, ...]:
-        """Return which legs are taken to lie on the seabed."""
-        return tuple(bool(state[net_march.LANDS]) for state in self.net.state)
-
-    def lie_as(self, lands: Sequence[bool]) -> None:
-        """Take legs to lie on the seabed or not."""
-        for state, lies in zip(self.net.state, lands, strict=True):
-            state[net_march.LANDS] = float(lies)
 
     def asked(self, task: int, x: Floats, how: Marching, enough: float = 0.0) -> tuple[int, Floats]:
         """Ask about unknowns, see `AskedNet`; how it ended, and the unknowns then."""
@@ -140,8 +133,6 @@ class NetSearch:
             ending, found = self.asked(net_closing.SETTLE, x, how, enough)
             if ending == net_closing.CAME_OUT:
                 return found
-        if ending == net_closing.TO_AND_FRO:
-            raise unsettled("a leg alternately lies on the seabed and lifts off")
         raise unsettled("its legs do not come together to the last digits")
 
     def end(self, i: int, x: Floats) -> Floats:
@@ -151,7 +142,7 @@ class NetSearch:
 
     def shape(self, i: int, x: Floats) -> Trace:
         """The shape of a leg as it was marched last, where it is."""
-        nodes = int(self.net.state[i][net_march.COUNT])
+        nodes = int(self.net.state[i][net_problem.COUNT])
         trace = Trace.of(self.net.lines.work.records[i][FINE], nodes)
         trace.position[:, :2] += self.end(i, x)[:2] - trace.position[-1, :2]
         return trace
@@ -161,7 +152,7 @@ class NetSearch:
 
         NoEquilibrium: it does not pass the checks.
         """
-        net, legs = self.net, []
+        net, legs, better = self.net, [], np.array(self.net.better)
         left = np.abs(np.array(net.found) * np.array(net.rows))
         miss = float(left[: net.nodes_at].max())
         if miss > self.settings.tolerance * net.span:
@@ -172,9 +163,9 @@ class NetSearch:
             float(net.errors[net_closing.TENSION_ERROR]) + 1e-8 * net.force,
         )
         for i, each in enumerate(self.laid):
-            end = self.end(i, x)
+            ends = self.end(i, x), self.end(i, better)
             legs.append(
-                leg_found(each, net, i, end, errors, self.water, self.settings, self.compiled)
+                leg_found(each, net, i, ends, errors, self.water, self.settings, self.compiled)
             )
         greatest = max(float(each.tension.max()) for each in legs)
         if len(imbalance) and float(imbalance.max()) > 1e-6 * greatest:
@@ -182,8 +173,8 @@ class NetSearch:
         for leg in legs:
             refuse_unbalanced(leg.closure, leg.moment_residual)
         return NetSolution(
-            tuple(legs), x[net.nodes_at :].reshape(-1, 3).copy(), imbalance, miss, *errors,
-            int(sum(state[net_march.MARCHES] for state in net.state)), x, self.lands,
+            tuple(legs), better[net.nodes_at :].reshape(-1, 3).copy(), imbalance, miss, *errors,
+            int(sum(state[net_problem.MARCHES] for state in net.state)), x,
         )  # fmt: skip
 
 
@@ -252,7 +243,6 @@ def about(net: NetSearch, near: NetSolution | None) -> Floats:
     water, step = net.water, 4.0 * net.settings.angle_step
     legs = tuple(each.leg for each in net.laid)
     if near is not None:
-        net.lie_as(near.lands)
         if (x := net.closed(near.unknowns, step, net_closing.NEAR)) is not None:
             return x
     still, way, stride = water.still(), 0.0, 1.0
@@ -308,10 +298,10 @@ class NearbyNet:
         each, trace = self._net.laid[leg], self._net.shape(leg, self._x)
         if clamp >= 0:
             return int(np.argmax(trace.clamp == clamp))
-        if each.kind == net_march.HANGING_DOWN:  # listed from its lower end
+        if each.kind == net_problem.HANGING_DOWN:  # listed from its lower end
             own = len(each.leg.line.length) - 1 - piece
             return int(np.flatnonzero(trace.piece == own)[-1]) + 1
-        return int(np.argmax(trace.piece == piece + int(each.kind == net_march.PULLED)))
+        return int(np.argmax(trace.piece == piece + int(each.below_a_point)))
 
     def shape(self, number: int, line: Line, leg: int) -> tuple[Floats, float]:
         """Nodes of a leg where that of a number has another line, and its buoyancy in use.
@@ -326,7 +316,7 @@ class NearbyNet:
         legs = [each.leg for each in net.laid]
         legs[number] = replace(legs[number], line=line)
         other = NetSearch(legs, net.nodes, net.water, net.settings, net.room)
-        other.lie_as(net.lands)
+        keep(net.net.scale, other.net.scale)
         mine, its = other.net.lines.work, net.net.lines.work
         for i in range(len(legs)):
             mine.chosen[i][:], mine.counts[i][:] = its.chosen[i], its.counts[i]
@@ -337,4 +327,4 @@ class NearbyNet:
         failure, _ = other.asked(net_closing.MARCH, x, self._how)
         if failure != GOES_ON:
             raise unsettled(FAILURES[failure])
-        return other.shape(leg, x).position, float(other.net.state[leg][net_march.SHARE])
+        return other.shape(leg, x).position, float(other.net.state[leg][net_problem.SHARE])

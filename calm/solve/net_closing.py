@@ -11,17 +11,19 @@ from typing import Any, NamedTuple
 from calm.physics.line import GOES_ON, NO_ROOM
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
-from calm.solve import net_march
+from calm.solve.accuracy import Extent, bent, extrapolate, take_as_marched, tension_at
 from calm.solve.closing import halve
-from calm.solve.net_march import (
-    LANDS,
+from calm.solve.net_march import left_over, take_scales
+from calm.solve.net_problem import (
+    COARSE_COUNT,
+    COARSE_HUNG,
+    COARSE_STAGE,
+    COUNT,
+    HUNG,
     STAGE,
     Marching,
     NetProblem,
-    above_bed,
-    left_over,
     leg_of,
-    place_of,
 )
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 
@@ -30,29 +32,30 @@ MOST_STEPS, HALVINGS = 60, 9
 NEAR, CLOSED = 1e-4, 1e-10
 """What is left of lengths and forces, as shares of the longest leg and of a typical force: before
 segments are kept, and in a shape."""
-WORTH, WORTH_OF_MANY = 5e-5, 2e-5
-"""Errors, as shares of the water depth and of the greatest tension, above which segments are
-halved once more, `MOST_HALVINGS` times; of one of many, whose segments are longer."""
+WORTH = 4e-5
+"""Errors, as shares of the span and of the greatest tension, above which segments are halved once
+more, `MOST_HALVINGS` times."""
 MOST_HALVINGS = 3
+CHOICES = 2
+"""How often segments are chosen: the first time where a shape only about is."""
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
 """Slope of a single unknown, in shares, at which a secant is held, and how many steps it may take."""
 SINGULAR = 1e-14
 """Slope, in shares, below which an unknown is left as it is."""
-CAME_OUT, NOT_CLOSED, TO_AND_FRO, NEEDS_ROOM = range(4)
-"""How a net ends: closed; not; a leg alternately lies and lifts off; more segments than there is
-room for."""
+CAME_OUT, NOT_CLOSED, NEEDS_ROOM = range(3)
+"""How a net ends: closed; not; more segments than there is room for."""
 
 DEPTH_ERROR, TENSION_ERROR = range(2)
 
 
 def find_way(net: NetProblem, found: Sequence[float]) -> float:
-    """Write the step that brings to nothing what is left, by its slopes; its greatest share.
+    """Write the step that brings to nothing what is left, by its slopes; its size, in shares.
 
     By elimination, column by column. Unknowns of which the slopes say nothing stay.
     """
-    size, paper, row, most = len(found), net.paper, 0, 0.0
+    size, paper, row = len(found), net.paper, 0
     for r in range(size):
         for c in range(size):
             paper[r][c] = net.slopes[r][c]
@@ -77,8 +80,7 @@ def find_way(net: NetProblem, found: Sequence[float]) -> float:
     for k in range(size):
         row = net.order[k]
         net.way[k] = 0.0 if row < 0 else paper[row][size] / paper[row][k]
-        most = max(most, abs(net.way[k]))
-    return most
+    return sqrt(squares(net.way))
 
 
 def squares(values: Sequence[float]) -> float:
@@ -138,7 +140,10 @@ def close_net(
     """
     if len(x) == 1:
         return close_one(net, x, how, enough)
-    failure = left_over(net, x, how, not known)
+    failure = left_over(net, x, how, False)
+    if failure == GOES_ON and not known:
+        take_scales(net, x)
+        failure = left_over(net, x, how, True)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
     return close_on(net, x, how, enough, known)
@@ -196,59 +201,10 @@ def close_on(
     return CAME_OUT
 
 
-def lies_otherwise(net: NetProblem, x: Sequence[float], record: int) -> bool:
-    """Return whether a leg lies on the seabed but was taken to hang clear, or the other way round.
-
-    It is taken to do so from then on.
-    """
-    changed = False
-    for i in range(len(net.legs)):
-        leg, state, shape = net.legs[i], net.state[i], net.lines.work.records[i][record]
-        if leg.kind == net_march.HANGING_DOWN or leg.seabed == -inf:
-            continue
-        lies = state[STAGE] >= 0.0
-        if state[LANDS] == 0.0:
-            lowest = inf
-            for n in range(int(state[net_march.HUNG])):
-                lowest = min(lowest, above_bed(net, i, x, shape, n))
-            lies = lowest < -1e-6 * net.lines.limits.depth
-        changed = changed or lies != (state[LANDS] > 0.0)
-        state[LANDS] = 1.0 if lies else 0.0
-    return changed
-
-
-def moved_ends(net: NetProblem, x: Sequence[float], record: int) -> float:
-    """Write where the ends of all pieces are, and how much these and their tensions have moved.
-
-    Returns the greatest tension.
-    """
-    net.errors[DEPTH_ERROR] = net.errors[TENSION_ERROR] = greatest = 0.0
-    for i in range(len(net.legs)):
-        nodes, shape = int(net.state[i][net_march.COUNT]), net.lines.work.records[i][record]
-        pieces, end = net.legs[i].pieces, nodes - 1
-        first, last = net.first[i][:pieces], net.last[i][:pieces]
-        find_ends(RefereeShape(shape, nodes, end, first, last))
-        keep(first, net.first[i])
-        keep(last, net.last[i])
-        east, north, _ = place_of(net, i, x, 1)
-        for p in range(pieces + 1):
-            n, row = 0 if p == 0 else int(net.last[i][p - 1]), net.ends[i][p]
-            fx, fy, fz = shape[3][n], shape[4][n], shape[5][n]
-            tension = sqrt(fx * fx + fy * fy + fz * fz)
-            x0, y0 = shape[0][n] - shape[0][end] + east, shape[1][n] - shape[1][end] + north
-            off = max(abs(x0 - row[0]), abs(y0 - row[1]), abs(shape[2][n] - row[2]))
-            net.errors[DEPTH_ERROR] = max(net.errors[DEPTH_ERROR], 0.5 * off)
-            net.errors[TENSION_ERROR] = max(net.errors[TENSION_ERROR], 0.5 * abs(tension - row[3]))
-            row[0], row[1], row[2], row[3] = x0, y0, shape[2][n], tension
-            greatest = max(greatest, tension)
-    return greatest
-
-
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
     """Close a net that about is to the last digits, on segments that are short enough."""
-    worth = WORTH_OF_MANY if net.lines.limits.near > 0.0 else WORTH
     for _ in range(MOST_HALVINGS):
-        for left in range(len(net.legs), -1, -1):
+        for _ in range(CHOICES):
             choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
             failure = left_over(net, x, choosing, False)
             if failure != GOES_ON:
@@ -257,25 +213,58 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
             ending = close_on(net, x, coarse, enough, True)
             if ending != CAME_OUT:
                 return ending
-            if not lies_otherwise(net, x, COARSE):
-                break
-            roughly = Marching(sea, 4.0 * step, CHOSEN, False, COARSE)
-            if left == 0 or close_net(net, x, roughly, NEAR, False) != CAME_OUT:
-                return TO_AND_FRO
-        moved_ends(net, x, COARSE)
+        keep(x, net.coarse)
         for i in range(len(net.legs)):
+            state = net.state[i]
+            state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
+            state[COARSE_STAGE] = state[STAGE]
             halve(leg_of(net, sea, i))
         ending = close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
         if ending != CAME_OUT:
             return ending
-        tension = worth * moved_ends(net, x, FINE)
-        if (
-            net.errors[DEPTH_ERROR] <= worth * net.span
-            and net.errors[TENSION_ERROR] <= tension
-        ):
+        if extrapolate_net(net, sea, x) <= 1.0:
             break
         step *= 0.5
     return CAME_OUT
+
+
+def extrapolate_net(net: NetProblem, sea: Sea, x: Sequence[float]) -> float:
+    """Extrapolate all legs and the places of nodes; how many times the errors are above the target.
+
+    If a bend in one leg costs as much as the rest, nothing is extrapolated.
+    """
+    records, near = net.lines.work.records, net.lines.limits.near
+    deep = taut = moved = greatest = 0.0
+    kinked = False
+    for k in range(len(x)):
+        third = (x[k] - net.coarse[k]) / 3.0
+        net.better[k] = x[k] + third
+        if k >= net.nodes_at:
+            moved = max(moved, abs(third))
+    for i in range(len(net.legs)):
+        state, record, leg = net.state[i], records[i][FINE], leg_of(net, sea, i)
+        nodes, hanging = int(state[COUNT]), int(state[HUNG]) - 1
+        coarse_hanging = int(state[COARSE_HUNG]) - 1
+        coarse = Extent(int(state[COARSE_COUNT]), coarse_hanging, state[COARSE_STAGE] >= 0.0)
+        fine = Extent(nodes, hanging, state[STAGE] >= 0.0)
+        errors = extrapolate(records[i][COARSE], coarse, record, fine, near)
+        if near == 0.0:
+            bends, errors = bent(leg, hanging, errors)
+            kinked = kinked or bends
+        deep, taut = max(deep, errors.depth), max(taut, errors.tension)
+        for n in range(nodes):
+            greatest = max(greatest, tension_at(record, n))
+        pieces = net.legs[i].pieces
+        first, last = net.first[i][:pieces], net.last[i][:pieces]
+        find_ends(RefereeShape(record, nodes, nodes - 1, first, last))
+        keep(first, net.first[i])
+        keep(last, net.last[i])
+    if kinked:
+        keep(x, net.better)
+        for i in range(len(net.legs)):
+            take_as_marched(records[i][FINE], int(net.state[i][COUNT]))
+    net.errors[DEPTH_ERROR], net.errors[TENSION_ERROR] = deep + moved, taut
+    return max((deep + moved) / (WORTH * net.span), taut / (WORTH * max(greatest, 1e-300)))
 
 
 class AskedNet(NamedTuple):

@@ -17,12 +17,13 @@ from calm.physics.referee import RefereeShape
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
 from calm.physics.track import CableStretch, Course, Load, Stage
-from calm.solve import net_march
-from calm.solve.accuracy import Errors, take_as_marched
+from calm.solve import net_problem
+from calm.solve.accuracy import Errors
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root
 from calm.solve.finish import carried_by, risen, solution_of, touching
-from calm.solve.net_march import LegRow, NetProblem
+from calm.solve.net_problem import LegRow, NetProblem
+from calm.solve.net_touchdown import course_from_below, weight_of
 from calm.solve.problem import (
     BELOW,
     CHANGED,
@@ -92,11 +93,19 @@ class LaidLeg:
     def ends(self) -> tuple[LegEnd, LegEnd]:
         """Return where its march begins and ends."""
         upper, lower = self.leg.upper, self.leg.lower
-        return (lower, upper) if self.kind == net_march.HANGING_DOWN else (upper, lower)
+        return (lower, upper) if self.kind == net_problem.HANGING_DOWN else (upper, lower)
 
     @property
     def unknowns(self) -> int:
-        return 3 if self.kind == net_march.PULLED else 1
+        """Return how many unknowns it has of its own: on a slope also how high it comes down."""
+        if self.kind == net_problem.ANCHORED:
+            return 3 + any(self.bed[:2])
+        return 3 if self.kind == net_problem.PULLED else 1
+
+    @property
+    def below_a_point(self) -> bool:
+        """Return whether its line begins with a point that is pulled at."""
+        return self.kind in (net_problem.PULLED, net_problem.ANCHORED)
 
     @property
     def shedding(self) -> tuple[float, float, float, float]:
@@ -111,11 +120,12 @@ class LaidLeg:
         """Lay out a leg; `rough` as of `problem_of`."""
         line = leg.line
         if leg.upper.free:
-            kind = net_march.STANDING
+            kind = net_problem.STANDING
         elif leg.lower.free:
-            kind, line = net_march.HANGING_DOWN, replace(line.reversed(), towed=True)
+            kind, line = net_problem.HANGING_DOWN, replace(line.reversed(), towed=True)
         else:
-            kind, line = net_march.PULLED, replace(line.below_a_point(), towed=True, floating=None)
+            kind = net_problem.ANCHORED if isfinite(leg.lower.seabed) else net_problem.PULLED
+            line = replace(line.below_a_point(), towed=True, floating=None)
         problem = problem_of(line, water, settings, compiled=False, rough=rough, room=1)
         return LaidLeg(leg, line, kind, problem)
 
@@ -130,18 +140,22 @@ class LaidLeg:
         (start, end), (course, limits) = self.ends, (self.problem.course, self.problem.limits)
         length, counted = self.leg.line.length, (len(course.stages), course.landing)
         rough = ROUGH_REACH * limits.depth if limits.near > 0.0 else 0.0
+        lower, (lying, weight) = self.leg.lower, self.may_lie
+        rise = lower.place[2] - lower.seabed if lower.place and isfinite(lower.seabed) else 0.0
         return LegRow(
-            self.kind, first, start.node, end.node, self.leg.lower.seabed, *self.bed[:2],
+            self.kind, first, self.unknowns, start.node, end.node, lower.seabed, rise,
+            rise * weight / lying if lying > 0.0 else 0.0, *self.bed[:2],
             max(float(length.sum()) * 0.01, min(0.01 * span, 50.0) * 0.1, rough),
-            self.stands, self.highest,
-            int(limits.rides), *self.shedding, *counted, len(course.cables), len(self.problem.surfacing),
+            self.stands, self.highest, int(limits.rides), *self.shedding, self.weight,
+            *counted, len(course.cables), len(self.problem.surfacing),
             len(self.problem.hull), len(self.line.length),
         )  # fmt: skip
 
     @property
     def stands(self) -> float:
-        """Length of its float that shows how much of that is out of the water [m]."""
-        return max(float(self.line.length[0]), 0.5)
+        """Change of its unknown from a float that is immersed to one out of the water [m]: as great as
+        its length, so that a step towards either lands on the way."""
+        return max(float(self.line.length.sum()), 0.5)
 
     @property
     def bed(self) -> Bed:
@@ -149,6 +163,20 @@ class LaidLeg:
         lower, bed = self.leg.lower, self.problem.limits.bed
         own = lower.deeper if isfinite(lower.seabed) else bed[:2]
         return bed._replace(east=own[0], north=own[1])
+
+    @property
+    def weight(self) -> float:
+        """Of all that it lifts or weighs, up or down [N]."""
+        line = self.leg.line
+        return max(float(np.abs(line.net_force(np.zeros(len(line.length)))).sum()), 1e-3)
+
+    @property
+    def may_lie(self) -> tuple[float, float]:
+        """Length [m] and weight [N] of what may lie on the seabed."""
+        course = self.problem.course
+        stages = course.stages[max(course.landing, 1) :] if isfinite(self.leg.lower.seabed) else []
+        weights = [weight_of(course, stage, self.bed.excess) for stage in stages]
+        return sum(stage.length for stage in stages), sum(weights)
 
     @property
     def highest(self) -> float:
@@ -162,15 +190,14 @@ def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> N
     size, problems = firsts[-1] + 3 * nodes, [each.problem for each in laid]
     courses = [each.course for each in problems]
     length = max(float(each.leg.line.length.sum()) for each in laid)
-    lifts = [np.abs(each.leg.line.net_force(np.zeros(len(each.leg.line.length)))) for each in laid]
-    force = max(1.0, *(float(lift.sum()) for lift in lifts))
+    force = max(1.0, *(each.weight for each in laid))
     stands = any(isfinite(each.leg.lower.seabed) for each in laid)
     span = problems[0].limits.depth if stands else length
     scale, rows = np.full(size, length), np.full(size, length)
     rows[firsts[-1] :] = force
     for first, each in zip(firsts, laid, strict=False):
-        if each.kind == net_march.PULLED:
-            scale[first : first + 3] = force
+        if each.unknowns > 1:
+            scale[first : first + 3] = each.weight
 
     stack: Any = np.stack if compiled else list
     no_sea: Any = None
@@ -214,19 +241,28 @@ def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> N
         flexible=zeros(1, of=int), starts=zeros(count, 1), sea=no_sea,
         work=SearchArrays(*(stack(own) for own in works)),
     )  # fmt: skip
+    below = [course_from_below(own) if each.below_a_point else own
+             for own, each in zip(courses, laid, strict=True)]  # fmt: skip
+    up = course._replace(
+        stages=stacked(Stage, [each.stages for each in below]),
+        loads=stacked(Load, [each.loads for each in below]),
+        cables=stacked(CableStretch, [each.cables for each in below]),
+    )
     places = [[*(end.place or (0.0, 0.0, 0.0))] for each in laid for end in each.ends]
     return NetProblem(
         listed(LegRow, [each.row(at, span) for at, each in zip(firsts, laid, strict=False)]), lines,
-        taken(np.array(places).reshape(-1, 6)), zeros(count, net_march.OF_LEG), zeros(count, 6),
-        zeros(count, pieces, of=int), zeros(count, pieces, of=int), zeros(count, pieces + 1, 4),
+        up, zeros(2 * room), taken(np.array(places).reshape(-1, 6)),
+        zeros(count, net_problem.OF_LEG), zeros(count, net_problem.OUT),
+        zeros(count, pieces, of=int), zeros(count, pieces, of=int),
         zeros(size), zeros(size), zeros(size, size), zeros(size), zeros(size),
-        zeros(size, size + 1), zeros(size, of=int), taken(scale), taken(rows), zeros(2),
+        zeros(size, size + 1), zeros(size, of=int), zeros(size), zeros(size), taken(scale), taken(rows), zeros(2),
         firsts[-1], length, force, span,
     )  # fmt: skip
 
 
 def leg_found(
-    laid: LaidLeg, net: NetProblem, i: int, end: Floats, errors: tuple[float, float],
+    laid: LaidLeg, net: NetProblem, i: int, ends: tuple[Floats, Floats],
+    errors: tuple[float, float],
     water: Water, settings: Settings, compiled: bool,
 ) -> Solution:  # fmt: skip
     """A leg as a line of its own, audited.
@@ -234,26 +270,25 @@ def leg_found(
     Parameters
     ----------
     i : its number
-    end : (3,) where it ends [m]
+    ends : (3,) where it ends as it was marched, and as extrapolated [m]
     errors : of depths [m] and of tensions [N]
     """
     state, (deep, taut) = net.state[i], errors
-    frequency = float(state[net_march.FREQUENCY])
+    frequency = float(state[net_problem.FREQUENCY])
     work = SearchArrays(*(column[i] for column in net.lines.work))
     course = laid.problem.course._replace(loads=net.lines.course.loads[i])
     problem = laid.problem._replace(course=course, work=work)
-    first = int(laid.kind == net_march.PULLED)
+    first = int(laid.below_a_point)
     if first:
         work.left[CHANGED] = 1.0  # the pull
-    share, landed = float(state[net_march.SHARE]), bool(state[net_march.STAGE] >= 0.0)
+    share, landed = float(state[net_problem.SHARE]), bool(state[net_problem.STAGE] >= 0.0)
     sought = 0 if share < 1.0 and problem.surfacing else BELOW
     root = Root(True, Unknown(0.0, sought, problem.limits.rides, False, 0), share, 0.0, 0.0)
     closed = Closed(
-        FOUND, 0.0, -1, root, int(state[net_march.COUNT]), int(state[net_march.HUNG]) - 1, landed,
-        float(state[net_march.GROUNDED]),
+        FOUND, 0.0, -1, root, int(state[net_problem.COUNT]), int(state[net_problem.HUNG]) - 1, landed,
+        float(state[net_problem.GROUNDED]),
     )  # fmt: skip
     told = Errors(deep, taut, 0.0, taut, taut)
-    outcome(take_as_marched, compiled, work.records[FINE], closed.nodes)
     segments = int(sum(work.counts[HALVED]))
     refined = Refined(closed, segments, told, share, closed.grounded)
     found = solution_of(problem, laid.line, water, settings, refined, told, frequency)
@@ -266,20 +301,24 @@ def leg_found(
         referee.moored, shape, loads if compiled else loads.tolist(), landed, problem.limits
     )  # fmt: skip
     closure, moment = outcome(residuals, compiled, *asked)
-    line = laid.leg.line if first else found.line
+    line, marched = laid.leg.line if first else found.line, found.marched
+    assert marched is not None
+    place, better = (np.array([*each[:2], 0.0]) for each in ends)
     return replace(
         found,
         line=line,
         carried=line if first else found.carried,
-        position=found.position[first:] + np.array([end[0], end[1], 0.0]),
+        position=found.position[first:] + better,
         force=found.force[first:],
         element_piece=found.element_piece[first:] - first,
         element_clamp=found.element_clamp[first:],
         hanging=found.hanging - first,
         cut=found.cut[first:],
         strain=found.strain[first:],
-        marched=None,
-        marches=int(state[net_march.MARCHES]),
+        marched=replace(
+            marched, position=marched.position[first:] + place, force=marched.force[first:]
+        ),
+        marches=int(state[net_problem.MARCHES]),
         closure=closure,
         moment_residual=moment,
         pulled=bool(first),
@@ -298,7 +337,7 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
 
     def piece(node: int) -> int:
         own = leg.piece_at(node)
-        return before + (pieces - 1 - own if laid.kind == net_march.HANGING_DOWN else own)
+        return before + (pieces - 1 - own if laid.kind == net_problem.HANGING_DOWN else own)
 
     if above[worst] < -near:
         raise touching(piece(worst), -float(above[worst]))

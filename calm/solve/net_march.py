@@ -1,184 +1,49 @@
 """A net of legs as laws: its legs marched, and what is left at its ends and nodes.
 
-Unknown are the depths of free ends, the pulls on upper ends that are not free, and the places of
-nodes; slopes are differences of marches on the same segments.
+Unknown are the depths of free ends, the pulls on ends that are not free, and the places of nodes;
+slopes are differences of marches on the same segments.
 """
 
 from collections.abc import MutableSequence, Sequence
 from math import degrees, inf, sqrt
-from typing import Any, NamedTuple
 
 from calm.physics.compiled import set_row
-from calm.physics.hull import SurfaceFloat
-from calm.physics.line import GOES_ON, Bed, Record, off_bed
+from calm.physics.line import GOES_ON
 from calm.physics.passing import FAILURE, HANGING, LANDED, NODES, How, Z, pass_line
 from calm.physics.passing import GROUNDED as LIES
-from calm.physics.profile import Sea
-from calm.physics.strumming import with_beat
-from calm.physics.track import Course, Load
 from calm.solve.closing import place
-from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, SearchArrays, Unknown
+from calm.solve.net_problem import (
+    ANCHORED,
+    COUNT,
+    FREQUENCY,
+    GROUNDED,
+    HUNG,
+    LACKING,
+    MARCHES,
+    OUT,
+    PULLED,
+    SHARE,
+    STAGE,
+    STANDING,
+    YIELD,
+    LegRow,
+    Marching,
+    NetProblem,
+    bed_of,
+    end_height,
+    leg_of,
+    place_of,
+)
+from calm.solve.net_touchdown import march_up, meet, pull_of
+from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, Unknown
 
-STANDING, HANGING_DOWN, PULLED = range(3)
-"""Legs marched from a free upper end, from a free lower end, and from an upper end that is held."""
 JUMP = 1e-6
 """Share by which an unknown is moved for the slopes."""
-LANDS, STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG, FREQUENCY, LACKING, YIELD = range(10)
-"""Of a leg as it was marched last: whether it may land, the stage where it did or -1, its length on
-the seabed [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and
-those of them that hang; the frequency of its cables, what that lacks of the one that is shed [Hz],
-and how that changes with it."""
-OF_LEG = 10
+LEAST_PULL = 1e-3
+"""Pull of a leg, as a share of its weight, below which that is the scale of its forces."""
 ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-2, 1e-9, 50, -0.3
 """What a frequency may lack, as a share of it, where segments are chosen and where they are given;
 how often a leg is marched for it, and the slope at which its secants are held."""
-
-
-class LegRow(NamedTuple):
-    """A leg in numbers.
-
-    Attributes
-    ----------
-    kind, first : how it is marched, and the first of its own unknowns
-    start, end : numbers of the nodes where its march begins and ends; -1 for none
-    seabed : height of the seabed below its anchor; -inf where it has none [m]
-    deeper_east, deeper_north : as of `Water`, below the leg
-    longest : segment at an angle step of 1° [m]
-    stands : length of a float that shows how much of it is out of the water [m]
-    highest : how high it may come [m]
-    rides : as in `Limits`
-    sheds : Strouhal number over diameter at its end, where vortices set the frequency of a leg that
-        strums [1/m]; 0 of one that does not
-    past_east, past_north, past_up : current there [m/s]
-    stages, landing, cables, surfacing, rows, pieces : how many there are of each, see `Course`
-    """
-
-    kind: int
-    first: int
-    start: int
-    end: int
-    seabed: float
-    deeper_east: float
-    deeper_north: float
-    longest: float
-    stands: float
-    highest: float
-    rides: int
-    sheds: float
-    past_east: float
-    past_north: float
-    past_up: float
-    stages: int
-    landing: int
-    cables: int
-    surfacing: int
-    rows: int
-    pieces: int
-
-
-class NetProblem(NamedTuple):
-    """A net to be closed.
-
-    Attributes
-    ----------
-    lines : the legs in one: what is of them has a row for each, as long as the longest needs
-    held : (·, 6) places of the ends of each leg that are held, where its march begins and ends [m]
-    state : numbers of each leg: `LANDS` and those after it
-    passed : (·, 6) way east and north, height, and force, where each came out
-    first, last, ends : node of each piece's ends; place and tension there
-    found, kept, slopes, way : what is left, by shares of `rows`, now and before, its slopes by
-        shares of `scale`, and the step that they ask for
-    trial, paper, order : room to find it
-    errors : of depths [m] and tensions [N]
-    nodes_at : first unknown of the nodes
-    length, force : of the longest leg [m]; a typical one [N]
-    span : what errors of depths are measured by [m]
-    """
-
-    legs: Sequence[LegRow]
-    lines: Any
-    held: Sequence[Sequence[float]]
-    state: Sequence[MutableSequence[float]]
-    passed: Sequence[MutableSequence[float]]
-    first: Sequence[MutableSequence[int]]
-    last: Sequence[MutableSequence[int]]
-    ends: Sequence[Sequence[MutableSequence[float]]]
-    found: MutableSequence[float]
-    kept: MutableSequence[float]
-    slopes: Sequence[MutableSequence[float]]
-    way: MutableSequence[float]
-    trial: MutableSequence[float]
-    paper: Sequence[MutableSequence[float]]
-    order: MutableSequence[int]
-    scale: Sequence[float]
-    rows: Sequence[float]
-    errors: MutableSequence[float]
-    nodes_at: int
-    length: float
-    force: float
-    span: float
-
-
-class Marching(NamedTuple):
-    """Tell how all legs are marched: in which water, at which angle step, on which cuts, given or
-    chosen now, and where they are recorded.
-    """
-
-    sea: Sea
-    step: float
-    cuts: int
-    given: bool
-    record: int
-
-
-def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
-    """A leg as a line."""
-    leg, lines, own = net.legs[i], net.lines, net.lines.afloat[i]
-    course, work = lines.course, lines.work
-    course = Course(
-        course.stages[i][: leg.stages], course.loads[i], course.cables[i][: leg.cables],
-        course.knots[i], with_beat(course.vibration, net.state[i][FREQUENCY]), leg.landing,
-    )  # fmt: skip
-    afloat = SurfaceFloat(
-        own.form, own.height, own.area, own.weight, own.lift, own.surface_drag, own.wind_east,
-        own.wind_north, own.wind_area, own.wind_cd,
-    )  # fmt: skip
-    work = SearchArrays(
-        work.left[i], work.chosen[i], work.halved[i], work.counts[i], work.records[i],
-        work.shares[i], work.samples[i], work.even[i], work.elements[i], work.found[i],
-    )  # fmt: skip
-    return LineProblem(
-        course, sea, lines.loads[i], net.first[i], lines.surfacing[i][: leg.surfacing], afloat,
-        lines.hull[i][: leg.rows], lines.limits, lines.starts[i], work,
-    )  # fmt: skip
-
-
-def bed_of(net: NetProblem, i: int) -> Bed:
-    """The seabed below a leg."""
-    leg, bed = net.legs[i], net.lines.limits.bed
-    return Bed(leg.deeper_east, leg.deeper_north, bed.friction, bed.excess)
-
-
-def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: int) -> float:
-    """Height of a node of a leg above the plane of the seabed through its anchor [m]; of one
-    without, through the origin."""
-    end, level = int(net.state[i][COUNT]) - 1, net.legs[i].seabed
-    east, north = record[0][n] - record[0][end], record[1][n] - record[1][end]
-    if level == -inf:
-        level, place = -net.lines.limits.depth, place_of(net, i, x, 1)
-        east, north = east + place[0], north + place[1]
-    return off_bed(bed_of(net, i), east, north, record[2][n] - level)
-
-
-def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[float, float, float]:
-    """Return where the march of a leg is to begin (0) or to end (1) [m]."""
-    leg, held = net.legs[i], net.held[i]
-    node = leg.end if end else leg.start
-    if node >= 0:
-        k = net.nodes_at + 3 * node
-        return x[k], x[k + 1], x[k + 2]
-    lies = end == 1 and net.state[i][LANDS] > 0.0
-    return held[3 * end], held[3 * end + 1], leg.seabed if lies else held[3 * end + 2]
 
 
 def begun(net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]) -> tuple[float, float]:
@@ -189,11 +54,9 @@ def begun(net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]) -> 
     Depth of its start, and length of its head above the surface, as of `place` [m].
     """
     leg, state = net.legs[i], net.state[i]
-    state[SHARE] = 1.0
     if leg.kind == PULLED:
         east, north, up = x[leg.first], x[leg.first + 1], x[leg.first + 2]
-        pull = Load(0, -1, 0.0, 0.5, 0.0, up, 0.0, 0.0, 0.0, 0, 0.0, east, north, 0.0, 0.0)
-        set_row(problem.course.loads, 0, pull)
+        set_row(problem.course.loads, 0, pull_of(up, east, north))
         _, _, z = place_of(net, i, x, 0)
         return -z, 0.0
     sought, value = BELOW, x[leg.first]
@@ -238,13 +101,21 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
 
 def march_once(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
     """March a leg, at the frequency at which it was marched last where it strums."""
+    net.state[i][SHARE] = 1.0
+    if net.legs[i].kind == ANCHORED:
+        return march_up(net, i, x, how)
+    return march_down(net, i, x, how)
+
+
+def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
+    """March a leg from its upper end, or from a free lower one."""
     leg, state, problem = net.legs[i], net.state[i], leg_of(net, how.sea, i)
     course, work = problem.course, problem.work
     depth, out = begun(net, problem, i, x)
     cuts = work.halved if how.cuts == HALVED else work.chosen
     record, left = work.records[how.record], work.left
     reach = degrees(how.step) * leg.longest
-    lands = state[LANDS] > 0.0
+    lands = leg.kind == STANDING and leg.seabed > -inf
     near, bed = problem.limits.near, bed_of(net, i)
     asked = How(how.step, reach, near, leg.stages, lands, bed, how.given, True)
     pass_line(course, how.sea, asked, depth, out, cuts, work.counts[how.cuts], record, left)
@@ -255,8 +126,10 @@ def march_once(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
     state[COUNT], state[GROUNDED] = left[NODES], left[LIES]
     passed, n = net.passed[i], int(left[NODES]) - 1
     passed[0], passed[1] = record[0][n] - record[0][0], record[1][n] - record[1][0]
-    passed[2] = left[Z]
+    passed[2], passed[6] = left[Z], 0.0
     passed[3], passed[4], passed[5] = record[3][n], record[4][n], record[5][n]
+    if lands:  # how high it ends is in what it misses
+        passed[2] -= end_height(leg, left[LANDED] >= 0.0, passed[5])
     return GOES_ON
 
 
@@ -265,7 +138,7 @@ def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
 
     φ is the angle between the current and the force there, see `calm.physics.strumming`.
     """
-    _, _, _, fx, fy, fz = passed
+    fx, fy, fz = passed[3], passed[4], passed[5]
     u, v, w = leg.past_east, leg.past_north, leg.past_up
     cx, cy, cz = v * fz - w * fy, w * fx - u * fz, u * fy - v * fx
     tension = sqrt(fx * fx + fy * fy + fz * fz)
@@ -274,20 +147,26 @@ def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
     return leg.sheds * sqrt(cx * cx + cy * cy + cz * cz) / tension
 
 
+def row_of(net: NetProblem, i: int, k: int) -> int:
+    """Where a result of a leg's march counts among what is left; -1 for nowhere."""
+    leg = net.legs[i]
+    pulled = leg.own > 1
+    if k < 2:
+        return leg.first + k if pulled else -1
+    if k == 2:
+        return leg.first + 2 if pulled else leg.first
+    if k == 6:
+        return leg.first + 3 if leg.own > 3 else -1
+    node = leg.start if leg.kind == ANCHORED else leg.end
+    return net.nodes_at + 3 * node + k - 3 if node >= 0 else -1
+
+
 def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, column: int) -> None:
     """Add a share of what a leg came out with to what is left, or to a column of its slopes."""
-    leg = net.legs[i]
-    for k in range(6):
-        row = leg.first + k
-        if k < 3:
-            if leg.kind != PULLED:
-                if k < 2:
-                    continue
-                row = leg.first
-        elif leg.end < 0:
-            break
-        else:
-            row = net.nodes_at + 3 * leg.end + k - 3
+    for k in range(OUT):
+        row = row_of(net, i, k)
+        if row < 0:
+            continue
         change = share * out[k] / net.rows[row]
         if column < 0:
             net.found[row] += change
@@ -313,18 +192,19 @@ def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes:
             return failure
         out, at = net.passed[i], leg.first
         add_passed(net, i, out, 1.0, -1)
-        east, north, up = place_of(net, i, x, 1)
-        if leg.kind == PULLED:
-            x0, y0, _ = place_of(net, i, x, 0)
-            net.found[at] += (x0 - east) / net.rows[at]
-            net.found[at + 1] += (y0 - north) / net.rows[at + 1]
-            net.found[at + 2] -= up / net.rows[at + 2]
+        start, end = place_of(net, i, x, 0), place_of(net, i, x, 1)
+        if leg.kind == ANCHORED:
+            net.found[at + 2] -= start[2] / net.rows[at + 2]
+        elif leg.kind == PULLED:
+            net.found[at] += (start[0] - end[0]) / net.rows[at]
+            net.found[at + 1] += (start[1] - end[1]) / net.rows[at + 1]
+            net.found[at + 2] -= end[2] / net.rows[at + 2]
             if leg.start >= 0:
                 for k in range(3):
                     row = nodes + 3 * leg.start + k
                     net.found[row] -= x[at + k] / net.rows[row]
-        else:
-            net.found[at] -= up / net.rows[at]
+        elif leg.seabed == -inf:
+            net.found[at] -= end[2] / net.rows[at]
         if slopes:
             failure = slopes_of_leg(net, i, x, how)
             if failure != GOES_ON:
@@ -334,35 +214,56 @@ def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes:
 
 def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: Marching) -> int:
     """Add what a leg has in the slopes of what is left."""
-    leg, nodes, at = net.legs[i], net.nodes_at, net.legs[i].first
-    own = 3 if leg.kind == PULLED else 1
-    free = own + (1 if leg.kind == PULLED and leg.start >= 0 else 0)
+    leg, nodes, at, passed = net.legs[i], net.nodes_at, net.legs[i].first, net.passed[i]
+    start, end = nodes + 3 * leg.start, nodes + 3 * leg.end
+    if leg.kind == ANCHORED and leg.start >= 0:
+        net.slopes[at + 2][start + 2] -= net.scale[start + 2] / net.rows[at + 2]
+        for k in range(2):  # where its upper end is changes what it misses, not its march
+            before = x[start + k]
+            add_passed(net, i, passed, -1.0 / JUMP, start + k)
+            x[start + k] = before + JUMP * net.scale[start + k]
+            meet(net, i, x)
+            add_passed(net, i, passed, 1.0 / JUMP, start + k)
+            x[start + k] = before
+        meet(net, i, x)
     moved = Marching(how.sea, how.step, how.cuts, True, OTHER)
+    free = leg.own + (1 if leg.kind == PULLED and leg.start >= 0 else 0)
     for m in range(free):
-        k = at + m if m < own else nodes + 3 * leg.start + 2
-        add_passed(net, i, net.passed[i], -1.0 / JUMP, k)
+        k = at + m if m < leg.own else start + 2
+        add_passed(net, i, passed, -1.0 / JUMP, k)
     for m in range(free):
-        k = at + m if m < own else nodes + 3 * leg.start + 2
+        k = at + m if m < leg.own else start + 2
         before = x[k]
         x[k] = before + JUMP * net.scale[k]
         failure = march_leg(net, i, x, moved)
         x[k] = before
         if failure != GOES_ON:
             return failure
-        add_passed(net, i, net.passed[i], 1.0 / JUMP, k)
-    for k in range(3):
-        if leg.kind == PULLED:
-            row = at + k
-            if leg.start >= 0:
-                start = nodes + 3 * leg.start + k
-                net.slopes[start][at + k] -= net.scale[at + k] / net.rows[start]
-                if k < 2:
-                    net.slopes[row][start] += net.scale[start] / net.rows[row]
-        elif k < 2:
-            continue
-        else:
-            row = at
-        if leg.end >= 0:
-            end = nodes + 3 * leg.end + k
-            net.slopes[row][end] -= net.scale[end] / net.rows[row]
+        add_passed(net, i, passed, 1.0 / JUMP, k)
+    if leg.kind == PULLED and leg.start >= 0:
+        for k in range(3):
+            net.slopes[start + k][at + k] -= net.scale[at + k] / net.rows[start + k]
+            if k < 2:
+                net.slopes[at + k][start + k] += net.scale[start + k] / net.rows[at + k]
+    if leg.kind != ANCHORED and leg.end >= 0:
+        for k in range(0 if leg.kind == PULLED else 2, 3):
+            row = at + k if leg.kind == PULLED else at
+            net.slopes[row][end + k] -= net.scale[end + k] / net.rows[row]
     return GOES_ON
+
+
+def take_scales(net: NetProblem, x: Sequence[float]) -> None:
+    """Scale the unknown forces on each leg by its own pull, as it was marched last.
+
+    A slack leg pulls with a thousandth of others: steps that suit these say nothing of its slopes.
+    """
+    for i in range(len(net.legs)):
+        leg, out = net.legs[i], net.passed[i]
+        if leg.own == 1:
+            continue
+        pull = sqrt(out[3] * out[3] + out[4] * out[4] + out[5] * out[5])
+        if leg.kind == PULLED:
+            east, north, up = x[leg.first], x[leg.first + 1], x[leg.first + 2]
+            pull = max(pull, sqrt(east * east + north * north + up * up))
+        for k in range(3):
+            net.scale[leg.first + k] = max(pull, LEAST_PULL * leg.weight)

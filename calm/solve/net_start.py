@@ -32,14 +32,14 @@ class NetStart(NamedTuple):
     first : (k, 3) place of each leg's upper end [m]
     pull : (k, 3) force on each leg's upper end [N]
     lower : (k, 3) place of each leg's lower end [m]
-    lies : (k,) whether part of a leg lies on the seabed
+    held : (k, 3) force on each leg's lower end, where the seabed bears nothing [N]
     """
 
     nodes: Floats
     first: Floats
     pull: Floats
     lower: Floats
-    lies: list[bool]
+    held: Floats
 
 
 class _Lumps:
@@ -202,13 +202,13 @@ def start_of(legs: tuple[NetLeg, ...], nodes: int, water: Water) -> NetStart:
     """
     lumps = _Lumps(legs, nodes, water)
     lumps.settle()
-    pulls, first, pull, lower, lies, spring = lumps.pulls(), [], [], [], [], 0
-    near = 1e-3 * water.depth
-    for row in lumps.rows:
+    pulls, first, pull, lower, held, spring = lumps.pulls(), [], [], [], [], 0
+    for leg, row in zip(legs, lumps.rows, strict=True):
         first.append(lumps.place[row[0]])
         lower.append(lumps.place[row[-1]])
         pull.append(-pulls[spring])
-        down = lumps.place[row[:-1], 2] < lumps.bed[row[:-1]] + near
-        lies.append(bool(down[-1:].any()))
         spring += len(row) - 1
-    return NetStart(lumps.place[:nodes], np.array(first), np.array(pull), np.array(lower), lies)
+        lift = sum(net for _, net, _, _ in _points(leg.line, water))
+        held.append([*pulls[spring - 1][:2], -pull[-1][2] - lift])
+    ends = (np.array(each) for each in (first, pull, lower, held))
+    return NetStart(lumps.place[:nodes], *ends)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from calm.physics.line import ENDS, SEGMENT, Record, off_bed
 from calm.physics.passing import FAILURE, NODES
-from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, bent, extrapolate, take_as_marched
+from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, Extent, bent, extrapolate, take_as_marched
 from calm.solve.closing import Closed, Root, halve, not_closed, planned, polish
 from calm.solve.problem import (
     BELOW,
@@ -90,14 +90,16 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
             fine = polish_hanging(search, coarse.root, HALVED, FINE, hangs)
         if fine.ending != FOUND:
             return unrefined(fine)
-        errors = extrapolate(records[COARSE], coarse, records[FINE], fine)
+        errors = extrapolate(
+            records[COARSE], extent_of(coarse), records[FINE], extent_of(fine), problem.limits.near
+        )
         excess = excess_of(problem, errors)
         if excess <= 1.0 or segments > MOST_SEGMENTS:
             break
         root, step = fine.root, step * max(0.8 / sqrt(excess), 0.2)
     share, grounded = fine.root.x, fine.grounded
     if problem.limits.near == 0.0:  # the errors of one of many are not reported
-        kinked, errors = bent(problem, fine, errors)
+        kinked, errors = bent(problem, fine.hanging, errors)
         if kinked:
             take_as_marched(records[FINE], fine.nodes)
             return Refined(fine, segments, errors, share, grounded)
@@ -106,6 +108,11 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
     if coarse.landed and fine.landed:
         grounded += (grounded - coarse.grounded) / 3.0
     return Refined(fine, segments, errors, share, grounded)
+
+
+def extent_of(closed: Closed) -> Extent:
+    """Return the size of a closed shape."""
+    return Extent(closed.nodes, closed.hanging, closed.landed)
 
 
 def excess_of(problem: LineProblem, errors: Errors) -> float:

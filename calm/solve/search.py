@@ -5,10 +5,11 @@ water or in the seabed, and audited.
 """
 
 from collections.abc import MutableSequence, Sequence
-from math import isnan, nan
+from math import isnan, nan, sqrt
 from typing import NamedTuple
 
 from calm.physics.compiled import set_row
+from calm.physics.line import BETTER
 from calm.physics.passing import FAILURE
 from calm.physics.passing import LANDED as CAME_DOWN
 from calm.physics.referee import (
@@ -51,6 +52,7 @@ from calm.solve.solution import (
     SLACK_AT_REST,
     SLACK_ON_DIGITS,
     UNSUPPORTED,
+    OtherEquilibrium,
 )
 from calm.solve.starts import is_highest, start_of
 
@@ -63,6 +65,8 @@ BARELY_LANDED = 4.0
 """Length on the seabed, in heights of the anchor, up to which a line that can as well hang between
 the seabed and the top of its anchor is taken to hang there; beyond it does so where that is higher.
 """
+DISTINCT = 1e-3
+"""Difference of the shares of its buoyancy in use in two equilibria of a float at the surface."""
 PERHAPS_LANDED = 20.0
 """The same, up to which it is looked whether it could hang: the other shape is then reported."""
 
@@ -92,8 +96,7 @@ class FoundShape(NamedTuple):
     refined : the closed line
     errors : of the shape, with what no halving shows
     closure, moment : what the audit found
-    other_depth, other_grounded : of another equilibrium that the search came upon, see `Solution`;
-        the depth is negative where there is none
+    other : another equilibrium that the search came upon
     """
 
     ending: int
@@ -103,11 +106,10 @@ class FoundShape(NamedTuple):
     errors: Errors
     closure: float
     moment: float
-    other_depth: float
-    other_grounded: float
+    other: OtherEquilibrium
 
 
-NO_OTHER = -1.0
+NO_OTHER = OtherEquilibrium(-1.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def find_shape(search: Search, referee: Referee) -> FoundShape:
@@ -164,15 +166,25 @@ def is_slack(found: FoundShape) -> bool:
 def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
     """Return why there is no shape."""
     refined = unrefined(not_closed(ending, value, root))
-    return FoundShape(ending, value, piece, refined, UNKNOWN_ERRORS, 0.0, 0.0, NO_OTHER, 0.0)
+    return FoundShape(ending, value, piece, refined, UNKNOWN_ERRORS, 0.0, 0.0, NO_OTHER)
 
 
-def beside(found: FoundShape, other_depth: float, other_grounded: float) -> FoundShape:
-    """The shape, with where the free end is and how much lies on the seabed in another one."""
+def beside(found: FoundShape, other: OtherEquilibrium) -> FoundShape:
+    """The shape, with another equilibrium."""
     return FoundShape(
         found.ending, found.value, found.piece, found.refined, found.errors, found.closure,
-        found.moment, other_depth, other_grounded,
+        found.moment, other,
     )  # fmt: skip
+
+
+def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
+    """The shape in the record `FINE` as another equilibrium."""
+    record, closed = problem.work.records[FINE], found.refined.closed
+    end = closed.nodes - 1
+    x, y, z = record[BETTER + 3][end], record[BETTER + 4][end], record[BETTER + 5][end]
+    share = found.refined.share if closed.root.unknown.sought != BELOW else 1.0
+    depth = -record[BETTER + 2][0]
+    return OtherEquilibrium(depth, found.refined.grounded, share, z, sqrt(x * x + y * y))
 
 
 def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
@@ -192,19 +204,20 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
     if located.ending != FOUND:
         return refused(located.ending, located.value, -1, located.root)
     found = shape_near(search, referee, located.root, lands)
-    if found.ending != FOUND or not located.deeper.found or problem.limits.near > 0.0:
+    if found.ending != FOUND or not located.other.found or problem.limits.near > 0.0:
         return found
     keep(problem, OTHER, FINE, found)
-    other = shape_near(search, referee, located.deeper, lands)
-    depth = -problem.work.records[FINE][2][0]
+    second = shape_near(search, referee, located.other, lands)
+    other = other_of(problem, second) if second.ending == FOUND else NO_OTHER
     keep(problem, FINE, OTHER, found)
     load_again(problem, found)
-    if other.ending != FOUND:
-        return found
-    fall = depth + problem.work.records[FINE][2][0]
-    if fall <= 2.0 * (found.errors.depth + other.errors.depth):
-        return found
-    return beside(found, depth, other.refined.closed.grounded)
+    first = other_of(problem, found)
+    apart = 2.0 * (found.errors.depth + second.errors.depth)
+    same = (
+        other.depth - first.depth <= apart
+        and abs(other.used_buoyancy - first.used_buoyancy) < DISTINCT
+    )
+    return found if second.ending != FOUND or same else beside(found, other)
 
 
 def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
@@ -248,20 +261,21 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
     if closed.grounded > PERHAPS_LANDED * limits.anchor_height:
         return landed
     keep(problem, KEPT, FINE, landed)
-    depth = -problem.work.records[FINE][2][0]
+    lying = other_of(problem, landed)
     hanging = audited(problem, referee, refine(search, clear, True))
     if hanging.ending == MARCH_STOPPED:
         return hanging
-    other = -problem.work.records[FINE][2][0]
+    clear_of_it = other_of(problem, hanging) if hanging.ending == FOUND else NO_OTHER
     if hanging.ending == FOUND:
         barely = closed.grounded <= BARELY_LANDED * limits.anchor_height
-        if barely or other < depth - hanging.errors.depth - landed.errors.depth:
-            return beside(hanging, depth, closed.grounded)
+        higher = lying.depth - hanging.errors.depth - landed.errors.depth
+        if barely or clear_of_it.depth < higher:
+            return beside(hanging, lying)
     keep(problem, FINE, KEPT, landed)
     load_again(problem, landed)
     if hanging.ending != FOUND:
         return landed
-    return beside(landed, other, 0.0)
+    return beside(landed, clear_of_it)
 
 
 def hanging_clear(problem: LineProblem, root: Root) -> Root:
@@ -283,12 +297,12 @@ def audited(problem: LineProblem, referee: Referee, refined: Refined) -> FoundSh
         ending = ABOVE_SURFACE if height > 0.0 else BELOW_SEABED
         return refused(ending, abs(height), piece, closed.root)
     if problem.limits.near > 0.0:
-        return FoundShape(FOUND, 0.0, -1, refined, errors, 0.0, 0.0, NO_OTHER, 0.0)
+        return FoundShape(FOUND, 0.0, -1, refined, errors, 0.0, 0.0, NO_OTHER)
     off, moment = audit_shape(problem, referee, closed)
     ending, value = ending_of_audit(off, moment)
     if ending != FOUND:
         return refused(ending, value, -1, closed.root)
-    return FoundShape(FOUND, 0.0, -1, refined, errors, off, moment, NO_OTHER, 0.0)
+    return FoundShape(FOUND, 0.0, -1, refined, errors, off, moment, NO_OTHER)
 
 
 def audit_shape(problem: LineProblem, referee: Referee, closed: Closed) -> tuple[float, float]:

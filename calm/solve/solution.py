@@ -11,6 +11,7 @@ from enum import Enum
 from functools import cached_property
 from importlib.util import find_spec
 from math import nan, radians
+from typing import NamedTuple
 
 import numpy as np
 
@@ -51,6 +52,24 @@ class Settings:
             raise ValueError("seabed_friction must not be negative")
 
 
+class OtherEquilibrium(NamedTuple):
+    """Another equilibrium of a line.
+
+    Attributes
+    ----------
+    depth : of the free end [m]; negative if there is no other equilibrium
+    grounded_length : on the seabed [m]
+    used_buoyancy : share in use of the buoyancy of the float at the surface; 1 below it
+    anchor_vertical, anchor_horizontal : upward and horizontal force at the line's end [N]
+    """
+
+    depth: float
+    grounded_length: float
+    used_buoyancy: float
+    anchor_vertical: float
+    anchor_horizontal: float
+
+
 @dataclass(frozen=True)
 class Solution:
     """A converged shape: k elements between k + 1 nodes, free end first.
@@ -81,8 +100,7 @@ class Solution:
     depth_error, tension_error : own estimate of the worst error of any depth or offset [m] and
         of any tension [N]
     lift_error, pull_error : of the upward and of the horizontal force at the line's end [N]
-    other_depth, other_grounded_length : depth of the free end in another equilibrium that the
-        solver came upon, and its unstretched length on the seabed [m]
+    other : another equilibrium that the solver found; None if it found none
     frequency : of the cables that strum [Hz]; 0 where none does
     pulled : whether its first end is not free but pulled: a leg of a net
     marched : the finer of the two shapes, which passed the audit; None if nothing was extrapolated
@@ -111,8 +129,7 @@ class Solution:
     tension_error: float
     lift_error: float
     pull_error: float
-    other_depth: float | None = None
-    other_grounded_length: float = 0.0
+    other: OtherEquilibrium | None = None
     frequency: float = 0.0
     riding: Riding | None = None
     closure: float = nan

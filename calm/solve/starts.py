@@ -10,7 +10,7 @@ from math import isnan, nan, sqrt
 from calm.physics.profile import Sea
 from calm.physics.track import CABLE, Course
 from calm.solve.closing import Root, coarse_about, whole_line, with_sought
-from calm.solve.locate import growth_below, in_even_current, locate
+from calm.solve.locate import growth_below, in_even_current, locate, turns_back
 from calm.solve.problem import BELOW, FASTEST, STARTS, About, LineProblem, Search
 from calm.solve.solution import FOUND
 
@@ -99,7 +99,7 @@ def is_highest(problem: LineProblem, root: Root) -> bool:
     """
     limits, starts = problem.limits, problem.starts
     if root.unknown.sought != BELOW:
-        return root.x < NOWHERE_NEAR
+        return root.x < NOWHERE_NEAR and not turns_back(problem.sea)
     row = 3 if root.unknown.lands else 0
     upright = max(-limits.standing - root.unknown.goal, 0.0)
     at = min(greatest_speed(problem.sea) / FASTEST, 1.0) * (STARTS - 1)

@@ -20,9 +20,9 @@ from calm.solve.finish import march_stopped
 from calm.solve.least_change import bracketed_root
 from calm.solve.net import NetSearch, NetSolution, with_room
 from calm.solve.net_leg import LegEnd, NetLeg
-from calm.solve.net_march import FREQUENCY, LACKING
+from calm.solve.net_problem import FREQUENCY, LACKING
 from calm.solve.problem import CHOSEN, COARSE_STEP, FINE, HALVED
-from calm.solve.solution import Settings, Solution, Status, expect_many
+from calm.solve.solution import OtherEquilibrium, Settings, Solution, Status, expect_many
 
 SURFACE_BAND = 1e-7
 """Thickness of the band from water to air, as a share of the line out."""
@@ -97,7 +97,8 @@ def solve_tow(
     leg = NetLeg(line, ship, LegEnd())
     solve = partial(_solved, towing=towing)
     found, other_depth = with_room(solve, [leg], 0, water, settings or Settings())
-    solution = replace(found.legs[0], miss=found.miss, other_depth=other_depth)
+    other = None if other_depth is None else OtherEquilibrium(other_depth, 0.0, 1.0, nan, nan)
+    solution = replace(found.legs[0], miss=found.miss, other=other)
     _refuse_misplaced(solution, towing)
     return solution
 
@@ -232,9 +233,7 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
     )
 
 
-def _upwards(
-    water: Water, depth: float, low: float, span: float, shallowest: float
-) -> list[float]:
+def _upwards(water: Water, depth: float, low: float, span: float, shallowest: float) -> list[float]:
     """Depths to try, from below; where nothing changes with depth the miss itself is the way."""
     if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
         steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()

@@ -213,6 +213,12 @@ def _undercurrent() -> Solution:
     return solve_mooring(line, profile(110.0, [(0.0, 0.2), (12.0, 0.2), (30.0, 3.0)]), _TIGHT)
 
 
+def _other_depth() -> float:
+    """Return the depth of its float in the other equilibrium; 0 if none was found."""
+    other = _undercurrent().other
+    return 0.0 if other is None else other.depth
+
+
 def _nothing(name: str, tolerance: float, why: str, got: Callable[[], float]) -> Case:
     return Case(f"C20 {name}", 0.0, "", tolerance, why, got, Kind.PROPERTY)
 
@@ -257,7 +263,7 @@ returns the highest and reports the lowest; the one between them is unstable."""
                  Kind.CLOSED_FORM)
             for name, depth, got in (
                 ("highest", 10.0031998, lambda: -float(_undercurrent().position[0, 2])),
-                ("lowest", 61.4357069, lambda: float(_undercurrent().other_depth or 0.0)),
+                ("lowest", 61.4357069, _other_depth),
             )
         ),
     ),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
-from math import degrees
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,18 +12,14 @@ from calm.errors import UsageError
 from calm.physics.line import Floats
 from calm.records.sea_states import SeaState
 from calm.waves.buoy import Buoy, buoy_of
-from calm.waves.fatigue import (
-    PieceFatigue,
-    fatigue_of,
-    greatest_of,
-    moments_of,
-    passing_probability,
-)
+from calm.waves.fatigue import PieceFatigue, fatigue_of
 from calm.waves.lumped_line import LumpedLine, lumped_line
+from calm.waves.pieces_in_sea import CutOffs, MooringInSea, mooring_in_sea
 from calm.waves.response import WaveResponse, Waves, respond
 
 if TYPE_CHECKING:
     from calm.case import Mooring
+    from calm.files import Piece
     from calm.solve import Solution
 
 SHALLOWEST = 0.6
@@ -42,50 +37,6 @@ COARSEST, FEWEST, MOST_HALVINGS = 1.0 / 50.0, 32, 4
 
 SMALL = 0.05
 """Of the greatest standard deviation: below it a change is not looked at."""
-
-
-@dataclass(frozen=True)
-class PieceInWaves:
-    """Hold a piece of the line in a sea: tensions [N] at its upper end, motions [m], [degrees].
-
-    Greatest and least are the most probable ones of the duration; `slack_probability` that of
-    falling slack in it. `greatest` and `least` are those anywhere along the piece.
-    """
-
-    index: int
-    label: str
-    tension_mean: float
-    tension_std: float
-    tension_max: float
-    tension_min: float
-    zero_crossing_period: float
-    slack_probability: float
-    heave_std: float
-    tilt_std: float
-    greatest: float
-    least: float
-
-
-@dataclass(frozen=True)
-class MooringInSea:
-    """Hold a mooring in a sea: its pieces down the line, and the labels of those that fall slack.
-
-    `worst` are the mean of the tension and its moments m0, m1, m2, m4 by frequency where each piece
-    is pulled about most. `spectrum` is that of the tension at the top, N² s/rad at rad/s, and
-    `along` the depth [m], mean, standard deviation and greatest tension down the line.
-    `follower_std` is the deviation of the tension below a float that follows every wave [N], of
-    the highest of several seas alone; None of a line below the surface. `pitch_std` is that of the
-    pitch of the float [degrees]; None where it is not known.
-    """
-
-    sea: SeaState
-    components: tuple[PieceInWaves, ...]
-    slack: tuple[str, ...]
-    follower_std: float | None
-    pitch_std: float | None
-    worst: tuple[tuple[float, Floats], ...]
-    spectrum: tuple[Floats, Floats]
-    along: tuple[Floats, Floats, Floats, Floats]
 
 
 @dataclass(frozen=True)
@@ -135,18 +86,7 @@ class WaveAnalysis:
             "calm": __version__,
             "name": self.name,
             "status": self.status,
-            "states": [
-                {
-                    "significant_wave_height": state.sea.significant_height,
-                    "peak_period": state.sea.peak_period,
-                    "share": state.sea.share,
-                    "components": [asdict(one) for one in state.components],
-                    "slack": list(state.slack),
-                    "follower_std": state.follower_std,
-                    "pitch_std": state.pitch_std,
-                }
-                for state in self.states
-            ],
+            "states": [state.to_dict() for state in self.states],
             "fatigue": [asdict(one) for one in self.fatigue],
             "accuracy": asdict(self.accuracy),
             "warnings": list(self.warnings),
@@ -172,6 +112,24 @@ class _Setting:
         """Return the response to a sea, and the flow past its nodes; `first` of one like it."""
         waves = self.waves(sea)
         return respond(self.line, self.buoy, waves, sea, drag_factor=drag, first=first, once=once)
+
+    def cut_offs(self, sea: SeaState, response: WaveResponse, flow: Floats) -> CutOffs:
+        """Return responses to half and to twice the waves of a response, with its drag.
+
+        The higher frequencies are as close to each other as those of the response.
+        """
+        last = float(response.omega[-1])
+        count = int(np.ceil(np.log(2.0) / np.log(last / float(response.omega[-2])))) + 1
+        above = replace(self.water, omega=np.geomspace(last, 2.0 * last, count))
+        beyond, _ = respond(self.line, self.buoy, above, sea, first=flow, once=True)
+        return CutOffs(response, response.below(0.5 * last), response.joined(beyond))
+
+    def below_a_follower(self, sea: SeaState, flow: Floats) -> float | None:
+        """Return the deviation of the tension below a float that follows every wave [N]."""
+        if self.buoy is None:
+            return None
+        following = replace(self, buoy=replace(self.buoy, follows=True))
+        return float(_by_piece(self.line, following.respond(sea, flow)[0])[0])
 
     def deviations(
         self, seas: Sequence[SeaState], first: Sequence[Floats | None], **how: Any
@@ -229,20 +187,20 @@ def analyse(
         near = flow * (sea.significant_height / before.significant_height)
         response, flow = setting.respond(sea, near)
         before = sea
-        beside = sea is highest
-        states.append(_in_sea(mooring, solution, setting, sea, response, flow, duration, beside))
+        responses = setting.cut_offs(sea, response, flow)
+        follower = setting.below_a_follower(sea, flow) if sea is highest else None
+        line, buoy = setting.line, setting.buoy
+        states.append(
+            mooring_in_sea(mooring, solution, line, buoy, sea, responses, duration, follower)
+        )
     warnings = [
         f"{label} gives no `stiffness` and is taken as inextensible: its tensions are "
         "overestimated."
         for label in setting.line.inextensible
     ]
     fatigue = tuple(
-        fatigue_of(
-            mooring.file.pieces[index].component, index, mooring.file.pieces[index].label,
-            [(state.sea.share, *state.worst[index]) for state in states],
-        )
-        for index in range(setting.line.top_pieces, len(mooring.file.pieces) - 1)
-    )  # fmt: skip
+        _fatigue(piece, states) for piece in mooring.file.pieces[setting.line.top_pieces : -1]
+    )
     missing = None
     if setting.buoy is not None and setting.buoy.profile is None:
         missing = "it takes its `hull`, `centre_of_mass` and `radius_of_gyration`"
@@ -251,6 +209,18 @@ def analyse(
     return WaveAnalysis(
         mooring.file.name, tuple(states), fatigue, accuracy, tuple(warnings), missing
     )
+
+
+def _fatigue(piece: Piece, states: Sequence[MooringInSea]) -> PieceFatigue:
+    """Return the fatigue of a piece, with its lives by half and by twice the cut-off frequency."""
+    found, half, twice = (
+        fatigue_of(
+            piece.component, piece.index, piece.label,
+            [(state.sea.share, *state.moments[case][piece.index]) for state in states],
+        )
+        for case in range(3)
+    )  # fmt: skip
+    return replace(found, life_half_cut_off=half.life, life_twice_cut_off=twice.life)
 
 
 def _settled(
@@ -303,76 +273,3 @@ def _change(before: tuple[Floats, Floats], after: tuple[Floats, Floats]) -> floa
 
 def _by_piece(line: LumpedLine, response: WaveResponse) -> Floats:
     return response.moments(line.upper_ends(response.pull))[0]
-
-
-def _in_sea(
-    mooring: Mooring,
-    solution: Solution,
-    setting: _Setting,
-    sea: SeaState,
-    response: WaveResponse,
-    flow: Floats,
-    duration: float,
-    beside: bool,
-) -> MooringInSea:
-    line = setting.line
-    spectral = np.abs(response.pull) ** 2 * response.weight[:, None]
-    moments = moments_of(response.omega, spectral)
-    tension, period = response.moments(response.pull)
-    departs = np.array([greatest_of(*each, duration) for each in zip(tension, period, strict=True)])
-    deviations, periods = response.moments(line.upper_ends(response.pull))
-    motion, _ = response.moments(response.motion)
-    lean, _ = response.moments(line.upper_ends(line.turned(response.motion)))
-    pitch = None
-    if setting.buoy is not None and setting.buoy.profile is not None:
-        pitch = degrees(float(response.moments(response.pitch)[0]))
-    rows: list[PieceInWaves] = []
-    worst: list[tuple[float, Floats]] = []
-    for piece in mooring.file.pieces[:-1]:
-        spring, node = int(line.piece_spring[piece.index]), int(line.piece_node[piece.index])
-        mean = float(solution.tension[int(solution.piece_nodes[piece.index, 0])])
-        if piece.index < line.top_pieces:  # nothing pulls at the upper end of what floats on top
-            mean = float(solution.tension[int(solution.piece_nodes[line.top_pieces - 1, 1])])
-        own, most_moved = slice(0), (mean, np.zeros(4))  # on the seabed
-        if spring >= 0:
-            below = line.piece_spring[line.piece_spring > spring]
-            own = slice(spring, int(below.min()) if len(below) else len(tension))
-            at = spring + int(tension[own].argmax())
-            most_moved = float(line.tension[at]), moments[:, at]
-        worst.append(most_moved)
-        deviation, apart = float(deviations[piece.index]), float(periods[piece.index])
-        most = greatest_of(deviation, apart, duration)
-        rows.append(
-            PieceInWaves(
-                index=piece.index,
-                label=piece.label,
-                tension_mean=mean,
-                tension_std=deviation,
-                tension_max=mean + most,
-                tension_min=mean - most,
-                zero_crossing_period=apart,
-                slack_probability=passing_probability(mean, deviation, apart, duration),
-                heave_std=float(motion[node, 2]),
-                tilt_std=degrees(float(np.linalg.norm(lean[piece.index])))
-                if pitch is None or piece.index >= line.top_pieces
-                else pitch,
-                greatest=float((line.tension + departs)[own].max(initial=mean + most)),
-                least=float((line.tension - departs)[own].min(initial=mean - most)),
-            )
-        )
-    follower = None
-    if setting.buoy is not None and beside:
-        following = replace(setting, buoy=replace(setting.buoy, follows=True))
-        follower = float(_by_piece(line, following.respond(sea, flow)[0])[0])
-    slack = tuple(row.label for row in rows if row.least < 0.0 < row.tension_std)
-    depth = -0.5 * (line.position[1:, 2] + line.position[:-1, 2])
-    return MooringInSea(
-        sea,
-        tuple(rows),
-        slack,
-        follower,
-        pitch,
-        worst=tuple(worst),
-        spectrum=(response.omega, np.abs(response.pull[:, 0]) ** 2 * sea.density(response.omega)),
-        along=(depth, line.tension, tension, line.tension + departs),
-    )

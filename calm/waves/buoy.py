@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -85,6 +85,15 @@ class Buoy:
     centre: float = 0.0
     bail: float = 0.0
     gyration: float = 0.0
+
+    @property
+    def heaves(self) -> Literal["filtered", "panels", "follows"] | None:
+        """Return how its heave is computed; None if its response is given."""
+        if self.follows:
+            return "follows"
+        if self.rao:
+            return None
+        return "filtered" if self.panels is None else "panels"
 
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float

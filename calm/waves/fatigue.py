@@ -49,7 +49,8 @@ YEAR = 365.25 * 86_400.0
 """[s]"""
 
 BAND = 0.15
-"""How far off deviations of tension may be, as a share: SOFS-5 is met within it at every height."""
+"""Change of the deviations of tension for `life_low` and `life_high`, as a share; the band of
+tensions measured at sea is wider (`calm.waves.measured`)."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +103,8 @@ class PieceFatigue:
     """Hold what fatigue does to a piece; without a curve, or a figure it needs, None.
 
     `life` is in years to a damage of 1; `life_low` and `life_high` with deviations of tension
-    greater and less by `BAND`. `unknown` says what is missing.
+    greater and less by `BAND`; `life_half_cut_off` and `life_twice_cut_off` with half and with
+    twice the cut-off frequency of the waves. `unknown` says what is missing.
     """
 
     index: int
@@ -114,6 +116,8 @@ class PieceFatigue:
     curve: str | None
     source: str | None
     unknown: str | None
+    life_half_cut_off: float | None = None
+    life_twice_cut_off: float | None = None
 
 
 def moments_of(omega: Floats, spectral: Floats) -> Floats:

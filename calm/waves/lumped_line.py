@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from calm.assemble import mass_in_air
 from calm.files import Cable, Chain, Component, Cylinder, Flexible
-from calm.physics.line import Floats, Integers
+from calm.physics.line import Floats, Integers, Line
 from calm.physics.seawater import REFERENCE_DENSITY
 
 if TYPE_CHECKING:
@@ -118,13 +118,13 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
 
     position = [solution.position[first]]
     elements: list[tuple[int, float, float, float]] = []  # piece, span, unstretched, tension
-    lumps: list[tuple[int, int, int]] = []  # node, piece, clamp
+    lumps: list[tuple[int, int, int, float]] = []  # node, piece, clamp, unstretched
     starts: dict[int, int] = {}
     for one in range(first, last):
         piece, clamp = int(solution.element_piece[one]), int(solution.element_clamp[one])
         starts.setdefault(piece, len(position) - 1)
         if clamp >= 0 or span[one] < SHORTEST:
-            lumps.append((len(position) - 1, piece, clamp))
+            lumps.append((len(position) - 1, piece, clamp, float(solution.cut[one])))
             continue
         flexible = isinstance(pieces[piece].component, Flexible)
         count = max(int(np.ceil(span[one] / longest)), 1) if flexible else 1
@@ -142,32 +142,19 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
     stretches = ("stiffness", "elongation", "dynamic_stiffness")
     for number, (piece, length, cut, tension) in enumerate(elements):
         component = pieces[piece].component
-        figures = _figures_of(component, 1.0 if isinstance(component, Flexible) else length)
-        scale = cut if isinstance(component, Flexible) else length
-        drags = carried.normal_drag[piece], carried.tangential_drag[piece]
-        if not isinstance(component, Flexible):
-            drags = drags[0] / length, drags[1] / length
-            figures = {name: value / length for name, value in figures.items()}
-        if carried.directional[piece]:
-            figures |= {"across_drag": drags[0], "along_drag": drags[1], "any_drag": 0.0}
-        else:
-            figures |= {"across_drag": 0.0, "along_drag": 0.0, "any_drag": drags[0]}
-        for name, value in figures.items():
-            node[name][number : number + 2] += 0.5 * scale * value
+        for name, value in _element_figures(component, carried, piece, cut).items():
+            node[name][number : number + 2] += 0.5 * value
         if isinstance(component, Cable) and not any(getattr(component, way) for way in stretches):
             inextensible[pieces[piece].label] = None
         stiffness[number] = _axial(component, tension) / (cut if cut > 0.0 else length)
     clamps = [clamp for each in pieces for clamp in each.clamps]
-    for at, piece, clamp in lumps:
-        component = clamps[clamp].component if clamp >= 0 else pieces[piece].component
-        length = float(getattr(component, "length", 0.0) or 0.0)
-        figures = _figures_of(component, length)
-        if clamp >= 0:
-            drag = float(carried.clamp_drag[clamp])
+    for at, piece, clamp, cut in lumps:
+        if clamp < 0:
+            figures = _element_figures(pieces[piece].component, carried, piece, cut)
         else:
-            share = solution.cut[first] if isinstance(component, Flexible) else 1.0
-            drag = float(carried.normal_drag[piece]) * float(share)
-        for name, value in {**figures, "any_drag": drag}.items():
+            own = _figures_of(clamps[clamp].component, _length_of(clamps[clamp].component))
+            figures = {**own, "any_drag": float(carried.clamp_drag[clamp])}
+        for name, value in figures.items():
             node[name][at] += value
 
     spring = np.diff(where, axis=0)
@@ -209,6 +196,24 @@ _NODE_FIGURES = (
     *("mass", "added_across", "added_along", "water_across", "water_along"),
     *("across_drag", "along_drag", "any_drag"),
 )
+
+
+def _element_figures(
+    component: Component, carried: Line, piece: int, cut: float
+) -> dict[str, float]:
+    """Return masses and drag of an element: a rigid piece, or this length [m] of a flexible one."""
+    flexible = isinstance(component, Flexible)
+    share, length = (cut, 1.0) if flexible else (1.0, _length_of(component))
+    across, along = float(carried.normal_drag[piece]), float(carried.tangential_drag[piece])
+    drags = {"across_drag": 0.0, "along_drag": 0.0, "any_drag": across}
+    if carried.directional[piece]:
+        drags = {"across_drag": across, "along_drag": along, "any_drag": 0.0}
+    figures = {**_figures_of(component, length), **drags}
+    return {name: share * value for name, value in figures.items()}
+
+
+def _length_of(component: Component) -> float:
+    return float(getattr(component, "length", 0.0) or 0.0)
 
 
 def _figures_of(component: Component, length: float) -> dict[str, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from math import erf, exp, pi, radians, sqrt
 from typing import NamedTuple
 
@@ -57,6 +57,22 @@ class WaveResponse:
         with np.errstate(divide="ignore", invalid="ignore"):
             period = 2.0 * pi * np.sqrt(zeroth / second)
         return np.sqrt(zeroth), period
+
+    def below(self, limit: float) -> WaveResponse:
+        """Return the response without the waves above a frequency [rad/s].
+
+        Each frequency stands for the waves to the middle between it and its neighbours.
+        """
+        middle = 0.5 * (self.omega[1:] + self.omega[:-1])
+        edges = np.concatenate([self.omega[:1], middle, self.omega[-1:]])
+        share = (limit - edges[:-1]) / np.diff(edges)
+        return replace(self, weight=self.weight * np.clip(share, 0.0, 1.0))
+
+    def joined(self, other: WaveResponse) -> WaveResponse:
+        """Return the response to the waves of both."""
+        names = [each.name for each in fields(self)]
+        both = ((getattr(self, name), getattr(other, name)) for name in names)
+        return WaveResponse(*(np.concatenate(pair) for pair in both))
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,8 @@ _MEANINGS = {
     "strumming_band.status": ("", "status of the line with that factor"),
     "other_equilibrium": (
         "",
-        "depth of the free end in the other one, and its length on the seabed",
+        "depth of the free end, length on the seabed, share of the float's buoyancy in use, and "
+        "anchor load in another equilibrium; `null` if none was found",
     ),
     "index": ("", "number of the piece in the file, from 0"),
     "use": ("", "the component's id"),

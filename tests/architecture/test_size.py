@@ -6,8 +6,8 @@ from collections import Counter
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "calm"
-MOST_LINES = 86_550
-MOST_MODULES = 330
+MOST_LINES = 86_870
+MOST_MODULES = 332
 MOST_IMPORTS = 0.083
 """Share of the lines of code that import something."""
 

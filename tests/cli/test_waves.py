@@ -55,6 +55,33 @@ def test_the_table_and_the_object(calm, buoy):
     assert told["units"]["force"] == "N"
 
 
+def test_the_band_measured_at_sea_and_other_cut_offs(calm, buoy):
+    """In words and in a table; every piece has its tensions in the object."""
+    text = calm("waves", buoy(), *SEA).out
+    told = json.loads(calm("waves", buoy(), *SEA, "--json", "-").out)
+    (state,) = told["states"]
+    top, band = state["components"][0], state["measured_over_computed"]
+    assert band == {"low": 0.57, "high": 1.0, "from_height": 1.0, "to_height": 5.0}
+    words = " ".join(text.split())
+    assert "in seas of Hs 1 to 5 m" in words
+    assert "0.57 to 1.00 times the computed one" in words
+    low, high = (top[end]["tension_std"] for end in ("measured_low", "measured_high"))
+    assert f"That range is {low:.0f} N to {high:.0f} N here at the top" in words
+    assert "outside the heights" not in words
+    for name, factor in (("half", 0.5), ("as above", 1.0), ("twice", 2.0)):
+        (row,) = [line for line in text.splitlines() if line.startswith(f"{name} ")]
+        loads = top if factor == 1.0 else top[f"{name}_cut_off"]
+        figures = row.removeprefix(name).split()
+        assert figures[0] == f"{factor * state['cut_off']:.1f}"
+        assert figures[1:4] == [
+            f"{loads[each]:.0f}" for each in ("tension_std", "tension_max", "tension_min")
+        ]
+    low_sea = " ".join(calm("waves", buoy(), "--hs", "0.4 m", "--tp", "4 s").out.split())
+    assert "This sea is outside the heights compared." in low_sea
+    chain = told["fatigue"][1]
+    assert chain["life_twice_cut_off"] <= chain["life"] <= chain["life_half_cut_off"]
+
+
 def test_slack_has_a_status_of_its_own(calm, buoy):
     shown = calm("waves", buoy(), "--hs", "6 m", "--tp", "9 s", "--json", "-")
     assert shown.code == 3
@@ -71,6 +98,14 @@ def test_a_scatter_table(calm, buoy, tmp_path):
     assert [one["share"] for one in told["states"]] == [0.75, 0.25]
     deviations = [one["components"][1]["tension_std"] for one in told["states"]]
     assert deviations[0] < deviations[1]
+    shown = calm("waves", buoy(), "--scatter", str(table)).out.splitlines()
+    for state in told["states"]:
+        (row,) = [one for one in shown if one.startswith(f"{state['significant_wave_height']}  ")]
+        top = state["components"][0]
+        ends = [top[end]["tension_std"] for end in ("measured_low", "measured_high")]
+        halved, doubled = (top[f"{each}_cut_off"]["tension_std"] for each in ("half", "twice"))
+        figures = f"{ends[0]:.0f} to {ends[1]:.0f} {halved:.0f} {doubled:.0f}".split()
+        assert row.split()[4:9] == figures
 
 
 def test_a_rope_of_unknown_stiffness_is_told(calm, buoy):
@@ -304,6 +339,12 @@ def test_the_check_judges_the_waves_of_the_file(calm, buoy, tmp_path):
     assert strength["value"] == pytest.approx(rope, rel=1e-6)
     assert strength["limit"] == pytest.approx(60e3 / 1.67)
     assert strength["state"] == "pass"
+    greatest = max(
+        (state["components"][1] for state in told["states"]), key=lambda one: one["greatest"]
+    )
+    low, high = (greatest[f"measured_{end}"]["greatest"] for end in ("low", "high"))
+    band = f"The band measured at sea (SOFS) gives {low:.0f} N to {high:.0f} N."
+    assert strength["message"].endswith(band)
     assert found["fatigue", "rope"]["state"] == "unknown"  # no curve of nylon is published
     chain = found["fatigue", "chain"]
     (life,) = [one["life"] for one in told["fatigue"] if one["label"] == "chain"]
@@ -325,3 +366,4 @@ def test_the_check_says_what_falls_slack(calm, buoy):
     assert "fail" in states
     slack = [one for one in found.values() if one["rule"] == "wave-slack"]
     assert all((one["value"] < 0.0) == (one["state"] == "fail") for one in slack)
+    assert all("The band measured at sea (SOFS) gives " in one["message"] for one in slack)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from calm.waves.buoy import Buoy, panel_response
+from tests.validation.sofs import holds_the_five_lines
 
 pytestmark = pytest.mark.peers
 
@@ -70,3 +71,8 @@ def test_pitch_by_formulas_and_by_panels(radius, draft, centre, gyration, bail, 
         moved = np.linalg.solve(whole, pushing.T[:, :, None])[:, :, 0]
         found.append(np.abs(moved[:, 1]) / (omega**2 / GRAVITY))
     assert found[0] == pytest.approx(found[1], abs=0.1, rel=0.1)
+
+
+def test_the_band_of_measured_tensions_holds_five_lines():
+    pytest.importorskip("capytaine", reason="needs the extra `peers`")
+    holds_the_five_lines("panels")

@@ -81,9 +81,9 @@ def test_the_highest_is_given_and_the_deepest_told(line, water, expected) -> Non
     solution = solve_mooring(line, water)
     assert -solution.position[0, 2] == pytest.approx(depths[0], abs=NEAR * water.depth)
     if expected == 1:
-        assert solution.other_depth is None
+        assert solution.other is None
     else:
-        assert solution.other_depth == pytest.approx(depths[-1], abs=NEAR * water.depth)
+        assert solution.other.depth == pytest.approx(depths[-1], abs=NEAR * water.depth)
 
 
 @pytest.mark.parametrize("water", [sheet(1.4, 148.0), turning(1.0, 160.0)])
@@ -108,7 +108,7 @@ def test_a_line_afloat_that_an_undercurrent_would_hold_down() -> None:
     (held,) = stays(LONG, sheet(1.1, 8.0), 150)
     solution = solve_mooring(LONG, sheet(1.1, 8.0))
     assert solution.surface
-    assert solution.other_depth == pytest.approx(held, abs=NEAR * 400.0)
+    assert solution.other.depth == pytest.approx(held, abs=NEAR * 400.0)
 
 
 def test_the_other_is_as_good_as_the_first() -> None:
@@ -116,7 +116,7 @@ def test_the_other_is_as_good_as_the_first() -> None:
     tight = solve_mooring(THREAD, water, replace(Settings(), tolerance=1e-9))
     highest, deepest = stays(THREAD, water, 150)
     assert -tight.position[0, 2] == pytest.approx(highest, abs=1e-7)
-    assert tight.other_depth == pytest.approx(deepest, abs=1e-7)
+    assert tight.other.depth == pytest.approx(deepest, abs=1e-7)
 
 
 def test_of_hanging_and_lying_the_line_lies_and_the_other_shape_is_told() -> None:
@@ -125,9 +125,9 @@ def test_of_hanging_and_lying_the_line_lies_and_the_other_shape_is_told() -> Non
     solution = solve_mooring(line, water)
     assert solution.landed
     assert solution.grounded_length == pytest.approx(5.301, abs=0.01)
-    assert (solution.other_depth, solution.other_grounded_length) == (0.0, 0.0)
+    assert (solution.other.depth, solution.other.grounded_length) == (0.0, 0.0)
     flat = replace(line, anchor_height=0.0)
-    assert solve_mooring(flat, water).other_depth is None
+    assert solve_mooring(flat, water).other is None
 
 
 JET = """
@@ -149,7 +149,14 @@ def test_both_are_in_the_result_and_in_its_warnings() -> None:
     result = calm.load("jet.yaml", text=JET).solve()
     assert result.top.depth == pytest.approx(highest, abs=NEAR * 110.0)
     other = result.to_dict()["other_equilibrium"]
-    assert other == {"depth": pytest.approx(deepest, abs=NEAR * 110.0), "grounded_length": 0.0}
+    # without weight and drag the thread brings the force on the float to the anchor
+    assert other == {
+        "depth": pytest.approx(deepest, abs=NEAR * 110.0),
+        "grounded_length": 0.0,
+        "used_buoyancy": 1.0,
+        "anchor_vertical": pytest.approx(500.0),
+        "anchor_horizontal": pytest.approx(100.0 * 3.0**2),
+    }
     said = f"Another equilibrium exists, with the free end at a depth of {deepest:.1f} m."
     assert said in result.warnings
 
@@ -175,6 +182,9 @@ def test_a_line_that_hangs_higher_than_it_lies_hangs() -> None:
     assert other == {
         "depth": pytest.approx(70.32, abs=0.01),
         "grounded_length": pytest.approx(11.2, abs=0.1),
+        "used_buoyancy": 1.0,
+        "anchor_vertical": 0.0,
+        "anchor_horizontal": pytest.approx(601.7, abs=0.1),
     }
     heights = 136.0 + solve_mooring(mooring.line, mooring.water).position[:, 2]
     assert heights.min() == pytest.approx(0.67, abs=0.01)

@@ -193,4 +193,4 @@ def test_of_several_equilibria_the_deepest() -> None:
     assert referee.others == pytest.approx([3.911, 9.711], abs=1e-3)
     solution = solve_tow(line, water, anchored)
     assert difference(solution, referee).place <= 5e-5
-    assert solution.other_depth is not None
+    assert solution.other is not None

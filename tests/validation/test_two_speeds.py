@@ -43,6 +43,10 @@ def digits(solve: Callable[[], Solution]) -> dict[str, Any]:
     except NoEquilibrium as failure:
         return {"status": failure.status, "message": str(failure)}
     values = {column.name: getattr(solution, column.name) for column in fields(solution)}
+    if (marched := values.pop("marched")) is not None:
+        values |= {
+            f"marched {column.name}": getattr(marched, column.name) for column in fields(marched)
+        }
     return {
         name: value.tobytes() if isinstance(value, np.ndarray) else value
         for name, value in values.items()

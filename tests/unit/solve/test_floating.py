@@ -89,7 +89,9 @@ def test_wind_alone_tilts_the_line_in_still_water():
     slack = moored(101.0, {"wind": (15.0, 0.0)}, weight=0.3)
     solution = solve_mooring(slack, water(100))
     assert solution.surface
-    assert solution.force[-1, 0] == pytest.approx(solution.carried.push_east[0], rel=1e-12)
+    pull = solution.marched.force[-1, 0]
+    assert pull == pytest.approx(solution.carried.push_east[0], rel=1e-12)
+    assert solution.force[-1, 0] == pytest.approx(pull, rel=1e-7)
     assert solution.force[-1, 0] > 0
     with pytest.raises(NoEquilibrium) as caught:
         solve_mooring(moored(101.0, weight=0.3), water(100))
@@ -192,12 +194,12 @@ def test_the_way_under_water_is_found_all_along(cable, more):
         assert fall <= 0.25  # a quarter of the ball, in steps of 0.01 m/s
         assert change <= 0.05
         return
-    assert any(s.other_depth is not None for s in solutions)
+    assert any(s.other is not None for s in solutions)
     leaps = np.flatnonzero(np.diff(depth) > 0.25)
     assert len(leaps) <= 1
     for before, after in ((solutions[i], solutions[i + 1]) for i in leaps):
         assert before.surface and not after.surface
-        assert before.other_depth == pytest.approx(-after.position[0, 2], abs=0.3)
+        assert before.other.depth == pytest.approx(-after.position[0, 2], abs=0.3)
 
 
 def test_a_light_goes_under_with_its_float():
@@ -215,7 +217,7 @@ def test_a_spar_is_pulled_under_without_a_leap():
     riding = Floating(cylindrical_hull(0.48, 3.0), 1025.0 * GRAVITY * 0.55 - 4000.0, 4000.0)
     solutions = swept(replace(line(spar, rope(98.0, weight=0.5)), floating=riding), 0.8, 1.2)
     assert not solutions[-1].surface
-    assert all(s.other_depth is None for s in solutions)
+    assert all(s.other is None for s in solutions)
     fall, change = steps(solutions)
     assert fall <= 0.12  # in steps of 0.01 m/s
     assert change <= 0.03

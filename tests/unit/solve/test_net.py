@@ -16,6 +16,7 @@ from scipy.optimize import brentq
 
 import calm.solve.net as net_module
 import calm.solve.net_march as net_march
+import calm.solve.net_problem as net_problem
 from calm.errors import NoEquilibrium
 from calm.physics.hull import Floating, spherical_hull
 from calm.physics.line import Floats
@@ -356,7 +357,7 @@ def test_the_audit_sees_a_moved_node(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def spoilt(net: Any, i: int, x: Any, how: Any) -> int:
         ending = marched(net, i, x, how)
-        net.lines.work.records[i][how.record][0][int(net.state[i][net_march.COUNT]) // 2] += 1e-3
+        net.lines.work.records[i][how.record][0][int(net.state[i][net_problem.COUNT]) // 2] += 1e-3
         return ending
 
     monkeypatch.setattr(net_march, "march_leg", spoilt)

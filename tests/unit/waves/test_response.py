@@ -15,7 +15,7 @@ from calm.shipped import shipped_folder
 from calm.waves.analysis import analyse
 from calm.waves.buoy import END_LOSS, Buoy, buoy_of
 from calm.waves.fatigue import greatest_of, passing_probability
-from calm.waves.lumped_line import LumpedLine, _axial, lumped_line
+from calm.waves.lumped_line import SHORTEST, LumpedLine, _axial, lumped_line
 from calm.waves.response import (
     Waves,
     _Afloat,
@@ -137,6 +137,23 @@ def test_the_swing_of_a_shipped_mooring_by_hand():
     push[:, 0, 0] = 1.0
     motion = _solved(_undamped(line, omega), None, omega, nothing, push, np.zeros((n, 3, 3)))
     assert omega[np.abs(motion[:, 0, 0]).argmax()] == pytest.approx(expected, rel=0.02)
+
+
+def test_a_short_element_adds_no_more_than_its_length():
+    """The chain above the release has elements of 2 cm: they added the mass of a metre each."""
+    mooring = load(f"{shipped_folder('lines')}/tidal-adcp.yaml")
+    solution = mooring.equilibrium(mooring.water)
+    span = np.linalg.norm(np.diff(solution.position, axis=0), axis=1)
+    assert (span[solution.element_clamp < 0] < SHORTEST).any()
+    line = lumped_line(mooring, solution, 1.0)
+    mass = 1025.0 * pi * 1.42**3 / 6.0 - 4511.0 / 9.80665  # of the float, from its lift
+    drag = 0.0
+    for piece in mooring.file.pieces[:-1]:
+        metres = piece.length if piece.component.kind == "chain" else 1.0
+        mass += piece.component.mass * metres if piece.index else 0.0
+        drag += float(solution.carried.normal_drag[piece.index]) * metres
+    assert line.mass.sum() == pytest.approx(mass, rel=1e-3)
+    assert (line.across_drag + line.any_drag).sum() == pytest.approx(drag, rel=1e-2)
 
 
 def test_a_sea_that_is_all_but_flat_leaves_the_static_line():

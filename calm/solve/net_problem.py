@@ -1,0 +1,219 @@
+"""A net of legs in numbers, as the laws that march and close it take it."""
+
+from collections.abc import MutableSequence, Sequence
+from math import inf
+from typing import Any, NamedTuple
+
+from calm.physics.hull import SurfaceFloat
+from calm.physics.line import Bed, Record, off_bed
+from calm.physics.profile import Sea
+from calm.physics.strumming import with_beat
+from calm.physics.track import Course
+from calm.solve.problem import LineProblem, SearchArrays
+
+STANDING, HANGING_DOWN, PULLED, ANCHORED = range(4)
+"""Legs marched from a free upper end, from a free lower end, from an upper end that is held or at a
+node, and from the seabed up to such an end."""
+(
+    STAGE,
+    GROUNDED,
+    SHARE,
+    MARCHES,
+    COUNT,
+    HUNG,
+    EAST,
+    NORTH,
+    LIES,
+    SLACK,
+    FREQUENCY,
+    LACKING,
+    YIELD,
+    COARSE_COUNT,
+    COARSE_HUNG,
+    COARSE_STAGE,
+) = range(16)
+"""State of a leg after its last march: the stage where it comes down on the seabed or -1, its length
+there [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and those of
+them that hang; of an anchored leg the way from its touchdown to its upper end to the east and
+north [m], how far the rest reaches along the seabed [m], and how much of that it does not need to
+come to its anchor [m]; the frequency of its cables [Hz], what that lacks of the one that is shed
+[Hz], and the slope of this [-]; its nodes, those that hang and its stage on coarse segments."""
+OF_LEG = 16
+OUT = 7
+"""Results of a march: way east and north, height and force where it came out, or of an anchored leg
+by how much it misses its anchor; then by how much it begins off the seabed."""
+
+
+class LegRow(NamedTuple):
+    """A leg in numbers.
+
+    Attributes
+    ----------
+    kind, first, own : how it is marched; the first of its own unknowns and how many it has
+    start, end : numbers of the nodes at its upper and at its lower end (of one that hangs down from
+        its upper end the other way round); -1 for none
+    seabed : height of the seabed below its anchor; -inf where it has none [m]
+    rise : height of its anchor's top above that [m]
+    lifts : vertical pull on the anchor from which on its end is at the top [N], see `end_height`
+    deeper_east, deeper_north : as of `Water`, below the leg
+    longest : segment at an angle step of 1° [m]
+    stands : change of its unknown from a float that is immersed to one out of the water [m]
+    highest : how high it may come [m]
+    rides : as in `Limits`
+    sheds : Strouhal number over diameter at its end, where vortices set the frequency of a leg that
+        strums [1/m]; 0 of one that does not
+    past_east, past_north, past_up : current there [m/s]
+    weight : of all its pieces, up or down, the scale of a leg that hardly pulls [N]
+    stages, landing, cables, surfacing, rows, pieces : how many there are of each, see `Course`
+    """
+
+    kind: int
+    first: int
+    own: int
+    start: int
+    end: int
+    seabed: float
+    rise: float
+    lifts: float
+    deeper_east: float
+    deeper_north: float
+    longest: float
+    stands: float
+    highest: float
+    rides: int
+    sheds: float
+    past_east: float
+    past_north: float
+    past_up: float
+    weight: float
+    stages: int
+    landing: int
+    cables: int
+    surfacing: int
+    rows: int
+    pieces: int
+
+
+class NetProblem(NamedTuple):
+    """A net to be closed.
+
+    Attributes
+    ----------
+    lines : the legs in one: what is of them has a row for each, as long as the longest needs
+    up : the courses of anchored legs from below, see `calm.solve.net_touchdown`
+    cuts : room for the segments of such a leg
+    held : (·, 6) places of the ends of each leg that are held, where its march begins and ends [m]
+    state : numbers of each leg: `STAGE` and those after it
+    passed : (·, `OUT`) what each march came out with
+    first, last : node of each piece's ends
+    found, kept, slopes, way : what is left, by shares of `rows`, now and before, its slopes by
+        shares of `scale`, and the step that they ask for
+    trial, paper, order : room to find it
+    coarse, better : the unknowns on coarse segments, and as extrapolated
+    scale : of the unknowns; that of the forces on a leg is its own
+    errors : of depths [m] and tensions [N]
+    nodes_at : first unknown of the nodes
+    length, force : of the longest leg [m]; a typical one [N]
+    span : what errors of depths are measured by [m]
+    """
+
+    legs: Sequence[LegRow]
+    lines: Any
+    up: Any
+    cuts: MutableSequence[float]
+    held: Sequence[Sequence[float]]
+    state: Sequence[MutableSequence[float]]
+    passed: Sequence[MutableSequence[float]]
+    first: Sequence[MutableSequence[int]]
+    last: Sequence[MutableSequence[int]]
+    found: MutableSequence[float]
+    kept: MutableSequence[float]
+    slopes: Sequence[MutableSequence[float]]
+    way: MutableSequence[float]
+    trial: MutableSequence[float]
+    paper: Sequence[MutableSequence[float]]
+    order: MutableSequence[int]
+    coarse: MutableSequence[float]
+    better: MutableSequence[float]
+    scale: MutableSequence[float]
+    rows: Sequence[float]
+    errors: MutableSequence[float]
+    nodes_at: int
+    length: float
+    force: float
+    span: float
+
+
+class Marching(NamedTuple):
+    """Tell how all legs are marched: in which water, at which angle step, on which cuts, given or
+    chosen now, and where they are recorded.
+    """
+
+    sea: Sea
+    step: float
+    cuts: int
+    given: bool
+    record: int
+
+
+def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
+    """A leg as a line."""
+    leg, lines, own = net.legs[i], net.lines, net.lines.afloat[i]
+    course, work = lines.course, lines.work
+    course = Course(
+        course.stages[i][: leg.stages], course.loads[i], course.cables[i][: leg.cables],
+        course.knots[i], with_beat(course.vibration, net.state[i][FREQUENCY]), leg.landing,
+    )  # fmt: skip
+    afloat = SurfaceFloat(
+        own.form, own.height, own.area, own.weight, own.lift, own.surface_drag, own.wind_east,
+        own.wind_north, own.wind_area, own.wind_cd,
+    )  # fmt: skip
+    work = SearchArrays(
+        work.left[i], work.chosen[i], work.halved[i], work.counts[i], work.records[i],
+        work.shares[i], work.samples[i], work.even[i], work.elements[i], work.found[i],
+    )  # fmt: skip
+    return LineProblem(
+        course, sea, lines.loads[i], net.first[i], lines.surfacing[i][: leg.surfacing], afloat,
+        lines.hull[i][: leg.rows], lines.limits, lines.starts[i], work,
+    )  # fmt: skip
+
+
+def bed_of(net: NetProblem, i: int) -> Bed:
+    """The seabed below a leg."""
+    leg, bed = net.legs[i], net.lines.limits.bed
+    return Bed(leg.deeper_east, leg.deeper_north, bed.friction, bed.excess)
+
+
+def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: int) -> float:
+    """Height of a node of a leg above the plane of the seabed through its anchor [m]; of one
+    without, through the origin."""
+    end, level = int(net.state[i][COUNT]) - 1, net.legs[i].seabed
+    east, north = record[0][n] - record[0][end], record[1][n] - record[1][end]
+    if level == -inf:
+        level, place = -net.lines.limits.depth, place_of(net, i, x, 1)
+        east, north = east + place[0], north + place[1]
+    return off_bed(bed_of(net, i), east, north, record[2][n] - level)
+
+
+def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[float, float, float]:
+    """Return where the record of a leg is to begin (0) or to end (1) [m]."""
+    leg, held = net.legs[i], net.held[i]
+    node = leg.end if end else leg.start
+    if node >= 0:
+        k = net.nodes_at + 3 * node
+        return x[k], x[k + 1], x[k + 2]
+    return held[3 * end], held[3 * end + 1], held[3 * end + 2]
+
+
+def end_height(leg: LegRow, lies: bool, pull: float) -> float:
+    """Height of the lower end of an anchored leg [m], by the vertical pull there [N].
+
+    A leg that lies ends on the seabed, one that pulls upwards at the top of its anchor. Where it
+    lifts less than a piece of itself as long as the anchor is high, its end is in between: without
+    a jump, so that neither state has to be guessed.
+    """
+    if lies:
+        return leg.seabed
+    return leg.seabed + leg.rise * (
+        min(max(pull / leg.lifts, 0.0), 1.0) if leg.lifts > 0.0 else 1.0
+    )

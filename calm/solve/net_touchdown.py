@@ -1,0 +1,295 @@
+"""An anchored leg of a net, marched from its touchdown up.
+
+Unknown is the force on its lower end: horizontally the pull at the touchdown; vertically the weight
+that the seabed bears or, where that is negative, the pull on the anchor. From the touchdown up the
+march is stable even where nothing pulls there. Then the leg is slack: what lies on the seabed is
+longer than the way to the anchor.
+"""
+
+from collections.abc import Sequence
+from math import degrees, inf, sqrt
+
+from calm.physics.compiled import set_row
+from calm.physics.line import (
+    ENDS,
+    GOES_ON,
+    NO_BALANCE,
+    NO_ROOM,
+    NO_SEGMENT,
+    RUNS_OFF,
+    SEGMENT,
+    SPLITS,
+    Record,
+    State,
+    off_bed,
+    write_element,
+)
+from calm.physics.passing import FAILURE, FX, FY, FZ, NODES, USED, How, Z, cut_evenly, pass_line
+from calm.physics.profile import interval_at
+from calm.physics.rod_axis import rod_axis
+from calm.physics.seabed import lay_line
+from calm.physics.track import CABLE, ROD, CableStretch, Course, Load, Stage
+from calm.solve.net_problem import (
+    COUNT,
+    EAST,
+    GROUNDED,
+    HUNG,
+    LIES,
+    MARCHES,
+    NORTH,
+    SLACK,
+    STAGE,
+    Marching,
+    NetProblem,
+    bed_of,
+    end_height,
+    leg_of,
+    place_of,
+)
+from calm.solve.problem import HALVED, OTHER, SearchArrays
+
+NO_PULL = 1e-9
+"""Pull at a touchdown, as a share of the scale of the leg's forces, that counts as none."""
+
+
+def course_from_below(course: Course) -> Course:
+    """The course of a leg below a point that is pulled at, from its lower end up and with such a
+    point there. Pieces keep their numbers."""
+    stages, loads, cables = [course.stages[0]], [course.loads[0]], []
+    for stage in reversed(course.stages[1:]):
+        if stage.kind == CABLE:
+            stages.append(stage._replace(first=len(cables)))
+            cables.append(course.cables[stage.first])
+            continue
+        stages.append(stage._replace(first=len(loads)))
+        (own, *others) = course.loads[stage.first : stage.first + stage.size]
+        for load in (own, *reversed(others)):
+            at, lever = stage.length - load.at, 1.0 - load.lever
+            loads.append(load._replace(at=at, lever=lever))
+    return Course(stages, loads, cables, course.knots, course.vibration, 0)
+
+
+def weight_of(course: Course, stage: Stage, excess: float) -> float:
+    """Weight of a stage in the water above the seabed [N]."""
+    if stage.kind == CABLE:
+        cable = course.cables[stage.first]
+        return -(cable.buoyancy + excess * cable.volume) * cable.length
+    weight = 0.0
+    for k in range(stage.first, stage.first + stage.size):
+        weight -= course.loads[k].buoyancy + excess * course.loads[k].volume
+    return weight
+
+
+def pull_of(up: float, east: float, north: float) -> Load:
+    """A load without a body: a pull [N]."""
+    return Load(0, -1, 0.0, 0.5, 0.0, up, 0.0, 0.0, 0.0, 0, 0.0, east, north, 0.0, 0.0)
+
+
+def of_length(cable: CableStretch, length: float) -> CableStretch:
+    """The same cable with another length [m]."""
+    return CableStretch(
+        cable.piece, length, cable.buoyancy, cable.volume, cable.normal_drag,
+        cable.tangential_drag, cable.compliance, cable.thinning, cable.friction,
+        cable.first_knot, cable.end_knot, cable.diameter,
+    )  # fmt: skip
+
+
+def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
+    """March an anchored leg from its touchdown, or its anchor, up; how that ended.
+
+    Its record goes down the leg as those of other legs: the pull at its upper end, what hangs, what
+    lies on the seabed.
+    """
+    leg, state, problem, bed = net.legs[i], net.state[i], leg_of(net, how.sea, i), bed_of(net, i)
+    stages, loads, cables = net.up.stages[i], net.up.loads[i], net.up.cables[i][: leg.cables]
+    knots, vibration = net.up.knots[i], problem.course.vibration
+    work, at = problem.work, leg.first
+    east, north, borne = x[at], x[at + 1], x[at + 2]
+    if east * east + north * north <= NO_PULL * NO_PULL * net.scale[at] * net.scale[at]:
+        east = north = 0.0
+    along = -bed.east * east - bed.north * north  # the pull at a touchdown is along the seabed
+    lowest = leg.stages - max(leg.landing, 1)  # the highest stage, from below, that may lie
+    lies = borne > 0.0 and lowest > 0
+    height = x[at + 3] if leg.own > 3 else end_height(leg, lies, -borne)
+    level = interval_at(how.sea.levels, -height, 0)
+    up, stage, first, hanging, whole = borne, 1, 1, 0.0, -1.0
+    if lies:
+        weight, left = 0.0, borne
+        while True:
+            if stage > lowest:
+                return RUNS_OFF
+            here = stages[stage]
+            weight = weight_of(Course(stages, loads, cables, knots, vibration, 0), here, bed.excess)
+            if left < weight:
+                break
+            left -= weight
+            stage += 1
+        first = stage
+        if here.kind == CABLE:
+            up, whole = 0.0, cables[here.first].length
+            hanging = whole * (1.0 - left / weight)
+            set_row(cables, here.first, of_length(cables[here.first], hanging))
+        else:
+            up, hanging = left, inf  # the seabed bears on its lower end
+            if here.kind == ROD:
+                below: State = (0.0, 0.0, height, east, north, along + up, 1.0, level)
+                tx, ty, tz = rod_axis(here, loads, how.sea, below, problem.limits.near)
+                if tz == NO_BALANCE or off_bed(bed, tx, ty, tz) <= 0.0:  # it tips over
+                    first, up, hanging = stage + 1, left - weight, 0.0
+        up += along
+    set_row(loads, 0, pull_of(up, east, north))
+    replaced = stages[first - 1]
+    kept = Stage(replaced.kind, replaced.first, replaced.size, replaced.length)
+    set_row(stages, first - 1, Stage(ROD, 0, 1, 0.0))
+    course = Course(stages[first - 1 : leg.stages], loads, cables, knots, vibration, 0)
+    failure = pass_hung(net, i, course, how, work, -height)
+    set_row(stages, first - 1, kept)
+    if whole >= 0.0:
+        set_row(cables, stages[stage].first, of_length(cables[stages[stage].first], whole))
+    if failure != GOES_ON:
+        return failure
+    record, left_by, passed = work.records[how.record], work.left, net.passed[i]
+    nodes, recorded = int(left_by[NODES]), how.record != OTHER
+    state[EAST], state[NORTH] = record[0][nodes - 1], record[1][nodes - 1]
+    state[STAGE], state[HUNG], state[COUNT], state[GROUNDED], state[LIES] = -1, nodes, nodes, 0, 0
+    passed[2] = left_by[Z]
+    passed[3], passed[4], passed[5] = left_by[FX], left_by[FY], left_by[FZ]
+    if recorded:
+        set_row(problem.course.loads, 0, pull_of(-passed[5], -passed[3], -passed[4]))
+        turn_round(record, nodes)
+    if lies:
+        foot: State = (0.0, 0.0, height, -east, -north, -along, -1.0, level)
+        end, count, grounded = lay_line(
+            problem.course, bed, foot, leg.stages - stage, hanging, record, recorded, nodes
+        )
+        state[STAGE], state[COUNT], state[GROUNDED] = leg.stages - stage, count, grounded
+        state[LIES] = sqrt(end[0] * end[0] + end[1] * end[1])
+        if recorded:
+            record[3][nodes - 1], record[4][nodes - 1] = -east, -north
+            record[5][nodes - 1] = -along
+    meet(net, i, x)
+    if recorded and state[SLACK] > 0.0:
+        lay_loosely(net, i, x, record)
+    return GOES_ON
+
+
+def pass_hung(
+    net: NetProblem, i: int, course: Course, how: Marching, work: SearchArrays, depth: float
+) -> int:
+    """March the part of an anchored leg that hangs, on its part of the cuts; how that ended.
+
+    Cuts are those of whole cables from below. Given ones are as long, or as short, as what hangs of
+    their cable asks for, so that the march is a smooth function of that.
+    """
+    leg, cuts = net.legs[i], net.cuts
+    of_step, counts = work.chosen, work.counts[how.cuts]
+    if how.cuts == HALVED:
+        of_step = work.halved
+    reach, near = degrees(how.step) * leg.longest, net.lines.limits.near
+    skipped = leg.cables
+    for stage in range(len(course.stages) - 1, -1, -1):
+        if course.stages[stage].kind == CABLE:
+            skipped = course.stages[stage].first
+    used = 0
+    for k in range(skipped):
+        if how.given:
+            used += counts[k]
+            continue
+        counts[k] = 0
+        used = cut_evenly(of_step, counts, k, used, course.cables[k].length, reach)
+    if how.given:
+        fill, read = 0, used
+        for k in range(skipped, leg.cables):
+            whole = 0.0
+            for m in range(read, read + counts[k]):
+                whole += of_step[m]
+            length = course.cables[k].length
+            for m in range(read, read + counts[k]):
+                share = of_step[m] / whole if whole > 0.0 else 1.0 / counts[k]
+                cuts[fill] = length * share
+                fill += 1
+            read += counts[k]
+    asked = How(how.step, reach, near, len(course.stages), False, bed_of(net, i), how.given, True)
+    record, left = work.records[how.record], work.left
+    pass_line(course, how.sea, asked, depth, 0.0, cuts, counts, record, left)
+    net.state[i][MARCHES] += 1.0
+    if left[FAILURE] != GOES_ON:
+        return int(left[FAILURE])
+    if not how.given:
+        chosen = int(left[USED])
+        if used + chosen > len(of_step):
+            return NO_ROOM
+        for m in range(chosen):
+            of_step[used + m] = cuts[m]
+    return GOES_ON
+
+
+def turn_round(record: Record, nodes: int) -> None:
+    """Turn the record of a march up into one down the leg, which begins with the pull at its upper
+    end in place of that at its lower one."""
+    for k in range(6):
+        a, b = 1, nodes - 1
+        column = record[k]
+        while a < b:
+            column[a], column[b] = column[b], column[a]
+            a, b = a + 1, b - 1
+        if k >= 3:
+            for n in range(1, nodes):
+                column[n] = -column[n]
+        column[0] = column[1] if k < 3 else 0.0
+    for k in range(6, SEGMENT + 1):
+        a, b = 2, nodes - 1
+        column = record[k]
+        while a < b:
+            column[a], column[b] = column[b], column[a]
+            a, b = a + 1, b - 1
+    ends = record[SEGMENT]  # a part of a split segment ends it now if it began it
+    for n in range(2, nodes):
+        if ends[n] != NO_SEGMENT:
+            ends[n] = SPLITS if n + 1 < nodes and ends[n + 1] == SPLITS else ENDS
+    write_element(record, 1, 0, -1, 0.0, 0.0)
+
+
+def meet(net: NetProblem, i: int, x: Sequence[float]) -> None:
+    """Write by how much a leg misses its anchor, east and north, and begins off the seabed.
+
+    What lies on the seabed leads straight to the anchor where it is pulled; where it is not it may
+    be longer than the way. Both at once: the way d from the touchdown to the anchor, at most as
+    long as what lies reaches, r, has the direction of the pull h, or there is no pull. So d is the
+    projection of d + ρh on the disc of radius r, whatever ρ (Alart and Curnier's form of contact).
+    """
+    leg, state, passed, bed = net.legs[i], net.state[i], net.passed[i], bed_of(net, i)
+    at, reach = leg.first, state[LIES]
+    to_east, to_north, _ = place_of(net, i, x, 1)
+    from_east, from_north, _ = place_of(net, i, x, 0)
+    east = to_east - from_east + state[EAST]
+    north = to_north - from_north + state[NORTH]
+    share, e, n = 0.0, east, north
+    if reach > 0.0:
+        per_force = net.length / net.scale[at]
+        e, n = e + per_force * x[at], n + per_force * x[at + 1]
+        share = min(reach / max(sqrt(e * e + n * n), 1e-300), 1.0)
+    passed[0], passed[1] = share * e - east, share * n - north
+    state[SLACK] = reach - sqrt(east * east + north * north) if share == 1.0 else 0.0
+    passed[6] = 0.0
+    if leg.own > 3:
+        lies = state[STAGE] >= 0.0
+        passed[6] = x[at + 3] - end_height(leg, lies, -x[at + 2])
+        if lies:
+            passed[6] -= bed.east * east + bed.north * north
+
+
+def lay_loosely(net: NetProblem, i: int, x: Sequence[float], record: Record) -> None:
+    """Draw what lies of a slack leg: straight to its anchor, as closely as it has to."""
+    state, hung, count = net.state[i], int(net.state[i][HUNG]), int(net.state[i][COUNT])
+    foot, reach = hung - 1, max(net.state[i][LIES], 1e-300)
+    to_east, to_north, _ = place_of(net, i, x, 1)
+    from_east, from_north, _ = place_of(net, i, x, 0)
+    east, north = to_east - from_east + state[EAST], to_north - from_north + state[NORTH]
+    down = net.legs[i].seabed - record[2][foot]
+    for n in range(hung, count):
+        dx, dy = record[0][n] - record[0][foot], record[1][n] - record[1][foot]
+        share = sqrt(dx * dx + dy * dy) / reach
+        record[0][n] = record[0][foot] + share * east
+        record[1][n] = record[1][foot] + share * north
+        record[2][n] = record[2][foot] + share * down

@@ -1,0 +1,233 @@
+"""Tensions and motions of a mooring in one sea, with other cut-offs and the measured band."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from math import degrees
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from calm.physics.line import Floats
+from calm.records.sea_states import SeaState
+from calm.waves.buoy import Buoy
+from calm.waves.fatigue import greatest_of, moments_of, passing_probability
+from calm.waves.lumped_line import LumpedLine
+from calm.waves.measured import MeasuredBand, measured_band
+from calm.waves.response import WaveResponse
+
+if TYPE_CHECKING:
+    from calm.case import Mooring
+    from calm.solve import Solution
+
+
+@dataclass(frozen=True)
+class PieceLoads:
+    """Tensions of a piece in a sea [N].
+
+    `tension_max` and `tension_min` are the most probable extremes of the duration at the upper end,
+    `greatest` and `least` those anywhere along the piece. `slack_probability` is the probability
+    that the upper end falls slack in the duration.
+    """
+
+    tension_std: float
+    tension_max: float
+    tension_min: float
+    slack_probability: float
+    greatest: float
+    least: float
+
+
+@dataclass(frozen=True)
+class PieceInWaves:
+    """A piece of the line in a sea: tensions as in `PieceLoads`, motions [m], [degrees].
+
+    Attributes
+    ----------
+    half_cut_off, twice_cut_off : tensions with half and with twice the cut-off frequency
+    measured_low, measured_high : tensions at the ends of the band measured at sea; None without a
+        band
+    """
+
+    index: int
+    label: str
+    tension_mean: float
+    tension_std: float
+    tension_max: float
+    tension_min: float
+    zero_crossing_period: float
+    slack_probability: float
+    heave_std: float
+    tilt_std: float
+    greatest: float
+    least: float
+    half_cut_off: PieceLoads
+    twice_cut_off: PieceLoads
+    measured_low: PieceLoads | None
+    measured_high: PieceLoads | None
+
+
+PieceMoments = tuple[tuple[float, Floats], ...]
+"""Mean tension [N] and spectral moments m0, m1, m2, m4 of each piece, at the spring with the
+greatest deviation."""
+
+
+class CutOffs(NamedTuple):
+    """Responses to a sea up to its cut-off frequency, to half and to twice that frequency."""
+
+    full: WaveResponse
+    half: WaveResponse
+    twice: WaveResponse
+
+
+@dataclass(frozen=True)
+class MooringInSea:
+    """A mooring in a sea: its pieces down the line, and the labels of those that fall slack.
+
+    Attributes
+    ----------
+    cut_off : frequency above which there are no waves [rad/s]
+    band : measured over computed standard deviations of tension; None for a line below the surface
+        and for a float whose response is given
+    follower_std : standard deviation of the tension below a float that follows every wave [N], only
+        in the highest of several seas; None for a line below the surface
+    pitch_std : standard deviation of the pitch of the float [degrees]; None if it is not known
+    moments : of the pieces, with the cut-off frequency, with half and with twice of it
+    spectrum : of the tension at the top, N² s/rad at rad/s
+    along : depth [m], mean, standard deviation and greatest tension down the line [N]
+    """
+
+    sea: SeaState
+    components: tuple[PieceInWaves, ...]
+    slack: tuple[str, ...]
+    cut_off: float
+    band: MeasuredBand | None
+    follower_std: float | None
+    pitch_std: float | None
+    moments: tuple[PieceMoments, ...]
+    spectrum: tuple[Floats, Floats]
+    along: tuple[Floats, Floats, Floats, Floats]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the JSON object of the sea: SI units and degrees."""
+        return {
+            "significant_wave_height": self.sea.significant_height,
+            "peak_period": self.sea.peak_period,
+            "share": self.sea.share,
+            "components": [asdict(one) for one in self.components],
+            "slack": list(self.slack),
+            "follower_std": self.follower_std,
+            "pitch_std": self.pitch_std,
+            "cut_off": self.cut_off,
+            "measured_over_computed": None if self.band is None else asdict(self.band),
+        }
+
+
+class _Tensions:
+    """Statistics of the tension in a line: along its springs, and at the upper ends of pieces."""
+
+    def __init__(self, line: LumpedLine, response: WaveResponse, duration: float) -> None:
+        spectral = np.abs(response.pull) ** 2 * response.weight[:, None]
+        self.moments = moments_of(response.omega, spectral)
+        self.deviation, period = response.moments(response.pull)
+        pairs = zip(self.deviation, period, strict=True)
+        self.departs = np.array([greatest_of(*each, duration) for each in pairs])
+        self.at_ends, self.periods = response.moments(line.upper_ends(response.pull))
+        self.mean, self.duration = line.tension, duration
+
+    def loads(self, piece: int, mean: float, own: slice, factor: float = 1.0) -> PieceLoads:
+        """Return the tensions of a piece with these springs, its deviations times a factor."""
+        deviation, apart = factor * float(self.at_ends[piece]), float(self.periods[piece])
+        most = greatest_of(deviation, apart, self.duration)
+        departs = factor * self.departs[own]
+        return PieceLoads(
+            tension_std=deviation,
+            tension_max=mean + most,
+            tension_min=mean - most,
+            slack_probability=passing_probability(mean, deviation, apart, self.duration),
+            greatest=float((self.mean[own] + departs).max(initial=mean + most)),
+            least=float((self.mean[own] - departs).min(initial=mean - most)),
+        )
+
+    def most_moved(self, mean: float, own: slice) -> tuple[float, Floats]:
+        """Return mean and moments at the spring with the greatest deviation, 0 on the seabed."""
+        if own == slice(0):
+            return mean, np.zeros(4)
+        at = own.start + int(self.deviation[own].argmax())
+        return float(self.mean[at]), self.moments[:, at]
+
+
+def mooring_in_sea(
+    mooring: Mooring,
+    solution: Solution,
+    line: LumpedLine,
+    buoy: Buoy | None,
+    sea: SeaState,
+    responses: CutOffs,
+    duration: float,
+    follower: float | None,
+) -> MooringInSea:
+    """Return tensions and motions of the pieces of a mooring from its responses to a sea.
+
+    Parameters
+    ----------
+    duration : for the greatest and the least tension [s]
+    follower : `follower_std` of the result
+    """
+    response = responses.full
+    pitches = buoy is not None and buoy.profile is not None
+    way = None if buoy is None else buoy.heaves
+    band = None if way is None else measured_band(sea.significant_height, way)
+    cases = [_Tensions(line, each, duration) for each in responses]
+    full, half, twice = cases
+    motion, _ = response.moments(response.motion)
+    lean, _ = response.moments(line.upper_ends(line.turned(response.motion)))
+    pitch = degrees(float(response.moments(response.pitch)[0])) if pitches else None
+    rows: list[PieceInWaves] = []
+    moments: list[list[tuple[float, Floats]]] = [[] for _ in cases]
+    for piece in mooring.file.pieces[:-1]:
+        at, node = piece.index, int(line.piece_node[piece.index])
+        # nothing pulls at the upper end of what floats on top
+        on_top = at < line.top_pieces
+        end = (line.top_pieces - 1, 1) if on_top else (at, 0)
+        mean, own = float(solution.tension[int(solution.piece_nodes[end])]), _springs(line, at)
+        for each, case in zip(moments, cases, strict=True):
+            each.append(case.most_moved(mean, own))
+        tilt = degrees(float(np.linalg.norm(lean[at])))
+        rows.append(
+            PieceInWaves(
+                index=at,
+                label=piece.label,
+                tension_mean=mean,
+                zero_crossing_period=float(full.periods[at]),
+                heave_std=float(motion[node, 2]),
+                tilt_std=pitch if pitch is not None and on_top else tilt,
+                half_cut_off=half.loads(at, mean, own),
+                twice_cut_off=twice.loads(at, mean, own),
+                measured_low=full.loads(at, mean, own, band.low) if band else None,
+                measured_high=full.loads(at, mean, own, band.high) if band else None,
+                **asdict(full.loads(at, mean, own)),
+            )
+        )
+    depth = -0.5 * (line.position[1:, 2] + line.position[:-1, 2])
+    return MooringInSea(
+        sea,
+        tuple(rows),
+        slack=tuple(row.label for row in rows if row.least < 0.0 < row.tension_std),
+        cut_off=float(response.omega[-1]),
+        band=band,
+        follower_std=follower,
+        pitch_std=pitch,
+        moments=tuple(tuple(each) for each in moments),
+        spectrum=(response.omega, np.abs(response.pull[:, 0]) ** 2 * sea.density(response.omega)),
+        along=(depth, line.tension, full.deviation, line.tension + full.departs),
+    )
+
+
+def _springs(line: LumpedLine, piece: int) -> slice:
+    """Return the springs of a piece, an empty slice on the seabed."""
+    first = int(line.piece_spring[piece])
+    if first < 0:
+        return slice(0)
+    below = line.piece_spring[line.piece_spring > first]
+    return slice(first, int(below.min()) if len(below) else len(line.tension))
