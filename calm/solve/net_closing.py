@@ -36,7 +36,8 @@ WORTH = 4e-5
 more, `MOST_HALVINGS` times."""
 MOST_HALVINGS = 3
 CHOICES = 2
-"""How often segments are chosen: the first time where a shape only about is."""
+"""How often segments are chosen: the first time where a shape only about is. The root of a single
+unknown is found that well beforehand."""
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
@@ -203,7 +204,7 @@ def close_on(
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
     """Close a net that about is to the last digits, on segments that are short enough."""
     for _ in range(MOST_HALVINGS):
-        for _ in range(CHOICES):
+        for _ in range(CHOICES if len(x) > 1 else 1):
             choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
             failure = left_over(net, x, choosing, False)
             if failure != GOES_ON:

@@ -18,6 +18,7 @@ from calm.solve.net_problem import (
     FREQUENCY,
     GROUNDED,
     HUNG,
+    LACKING,
     MARCHES,
     OUT,
     PULLED,
@@ -40,9 +41,9 @@ JUMP = 1e-6
 """Share by which an unknown is moved for the slopes."""
 LEAST_PULL = 1e-3
 """Pull of a leg, as a share of its weight, below which that is the scale of its forces."""
-ROUGHLY_SETTLED, SETTLED, MOST_TURNS = 1e-3, 1e-9, 20
-"""What a frequency may lack, as a share of it, where segments are chosen and where they are given,
-and how often a leg is marched for it."""
+ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-2, 1e-9, 50, -0.3
+"""What a frequency may lack, as a share of it, where segments are chosen and where they are given;
+how often a leg is marched for it, and the slope at which its secants are held."""
 
 
 def begun(net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]) -> tuple[float, float]:
@@ -69,20 +70,31 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
     """March a leg from what is unknown of it; how that ended, see `calm.physics.line`.
 
     One that strums until it does at the frequency of the vortices at its end. That falls as the
-    frequency assumed rises, since more drag lifts the line: there is one, found by secants.
+    frequency assumed rises, since more drag lifts the line: it is found by secants, and by halving
+    a bracket where these do not lead on.
     """
     leg, state = net.legs[i], net.state[i]
     failure = march_once(net, i, x, how)
-    before, lacked, settled = 0.0, 0.0, SETTLED if how.given else ROUGHLY_SETTLED
-    for turn in range(MOST_TURNS if leg.sheds > 0.0 else 0):
+    low, high, before, lacked = -inf, inf, 0.0, inf
+    settled = SETTLED if how.given else ROUGHLY_SETTLED
+    for _ in range(MOST_TURNS if leg.sheds > 0.0 else 0):
         frequency = state[FREQUENCY]
         lacking = shed_by(leg, net.passed[i]) - frequency
+        state[LACKING] = lacking
         if failure != GOES_ON or abs(lacking) <= settled * frequency:
             break
-        if turn > 0 and frequency != before:
+        if lacked < inf and frequency != before:
             state[YIELD] = (lacking - lacked) / (frequency - before)
-        before, lacked = frequency, lacking
-        state[FREQUENCY] = frequency - lacking / min(state[YIELD], -1.0)
+        if lacking > 0.0:
+            low = frequency
+        else:
+            high = frequency
+        following = frequency - lacking / min(state[YIELD], GENTLEST)
+        if high - low < inf and not (
+            abs(lacking) < 0.5 * abs(lacked) and low < following < high
+        ):
+            following = 0.5 * (low + high)
+        before, lacked, state[FREQUENCY] = frequency, lacking, following
         failure = march_once(net, i, x, how)
     return failure
 
