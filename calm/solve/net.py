@@ -27,8 +27,6 @@ from calm.solve.problem import CHOSEN, FINE, ROOM
 from calm.solve.solution import Settings, Solution, expect_many, runs_compiled
 
 MORE_ROOM = 8
-MOST_LYING = 0.9
-"""Share of what may lie on the seabed that does at first, at most."""
 
 
 @dataclass(frozen=True)
@@ -91,8 +89,8 @@ class NetSearch:
             elif each.kind == net_problem.ANCHORED:
                 x[first : first + 3] = start.held[i]
                 x[first + 3 : first + each.unknowns] = each.leg.lower.seabed
-                if (lying := each.may_lie[1]) > 0.0:
-                    x[first + 2] = min(x[first + 2], MOST_LYING * lying)
+                height = start.first[i][2] - each.leg.lower.seabed
+                x[first + 2] = min(x[first + 2], each.most_lying(height))
             elif x[first] < 0.0 and not down and each.problem.surfacing:  # what pulls is in use
                 share = pull[2] / each.problem.surfacing[0].surface_lift
                 x[first] = min(max(share, 0.01), 1.0) * each.stands - each.stands

@@ -11,7 +11,7 @@ from calm.physics.line import GOES_ON, NO_ROOM
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
 from calm.solve.closing import halve
-from calm.solve.net_march import left_over, take_scales
+from calm.solve.net_march import left_over
 from calm.solve.net_problem import COUNT, Marching, NetProblem, leg_of, place_of
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 
@@ -94,10 +94,7 @@ def close_net(
     enough : what may be left, in shares
     known : whether the slopes are about right already, and need not be found first
     """
-    failure = left_over(net, x, how, False)
-    if failure == GOES_ON and not known:
-        take_scales(net, x)
-        failure = left_over(net, x, how, True)
+    failure = left_over(net, x, how, not known)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
     return close_on(net, x, how, enough, known)
@@ -166,13 +163,15 @@ def moved_ends(net: NetProblem, x: Sequence[float], record: int) -> float:
         find_ends(RefereeShape(shape, nodes, end, first, last))
         keep(first, net.first[i])
         keep(last, net.last[i])
-        east, north, _ = place_of(net, i, x, 1)
+        to_east, to_north, _ = place_of(net, i, x, 1)
         for p in range(pieces + 1):
             n, row = 0 if p == 0 else int(net.last[i][p - 1]), net.ends[i][p]
             fx, fy, fz = shape[3][n], shape[4][n], shape[5][n]
             tension = sqrt(fx * fx + fy * fy + fz * fz)
-            x0, y0 = shape[0][n] - shape[0][end] + east, shape[1][n] - shape[1][end] + north
-            off = max(abs(x0 - row[0]), abs(y0 - row[1]), abs(shape[2][n] - row[2]))
+            x0 = shape[0][n] - shape[0][end] + to_east
+            y0 = shape[1][n] - shape[1][end] + to_north
+            east, north = x0 - row[0], y0 - row[1]
+            off = max(sqrt(east * east + north * north), abs(shape[2][n] - row[2]))
             net.errors[DEPTH_ERROR] = max(net.errors[DEPTH_ERROR], 0.5 * off)
             net.errors[TENSION_ERROR] = max(net.errors[TENSION_ERROR], 0.5 * abs(tension - row[3]))
             row[0], row[1], row[2], row[3] = x0, y0, shape[2][n], tension
