@@ -18,13 +18,13 @@ from calm.physics.line import FAILURES, GOES_ON, Floats, Line, Trace, Water
 from calm.physics.profile import Profile
 from calm.solve import net_closing, net_problem
 from calm.solve.finish import refuse_unbalanced
-from calm.solve.mooring import stirred
+from calm.solve.mooring import BREATH, stirred
 from calm.solve.net_closing import AskedNet, ask_net, ask_now, keep
 from calm.solve.net_leg import LaidLeg, NetLeg, lay_net, leg_found, refuse_misplaced, unsettled
 from calm.solve.net_problem import Marching
 from calm.solve.net_start import NetStart, start_of
 from calm.solve.problem import CHOSEN, FINE, ROOM
-from calm.solve.solution import Settings, Solution, expect_many, runs_compiled
+from calm.solve.solution import Settings, Solution, Status, expect_many, runs_compiled
 
 MORE_ROOM = 8
 
@@ -106,7 +106,7 @@ class NetSearch:
             ending = outcome(ask_now, True, ask, asked)
         else:
             ending = ask_net(asked, 0.0)
-        if task >= net_closing.CLOSE and ending == net_closing.NEEDS_ROOM:
+        if task in (net_closing.CLOSE, net_closing.SETTLE) and ending == net_closing.NEEDS_ROOM:
             raise LacksRoom
         return int(ending), np.array(own)
 
@@ -150,6 +150,15 @@ class NetSearch:
         NoEquilibrium: it does not pass the checks.
         """
         net, legs, before = self.net, [], 0
+        water = self.water
+        slow = float(np.hypot(water.u, water.v).max(initial=0.0)) <= BREATH
+        how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=True)
+        if slow and self.asked(net_closing.DRIFTS, x, how)[0]:
+            raise Status.SLACK.because(
+                "Nothing holds the net sideways: every leg to an anchor lies on the seabed and is "
+                "slack, so that the net may be anywhere between its anchors.",
+                advice="Shorten a leg, or give the current that the net has to stand in.",
+            )
         left = np.abs(np.array(net.found) * np.array(net.rows))
         miss = float(left[: net.nodes_at].max())
         if miss > self.settings.tolerance * self.water.depth:
@@ -207,8 +216,8 @@ def solve_net(
             return net.told(net.settled(about(net, near)))
         except LacksRoom:
             room *= MORE_ROOM
-        except NoEquilibrium:
-            if (moving := stirred(water)) is None:
+        except NoEquilibrium as failure:
+            if failure.status == Status.SLACK.label or (moving := stirred(water)) is None:
                 raise
             water = moving
 

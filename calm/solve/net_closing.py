@@ -12,7 +12,18 @@ from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
 from calm.solve.closing import halve
 from calm.solve.net_march import left_over
-from calm.solve.net_problem import COUNT, Marching, NetProblem, leg_of, place_of
+from calm.solve.net_problem import (
+    ANCHORED,
+    COUNT,
+    HANGING_DOWN,
+    HUNG,
+    STAGE,
+    STANDING,
+    Marching,
+    NetProblem,
+    leg_of,
+    place_of,
+)
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 
 MOST_STEPS, HALVINGS = 60, 9
@@ -30,6 +41,9 @@ LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 SINGULAR = 1e-14
 """Slope, in shares, below which an unknown is left as it is."""
+NO_HOLD = 1e-5
+"""Pull at a touchdown, as a share of the weight of a leg, that holds nothing in place: more than the
+drag in a breath of current."""
 CAME_OUT, NOT_CLOSED, NEEDS_ROOM = range(3)
 """How a net ends: closed; not; more segments than there is room for."""
 
@@ -150,6 +164,28 @@ def close_on(
     return CAME_OUT
 
 
+def drifts(net: NetProblem) -> bool:
+    """Return whether no end is held and every leg to an anchor lies on the seabed unpulled.
+
+    Where such a net is depends on nothing but where it was put.
+    """
+    anchored = False
+    for i in range(len(net.legs)):
+        leg, state = net.legs[i], net.state[i]
+        begins_free = leg.kind == STANDING or leg.kind == HANGING_DOWN
+        ends_free = leg.kind == STANDING or leg.kind == ANCHORED
+        if (leg.start < 0 and not begins_free) or (leg.end < 0 and not ends_free):
+            return False
+        if leg.seabed == -inf:
+            continue
+        record, foot = net.lines.work.records[i][FINE], int(state[HUNG]) - 1
+        east, north, least = record[3][foot], record[4][foot], NO_HOLD * leg.weight
+        if state[STAGE] < 0.0 or east * east + north * north > least * least:
+            return False
+        anchored = True
+    return anchored
+
+
 def moved_ends(net: NetProblem, x: Sequence[float], record: int) -> float:
     """Write where the ends of all pieces are, and how much these and their tensions have moved.
 
@@ -210,7 +246,7 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
 
 class AskedNet(NamedTuple):
     """Hold what `ask_net` is asked: to march a net, with the slopes or without, to close it or to
-    settle it, from unknowns that it changes.
+    settle it, from unknowns that it changes; or whether the net as it was settled drifts.
 
     Attributes
     ----------
@@ -225,12 +261,14 @@ class AskedNet(NamedTuple):
     known: bool
 
 
-MARCH, SLOPES, CLOSE, SETTLE = range(4)
+MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
 def ask_net(asked: AskedNet, _: float) -> float:
     """Do what is asked; how it ended."""
     net, x, how = asked.net, asked.x, asked.how
+    if asked.task == DRIFTS:
+        return 1.0 if drifts(net) else 0.0
     if asked.task == SETTLE:
         return float(settle(net, how.sea, x, how.step, asked.enough))
     if asked.task == CLOSE:

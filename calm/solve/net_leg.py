@@ -306,6 +306,7 @@ def leg_found(
         closure=closure,
         moment_residual=moment,
         pulled=bool(first),
+        slack=float(state[net_problem.SLACK]),
     )
 
 

@@ -84,6 +84,7 @@ class Solution:
         solver came upon, and its unstretched length on the seabed [m]
     frequency : of the cables that strum [Hz]; 0 where none does
     pulled : whether its first end is not free but pulled: a leg of a net
+    slack : length on the seabed beyond the way to the anchor, of a leg that nothing pulls there [m]
     """
 
     line: Line
@@ -116,6 +117,7 @@ class Solution:
     closure: float = nan
     moment_residual: float = nan
     pulled: bool = False
+    slack: float = 0.0
 
     @property
     def surface(self) -> bool:
