@@ -145,7 +145,7 @@ def thirds_at(
     its tension [N]; and its tension in the fine shape."""
     x = after[0][m] - after[0][end] - (before[0][n] - before[0][last])
     y = after[1][m] - after[1][end] - (before[1][n] - before[1][last])
-    place = max(abs(x), abs(y), abs(after[2][m] - before[2][n])) / 3.0
+    place = max(sqrt(x * x + y * y), abs(after[2][m] - before[2][n])) / 3.0
     tension = tension_at(after, m)
     return place, abs(tension_at(before, n) - tension) / 3.0, tension
 

@@ -90,9 +90,7 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
         else:
             high = frequency
         following = frequency - lacking / min(state[YIELD], GENTLEST)
-        if high - low < inf and not (
-            abs(lacking) < 0.5 * abs(lacked) and low < following < high
-        ):
+        if high - low < inf and not (abs(lacking) < 0.5 * abs(lacked) and low < following < high):
             following = 0.5 * (low + high)
         before, lacked, state[FREQUENCY] = frequency, lacking, following
         failure = march_once(net, i, x, how)
@@ -175,7 +173,8 @@ def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, colu
 
 
 def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes: bool) -> int:
-    """Write what is left to be closed and balanced to `found`, and its slopes where asked for.
+    """Write what is left to be closed and balanced to `found`, and its slopes where asked for, in
+    scales that are taken anew.
 
     Returns how the marches ended.
     """
@@ -190,6 +189,8 @@ def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes:
         failure = march_leg(net, i, x, how)
         if failure != GOES_ON:
             return failure
+        if slopes:
+            take_scale(net, i, x)
         out, at = net.passed[i], leg.first
         add_passed(net, i, out, 1.0, -1)
         start, end = place_of(net, i, x, 0), place_of(net, i, x, 1)
@@ -225,7 +226,7 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
             meet(net, i, x)
             add_passed(net, i, passed, 1.0 / JUMP, start + k)
             x[start + k] = before
-        meet(net, i, x)
+            meet(net, i, x)
     moved = Marching(how.sea, how.step, how.cuts, True, OTHER)
     free = leg.own + (1 if leg.kind == PULLED and leg.start >= 0 else 0)
     for m in range(free):
@@ -252,18 +253,19 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
     return GOES_ON
 
 
-def take_scales(net: NetProblem, x: Sequence[float]) -> None:
-    """Scale the unknown forces on each leg by its own pull, as it was marched last.
+def take_scale(net: NetProblem, i: int, x: Sequence[float]) -> None:
+    """Scale the unknown forces on a leg by its own pull, as it was marched last.
 
     A slack leg pulls with a thousandth of others: steps that suit these say nothing of its slopes.
     """
-    for i in range(len(net.legs)):
-        leg, out = net.legs[i], net.passed[i]
-        if leg.own == 1:
-            continue
-        pull = sqrt(out[3] * out[3] + out[4] * out[4] + out[5] * out[5])
-        if leg.kind == PULLED:
-            east, north, up = x[leg.first], x[leg.first + 1], x[leg.first + 2]
-            pull = max(pull, sqrt(east * east + north * north + up * up))
-        for k in range(3):
-            net.scale[leg.first + k] = max(pull, LEAST_PULL * leg.weight)
+    leg, out = net.legs[i], net.passed[i]
+    if leg.own == 1:
+        return
+    pull = sqrt(out[3] * out[3] + out[4] * out[4] + out[5] * out[5])
+    if leg.kind == PULLED:
+        east, north, up = x[leg.first], x[leg.first + 1], x[leg.first + 2]
+        pull = max(pull, sqrt(east * east + north * north + up * up))
+    for k in range(3):
+        net.scale[leg.first + k] = max(pull, LEAST_PULL * leg.weight)
+    if leg.kind == ANCHORED:
+        meet(net, i, x)
