@@ -20,7 +20,7 @@ from calm.physics.line import NO_BALANCE, Bed, State, off_bed
 from calm.physics.profile import (
     Sea,
     counts_across,
-    distance_to_level,
+    distance_to_bend,
     in_interval,
     level_within,
     water_at,
@@ -438,11 +438,13 @@ def segment_length(
     state: State,
     angle_step: float,
     reach: float,
+    share: float,
 ) -> float:
-    """Return how long the next segment may be [m]: by its turn, by depth, and to the next level.
+    """Return how long the next segment may be [m]: by its turn, by depth, and to the next level or
+    to where the flow is least.
 
     The turn is that of the load at either end of the segment, the tension that at its top. Near a
-    free end the tension vanishes: a floor keeps the count finite.
+    free end the tension vanishes: a floor keeps the count finite. `share` : see `counts_across`.
     """
     _, _, z, fx, fy, fz, _, level = state
     tension = sqrt(fx * fx + fy * fy + fz * fz)
@@ -460,7 +462,7 @@ def segment_length(
         if rate > 0.0:
             length = min(length, max(tension / rate, floor))
         depth = -z + length * sinking
-    return min(distance_to_level(sea.levels, -z, sinking, level, 0.01 * length), length)
+    return min(distance_to_bend(sea, -z, sinking, level, length, share), length)
 
 
 @within
@@ -478,8 +480,9 @@ def rate_of_turn(
 ) -> float:
     """Tension over the allowed length [N/m] for the load at a depth, on a cable of axis t.
 
-    Where a slack line hangs on little more than its own weight it may turn within one segment, so
-    the tension, where there is any, may not fall by more than half in it either.
+    A slack line that hangs on little more than its own weight turns the faster, the more its
+    tension has fallen. So the turn and the fall add up: the tension falls by less than half in a
+    segment, and by far less in one that also turns.
     """
     u, v, w, density, _ = water_at(sea, depth, level)
     lift = segment_lift(cable, 1.0, density, sea.gravity)
@@ -487,4 +490,4 @@ def rate_of_turn(
     along = lift * tz
     qx, qy, qz = qx - along * tx, qy - along * ty, qz + lift - along * tz
     rate = sqrt(qx * qx + qy * qy + qz * qz) / angle_step
-    return max(rate, 2.0 * along) if taut else rate
+    return rate + 2.0 * max(along, 0.0) if taut else rate
