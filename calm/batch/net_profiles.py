@@ -34,7 +34,7 @@ from calm.physics.track import head_count
 from calm.records.grids import SeabedGrid
 from calm.solve import expect_many, net_closing, net_problem
 from calm.solve.net import NetSearch, NetSolution
-from calm.solve.net_closing import AskedNet, ask_net, keep
+from calm.solve.net_closing import AskedNet, ask_net, drifts, keep
 from calm.solve.net_problem import Marching, NetProblem, above_bed, place_of
 from calm.solve.problem import CHOSEN, FINE
 
@@ -128,7 +128,8 @@ def solve_net_rows(
 
 
 def stands(net: NetProblem, paper: NetPaper) -> bool:
-    """Return whether no leg is out of the water or in the seabed, and no anchor is lifted."""
+    """Return whether no leg is out of the water or in the seabed, no anchor is lifted, and
+    something holds the net in its place."""
     near = net.errors[net_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
     for i in range(len(net.legs)):
         leg, state, record = net.legs[i], net.state[i], net.lines.work.records[i][FINE]
@@ -144,7 +145,7 @@ def stands(net: NetProblem, paper: NetPaper) -> bool:
                 return False
         if record[5][count - 1] > paper.weight[i]:
             return False
-    return True
+    return not drifts(net)
 
 
 def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None:

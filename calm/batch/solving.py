@@ -13,7 +13,7 @@ import numpy as np
 from calm.physics.compiled import record_type, set_row
 from calm.physics.line import BETTER, NO_ROOM, Floats, Integers, Water
 from calm.physics.passing import FAILURE
-from calm.physics.profile import Interval, Sea
+from calm.physics.profile import Interval, Sea, find_bends
 from calm.physics.referee import RefereeShape, find_ends
 from calm.solve.mooring import HANGING, NODES, SHARE_IN_USE, SOUGHT, AskedSearch
 from calm.solve.problem import BELOW, FINE, Limits, LineProblem, Search
@@ -44,7 +44,7 @@ class ProfileLevels(NamedTuple):
     Attributes
     ----------
     read, joined : its levels, and these joined with the others: see `lay_profile`
-    levels, intervals : as in `Sea`
+    levels, intervals, bends : as in `Sea`
     fixed : (f, 4) depth, what is added to u and to v, and density of the levels all profiles get
     """
 
@@ -52,6 +52,7 @@ class ProfileLevels(NamedTuple):
     joined: Floats
     levels: Any
     intervals: Any
+    bends: Any
     fixed: Floats
 
 
@@ -61,7 +62,12 @@ def levels_for(count: int, water: Water) -> ProfileLevels:
     intervals: Any = np.zeros(most + 2, record_type(Interval))
     fixed = np.column_stack([water.level, water.u, water.v, water.density])
     return ProfileLevels(
-        np.zeros((most, 4)), np.zeros((most, 5)), np.zeros(most + 2), intervals, fixed
+        np.zeros((most, 4)),
+        np.zeros((most, 5)),
+        np.zeros(most + 2),
+        intervals,
+        np.zeros(most + 2),
+        fixed,
     )
 
 
@@ -135,7 +141,10 @@ def sea_of(
     else:
         ending = NO_CURRENT if found == 0 else LEVELS_COINCIDE
     levels, intervals = on.levels[: total + 2], on.intervals[: total + 1]
-    return ending, Sea(levels, intervals, still.gravity, still.strata)
+    bends = on.bends[: total + 2]
+    if ending == FOUND:
+        find_bends(intervals, bends)
+    return ending, Sea(levels, intervals, bends, still.gravity, still.strata)
 
 
 def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem:

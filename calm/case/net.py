@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from itertools import combinations, permutations, product
-from math import dist, inf, nan
+from math import dist, inf, isfinite, nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -164,19 +164,24 @@ class Net(ReadFromFile):
                 nodes = len(nodes_of(self.file.legs))
                 return solve_net(self.legs, nodes, water, self.settings, near)
         except NoEquilibrium as failure:
-            raise self._why_not(water) or failure from None
+            if failure.status == Status.SLACK.label:
+                raise
+            raise self._why_not() or failure from None
 
-    def _why_not(self, water: Water) -> NoEquilibrium | None:
-        """Return why it sinks, held ends are out of reach, or a leg lies in a heap, if weights or
-        lengths say so.
+    def _why_not(self) -> NoEquilibrium | None:
+        """Return why it sinks or held ends are out of reach, if weights or lengths say so.
 
-        Between every two ends the shortest way through the net counts (Floyd and Warshall).
+        What may lie on the seabed weighs nothing. Between every two ends the shortest way through
+        the net counts (Floyd and Warshall).
         """
-        lift = sum(float(leg.line.total_buoyancy.sum()) for leg in self.legs)
+        lift = 0.0
+        for leg in self.legs:
+            upto = np.cumsum(leg.line.total_buoyancy)
+            lift += max(float(upto.max()), 0.0) if isfinite(leg.lower.seabed) else float(upto[-1])
         if lift <= 0.0 and not any(end.held for leg in self.file.legs for end in leg.ends):
             return Status.NO_EQUILIBRIUM.because(
                 f"It sinks: its legs weigh {say('force', -lift)} more in water than their floats "
-                "lift, and no end is held.",
+                "lift, without those that may lie on the seabed, and no end is held.",
                 advice="Add buoyancy.",
             )
         ways: dict[Any, tuple[float, tuple[str, ...]]] = defaultdict(lambda: (inf, ()))
@@ -296,6 +301,7 @@ def _end_loads(leg: Result, solution: Solution) -> Iterator[EndLoad]:
             required_weight=leg.anchor.required_weight,
             weight=leg.anchor.weight,
             grounded_length=leg.anchor.grounded_length,
+            slack_length=solution.slack,
         )
 
 

@@ -247,8 +247,9 @@ class EndLoad:
     """Hold what a leg does to an end that is held, or to its anchor.
 
     The pull of the line and its parts up and sideways [N], its angle from the vertical [degrees];
-    where the end is [m]. Of an anchor the weight in water that it needs, and has [N], and the
-    unstretched length of line on the seabed [m].
+    where the end is [m]. Of an anchor the weight in water that it needs, and has [N], the
+    unstretched length of line on the seabed, and how much more of that there is than leads to the
+    anchor [m].
     """
 
     leg: str
@@ -262,6 +263,7 @@ class EndLoad:
     required_weight: float | None = None
     weight: float | None = None
     grounded_length: float = 0.0
+    slack_length: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -367,7 +369,7 @@ class NetResult(ResultForms):
         return document
 
 
-_OF_ANCHORS = ("required_weight", "weight", "grounded_length")
+_OF_ANCHORS = ("required_weight", "weight", "grounded_length", "slack_length")
 
 AnyResult: TypeAlias = "Result | TowResult | NetResult"
 

@@ -209,8 +209,19 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
                 f"{say('grounded_length', solution.grounded_length)} of line lies on the plane of "
                 f"the seabed about its anchor, where the grid is up to {worst:.2f} m off it."
             )
-    if solution.landed and result.still_shape is result.shape:
+    if solution.landed and result.still_shape is result.shape and not solution.pulled:
         yield "In still water the line on the seabed may lie any way: the offset is the greatest."
+
+
+def _slack(result: Result, solution: Solution) -> Iterator[str]:
+    if solution.slack > 0.0:
+        pieces = result.file.pieces
+        lying = {pieces[p].component.kind for p in solution.element_piece[solution.hanging :]}
+        yield (
+            f"Leg {result.name} is slack: {say('grounded_length', solution.slack)} more "
+            f"{'chain' if 'chain' in lying else 'line'} lies on the seabed than leads to its "
+            "anchor."
+        )
 
 
 def _far_too_long(result: Result, solution: Solution) -> Iterator[str]:
@@ -297,8 +308,8 @@ _OF_ANY: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = (
     _fast_flow, _other_equilibrium,
 )  # fmt: skip
 _OF_A_MOORING: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
-    _anchor_too_light, _anchor_of_unknown_material, _bight, _on_the_seabed, _far_too_long,
-    _hull_unknown, _wind_ignored,
+    _anchor_too_light, _anchor_of_unknown_material, _bight, _on_the_seabed, _slack,
+    _far_too_long, _hull_unknown, _wind_ignored,
 )  # fmt: skip
 _OF_A_TOW: tuple[Callable[[TowResult, Solution], Iterator[str]], ...] = (
     _below_the_sea,

@@ -180,6 +180,7 @@ def pass_segment(
     )
 
 
+@within
 def pass_halves(
     cable: CableStretch,
     knots: Sequence[Knot],
@@ -195,14 +196,14 @@ def pass_halves(
 
     `near` and `expected` are as in `pass_segment`.
     """
-    half = 0.5 * cut if halves else cut
-    above, upper, below, strain = state, 0.0, state, 0.0
-    for _ in range(2 if halves else 1):
-        above, upper = below, strain
-        below, strain = pass_segment(cable, knots, vibration, sea, above, half, near, expected)
-        if strain == NO_BALANCE:
-            break
-    return cut, above, upper, below, strain
+    half, upper = cut, 0.0
+    if halves:
+        half = 0.5 * cut
+        state, upper = pass_segment(cable, knots, vibration, sea, state, half, near, expected)
+        if upper == NO_BALANCE:
+            return cut, state, upper, state, upper
+    below, strain = pass_segment(cable, knots, vibration, sea, state, half, near, expected)
+    return cut, state, upper, below, strain
 
 
 def vibrating_share(
@@ -293,39 +294,50 @@ def pass_part(
     halves, near, expected : see `pass_halves`
     share : see `counts_across`
     """
-    passed = pass_halves(cable, knots, vibration, sea, state, cut, halves, near, expected)
-    _, _, _, below, _ = passed
-    within_levels = in_interval(sea, below[7], -state[2], -below[2])
-    if within_levels and cable.friction != CONSTANT:
-        return passed
-    return split_part(cable, knots, vibration, sea, state, passed, halves, near, expected, share)
+    part, passed = cut, (cut, state, 0.0, state, 0.0)
+    for turn in range(2):
+        passed = pass_halves(cable, knots, vibration, sea, state, part, halves, near, expected)
+        below = passed[3]
+        whole = in_interval(sea, below[7], -state[2], -below[2]) and cable.friction != CONSTANT
+        if whole or turn > 0:
+            break
+        part = split_length(
+            cable, knots, vibration, sea, state, below, cut, halves, near, expected, share
+        )
+        if part == cut:
+            break
+    return passed
 
 
-def split_part(
+def split_length(
     cable: CableStretch,
     knots: Sequence[Knot],
     vibration: Vibration,
     sea: Sea,
     state: State,
-    passed: Passed,
+    below: State,
+    cut: float,
     halves: bool,
     near: float,
     expected: Vector,
     share: float,
-) -> Passed:
-    """`pass_part` of a segment that may have to be split; `passed` is all of it."""
-    cut, _, _, below, _ = passed
-    level = level_within(sea, below[7], -state[2], -below[2], share)
+) -> float:
+    """Length of the part of a segment above the first level or turn of the flow that splits it [m].
+
+    Parameters
+    ----------
+    below : the state below the whole segment
+    halves, near, expected : see `pass_halves`
+    share : see `counts_across`
+    """
+    part, level = cut, level_within(sea, below[7], -state[2], -below[2], share)
     if level > 0:
-        passed = until_level(
+        part = until_level(
             cable, knots, vibration, sea, state, below, cut, halves, near, level, share
         )
-    part, _, _, below, _ = passed
-    if cable.friction == CONSTANT and flow_along(sea, state) * flow_along(sea, below) < 0.0:
-        passed = until_turn(
-            cable, knots, vibration, sea, state, below, part, halves, near, expected
-        )
-    return passed
+    if cable.friction == CONSTANT:
+        part = until_turn(cable, knots, vibration, sea, state, part, halves, near, expected)
+    return part
 
 
 def until_level(
@@ -340,10 +352,11 @@ def until_level(
     near: float,
     k: int,
     share: float,
-) -> Passed:
-    """Pass the part of a segment down to a level of the profile.
+) -> float:
+    """Length of the part of a segment down to a level of the profile [m].
 
-    The first trial follows from the mean load of the segment, the others are secants.
+    It follows from the mean load of the segment, and for a shape to be closed to the last digits from
+    secants.
 
     Parameters
     ----------
@@ -361,11 +374,11 @@ def until_level(
         if sinks * last > 0.0:
             part = min(cut * (level - start) / whole * (last / sinks), cut)
     before, above = 0.0, start
-    passed = part, state, 0.0, below, NO_BALANCE
-    for _ in range(TRIALS):
-        passed = pass_halves(cable, knots, vibration, sea, state, part, halves, near, load)
-        _, _, _, reached, strain = passed
-        depth = -reached[2]
+    for _ in range(TRIALS if near == 0.0 else 0):
+        _, _, _, passed, strain = pass_halves(
+            cable, knots, vibration, sea, state, part, halves, near, load
+        )
+        depth = -passed[2]
         off, depths = abs(depth - level), abs(depth - start)
         if strain == NO_BALANCE or off <= AT_A_LEVEL * abs(whole) or depth == above:
             break
@@ -374,7 +387,7 @@ def until_level(
         following = part + (level - depth) * (part - before) / (depth - above)
         before, above = part, depth
         part = following if 0.0 < following < cut else 0.5 * part
-    return passed
+    return part
 
 
 def sinking(fx: float, fy: float, fz: float, load: Vector, length: float) -> float:
@@ -391,35 +404,36 @@ def until_turn(
     vibration: Vibration,
     sea: Sea,
     state: State,
-    below: State,
     cut: float,
     halves: bool,
     near: float,
     expected: Vector,
-) -> Passed:
-    """Pass the part of a segment above where the flow along it turns round.
+) -> float:
+    """Length of the part of a segment above where the flow along it turns round; `cut` if it does
+    not [m].
 
     There a friction of constant size jumps from one direction to the other. By regula falsi, whose
-    end that stays is halved.
-
-    Parameters
-    ----------
-    below : the state below the whole segment
-    halves, near, expected : see `pass_halves`
+    end that stays is halved. `halves`, `near` and `expected` are as in `pass_halves`.
     """
-    low, high = 0.0, cut
-    at_low, at_high = flow_along(sea, state), flow_along(sea, below)
-    for _ in range(PASSES):
-        length = low + (high - low) * at_low / (at_low - at_high)
-        passed = pass_halves(cable, knots, vibration, sea, state, length, halves, near, expected)
-        here = flow_along(sea, passed[3])
-        if here * at_low > 0.0:
+    low, high, length = 0.0, cut, cut
+    at_low = at_high = flow_along(sea, state)
+    for turn in range(PASSES):
+        _, _, _, below, _ = pass_halves(
+            cable, knots, vibration, sea, state, length, halves, near, expected
+        )
+        here = flow_along(sea, below)
+        if turn == 0:
+            if not here * at_low < 0.0:
+                break
+            at_high = here
+        elif here * at_low > 0.0:
             low, at_low, at_high = length, here, 0.5 * at_high
         else:
             high, at_high, at_low = length, here, 0.5 * at_low
         if here == 0.0 or high - low <= NEAR_A_TURN * cut:
             break
-    return pass_halves(cable, knots, vibration, sea, state, high, halves, near, expected)
+        length = low + (high - low) * at_low / (at_low - at_high)
+    return high
 
 
 def flow_along(sea: Sea, state: State) -> float:

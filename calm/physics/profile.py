@@ -1,6 +1,6 @@
 """Current, density and viscosity by depth, as the march looks them up."""
 
-from collections.abc import Sequence
+from collections.abc import MutableSequence, Sequence
 from functools import cached_property
 from math import inf, isfinite, sqrt
 from typing import NamedTuple
@@ -47,12 +47,14 @@ class Sea(NamedTuple):
     ----------
     levels : depths that bound the intervals [m], from -inf to inf
     intervals : the water in each
+    bends : at each level, see `find_bends` [1/m]
     gravity : [m/s²]
     strata : kinematic viscosity, from -inf down
     """
 
     levels: Sequence[float]
     intervals: Sequence[Interval]
+    bends: Sequence[float]
     gravity: float
     strata: Sequence[Stratum]
 
@@ -161,6 +163,7 @@ def level_within(sea: Sea, hint: int, start: float, end: float, share: float) ->
     return 0
 
 
+@within
 def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> bool:
     """Whether a segment that extends beyond a level needs to be split there.
 
@@ -175,13 +178,29 @@ def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> 
     off : depth range of the segment on the far side of the level [m]
     length : depth range of the segment [m]
     """
-    above, below = sea.intervals[k - 1], sea.intervals[k]
-    du, dv, dw = below.du - above.du, below.dv - above.dv, below.dw - above.dw
-    bend = sqrt(du * du + dv * dv + dw * dw)
-    flow = sqrt(below.u * below.u + below.v * below.v + below.w * below.w)
-    dense = abs(below.ddensity - above.ddensity)
-    most = share * length
-    return bend * off * off > most * flow or dense * off * off > most * below.density
+    return sea.bends[k] * off * off > share * length
+
+
+def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> None:
+    """Fill in by how much the slopes of current and density change at each level, over the current
+    and the density there [1/m].
+
+    Parameters
+    ----------
+    intervals : of the water, whose k-th begins at level k
+    bends : one for each level, from -inf to inf
+    """
+    bends[0] = 0.0
+    for k in range(1, len(intervals)):
+        above, below = intervals[k - 1], intervals[k]
+        du, dv, dw = below.du - above.du, below.dv - above.dv, below.dw - above.dw
+        bend = sqrt(du * du + dv * dv + dw * dw)
+        flow = sqrt(below.u * below.u + below.v * below.v + below.w * below.w)
+        dense = abs(below.ddensity - above.ddensity) / below.density
+        bends[k] = dense
+        if bend > dense * flow:
+            bends[k] = bend / flow if flow > 0.0 else inf
+    bends[len(intervals)] = 0.0
 
 
 class Profile:
@@ -196,9 +215,13 @@ class Profile:
         ]
         origins = [depths[0], *depths]
         viscous = water.viscosity_level.tolist()
+        intervals = [Interval(*row) for row in zip(origins, *columns, strict=True)]
+        bends = [0.0] * (len(depths) + 2)
+        find_bends(intervals, bends)
         self.sea = Sea(
             [-inf, *depths, inf],
-            [Interval(*row) for row in zip(origins, *columns, strict=True)],
+            intervals,
+            bends,
             water.gravity,
             [
                 Stratum(*row)

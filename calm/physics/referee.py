@@ -290,7 +290,7 @@ def worst_moment(
             alone = top == i and bottom == i + 1
             if top == i and i + 1 < bottom <= hanging:
                 worst = max(worst, rod_moment(shape, loads, top, bottom, fx, fy, fz))
-        if alone and cut > 0.0:
+        if alone and cut > rounding:
             # the ends of a very short segment are rounded by more than the limit
             length = sqrt(dx * dx + dy * dy + dz * dz)
             angle = angle_against(dx, dy, dz, hx, hy, hz)

@@ -12,6 +12,7 @@ neighbours, and adds to the error; if it is as large as the rest, nothing is ext
 from math import sqrt
 from typing import Any, NamedTuple
 
+from calm.physics.compiled import within
 from calm.physics.drag import Vector
 from calm.physics.line import BETTER, HALVES, NO_SEGMENT, SEGMENT, Record
 from calm.physics.profile import interval_at
@@ -45,6 +46,7 @@ class Extent(NamedTuple):
 UNKNOWN_ERRORS = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
+@within
 def tension_at(record: Record, node: int) -> float:
     """Tension at a node [N]."""
     fx, fy, fz = record[3][node], record[4][node], record[5][node]
@@ -69,7 +71,8 @@ def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, nea
     ----------
     before, coarse : record of the shape on coarse segments, and its extent
     after, fine : the same on halved ones
-    near : see `calm.physics.passing.How`; the middles of the segments of one of many are not read
+    near : see `calm.physics.passing.How`; of one of many only the ends of pieces and the clamps are
+        extrapolated
     """
     end = fine.nodes - 1
     greatest = 0.0
@@ -80,7 +83,10 @@ def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, nea
     n = m = before_m = 0
     while True:
         hangs = n < coarse.hanging or not coarse.landed
-        strayed, changed, tension = add_third(before, coarse.nodes - 1, n, after, end, m)
+        inside = 0 < m < end and within_piece(after, m)
+        strayed, changed, tension = thirds_at(before, coarse.nodes - 1, n, after, end, m)
+        if near == 0.0 or not inside:
+            add_third(before, coarse.nodes - 1, n, after, end, m)
         if near == 0.0 or m > before_m + 2:
             fill_between(after, before_m, m)
         if hangs:
@@ -122,26 +128,35 @@ def next_pair(
     return n + 1, m + 1
 
 
-def add_third(
+def within_piece(record: Record, node: int) -> bool:
+    """Whether a node is between two segments of one piece."""
+    return (
+        record[SEGMENT][node] != NO_SEGMENT
+        and record[SEGMENT][node + 1] != NO_SEGMENT
+        and record[6][node] == record[6][node + 1]
+    )
+
+
+@within
+def thirds_at(
     before: Record, last: int, n: int, after: Record, end: int, m: int
 ) -> tuple[float, float, float]:
-    """Extrapolate a node of both shapes, its place as from the line's end.
-
-    Returns
-    -------
-    A third of its change of place [m] and of tension [N]; and its tension in the fine shape.
-    """
-    place = 0.0
-    for column in range(6):
-        was, now = before[column][n], after[column][m]
-        third = (now - was) / 3.0
-        if column < 2:
-            third -= (after[column][end] - before[column][last]) / 3.0
-        if column < 3:
-            place = max(place, abs(third))
-        after[BETTER + column][m] = now + third
+    """A third of the change of a node of both shapes: of its place from the line's end [m], and of
+    its tension [N]; and its tension in the fine shape."""
+    x = after[0][m] - after[0][end] - (before[0][n] - before[0][last])
+    y = after[1][m] - after[1][end] - (before[1][n] - before[1][last])
+    place = max(sqrt(x * x + y * y), abs(after[2][m] - before[2][n])) / 3.0
     tension = tension_at(after, m)
     return place, abs(tension_at(before, n) - tension) / 3.0, tension
+
+
+def add_third(before: Record, last: int, n: int, after: Record, end: int, m: int) -> None:
+    """Extrapolate a node of both shapes, its place as from the line's end."""
+    for column in range(6):
+        third = (after[column][m] - before[column][n]) / 3.0
+        if column < 2:
+            third -= (after[column][end] - before[column][last]) / 3.0
+        after[BETTER + column][m] = after[column][m] + third
 
 
 def fill_between(record: Record, first: int, last: int) -> None:

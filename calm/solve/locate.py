@@ -264,7 +264,9 @@ def in_even_current(problem: LineProblem, u: float, v: float, w: float) -> LineP
         here = sea.intervals[k]
         row = Interval(here.origin, u, 0.0, v, 0.0, w, 0.0, here.density, here.ddensity)
         set_row(even, k, row)
-    return in_sea(problem, Sea(sea.levels, even[: len(sea.intervals)], sea.gravity, sea.strata))
+    return in_sea(
+        problem, Sea(sea.levels, even[: len(sea.intervals)], sea.bends, sea.gravity, sea.strata)
+    )
 
 
 def in_weaker_current(problem: LineProblem, share: float) -> LineProblem:
@@ -277,7 +279,9 @@ def in_weaker_current(problem: LineProblem, share: float) -> LineProblem:
             share * here.w, share * here.dw, here.density, here.ddensity,
         )  # fmt: skip
         set_row(even, k, row)
-    return in_sea(problem, Sea(sea.levels, even[: len(sea.intervals)], sea.gravity, sea.strata))
+    return in_sea(
+        problem, Sea(sea.levels, even[: len(sea.intervals)], sea.bends, sea.gravity, sea.strata)
+    )
 
 
 def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:

@@ -18,18 +18,16 @@ from calm.physics.line import FAILURES, GOES_ON, NO_ROOM, Floats, Line, Trace, W
 from calm.physics.profile import Profile
 from calm.solve import net_closing, net_problem
 from calm.solve.finish import refuse_unbalanced
-from calm.solve.mooring import stirred
+from calm.solve.mooring import BREATH, stirred
 from calm.solve.net_closing import AskedNet, ask_net, ask_now, keep
 from calm.solve.net_leg import LaidLeg, NetLeg, lay_net, leg_found, refuse_misplaced, unsettled
 from calm.solve.net_problem import Marching
 from calm.solve.net_start import NetStart, start_of
 from calm.solve.problem import CHOSEN, FINE, ROOM
-from calm.solve.solution import Settings, Solution, expect_many, runs_compiled
+from calm.solve.solution import Settings, Solution, Status, expect_many, runs_compiled
 
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
-MOST_LYING = 0.9
-"""Share of what may lie on the seabed that does at first, at most."""
 
 
 @dataclass(frozen=True)
@@ -92,8 +90,8 @@ class NetSearch:
             elif each.kind == net_problem.ANCHORED:
                 x[first : first + 3] = start.held[i]
                 x[first + 3 : first + each.unknowns] = each.leg.lower.seabed
-                if (lying := each.may_lie[1]) > 0.0:
-                    x[first + 2] = min(x[first + 2], MOST_LYING * lying)
+                height = start.first[i][2] - each.leg.lower.seabed
+                x[first + 2] = min(x[first + 2], each.most_lying(height))
             elif x[first] < 0.0 and not down and each.problem.surfacing:  # what pulls is in use
                 share = pull[2] / each.problem.surfacing[0].surface_lift
                 x[first] = min(max(share, 0.01), 1.0) * each.stands - each.stands
@@ -109,7 +107,8 @@ class NetSearch:
             ending = outcome(ask_now, True, ask, asked)
         else:
             ending = ask_net(asked, 0.0)
-        if ending == (net_closing.NEEDS_ROOM if task >= net_closing.CLOSE else NO_ROOM):
+        closing = task in (net_closing.CLOSE, net_closing.SETTLE)
+        if ending == (net_closing.NEEDS_ROOM if closing else NO_ROOM):
             raise LacksRoom
         return int(ending), np.array(own)
 
@@ -153,6 +152,15 @@ class NetSearch:
         NoEquilibrium: it does not pass the checks.
         """
         net, legs, better = self.net, [], np.array(self.net.better)
+        water = self.water
+        slow = float(np.hypot(water.u, water.v).max(initial=0.0)) <= BREATH
+        how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=True)
+        if slow and self.asked(net_closing.DRIFTS, x, how)[0]:
+            raise Status.SLACK.because(
+                "Nothing holds the net sideways: every leg to an anchor lies on the seabed and is "
+                "slack, so that the net may be anywhere between its anchors.",
+                advice="Shorten a leg, or give the current that the net has to stand in.",
+            )
         left = np.abs(np.array(net.found) * np.array(net.rows))
         miss = float(left[: net.nodes_at].max())
         if miss > self.settings.tolerance * net.span:
@@ -213,8 +221,8 @@ def solve_net(
     while True:
         try:
             return with_room(solved, legs, nodes, water, settings)
-        except NoEquilibrium:
-            if (moving := stirred(water)) is None:
+        except NoEquilibrium as failure:
+            if failure.status == Status.SLACK.label or (moving := stirred(water)) is None:
                 raise
             water = moving
 

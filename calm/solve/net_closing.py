@@ -12,14 +12,17 @@ from calm.physics.line import GOES_ON, NO_ROOM
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
 from calm.solve.accuracy import Extent, bent, extrapolate, take_as_marched, tension_at
-from calm.solve.net_march import left_over, take_scales
+from calm.solve.net_march import left_over
 from calm.solve.net_problem import (
+    ANCHORED,
     COARSE_COUNT,
     COARSE_HUNG,
     COARSE_STAGE,
     COUNT,
+    HANGING_DOWN,
     HUNG,
     STAGE,
+    STANDING,
     Marching,
     NetProblem,
     leg_of,
@@ -36,13 +39,17 @@ WORTH = 4e-5
 more, `MOST_HALVINGS` times."""
 MOST_HALVINGS = 3
 CHOICES = 2
-"""How often segments are chosen: the first time where a shape only about is."""
+"""How often segments are chosen: the first time where a shape only about is. The root of a single
+unknown is found that well beforehand."""
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
 """Slope of a single unknown, in shares, at which a secant is held, and how many steps it may take."""
 SINGULAR = 1e-14
 """Slope, in shares, below which an unknown is left as it is."""
+NO_HOLD = 1e-5
+"""Pull at a touchdown, as a share of the weight of a leg, that holds nothing in place: more than the
+drag in a breath of current."""
 CAME_OUT, NOT_CLOSED, NEEDS_ROOM = range(3)
 """How a net ends: closed; not; more segments than there is room for."""
 
@@ -139,10 +146,7 @@ def close_net(
     """
     if len(x) == 1:
         return close_one(net, x, how, enough)
-    failure = left_over(net, x, how, False)
-    if failure == GOES_ON and not known:
-        take_scales(net, x)
-        failure = left_over(net, x, how, True)
+    failure = left_over(net, x, how, not known)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
     return close_on(net, x, how, enough, known)
@@ -200,10 +204,32 @@ def close_on(
     return CAME_OUT
 
 
+def drifts(net: NetProblem) -> bool:
+    """Return whether no end is held and every leg to an anchor lies on the seabed unpulled.
+
+    Where such a net is depends on nothing but where it was put.
+    """
+    anchored = False
+    for i in range(len(net.legs)):
+        leg, state = net.legs[i], net.state[i]
+        begins_free = leg.kind == STANDING or leg.kind == HANGING_DOWN
+        ends_free = leg.kind == STANDING or leg.kind == ANCHORED
+        if (leg.start < 0 and not begins_free) or (leg.end < 0 and not ends_free):
+            return False
+        if leg.seabed == -inf:
+            continue
+        record, foot = net.lines.work.records[i][FINE], int(state[HUNG]) - 1
+        east, north, least = record[3][foot], record[4][foot], NO_HOLD * leg.weight
+        if state[STAGE] < 0.0 or east * east + north * north > least * least:
+            return False
+        anchored = True
+    return anchored
+
+
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
     """Close a net that about is to the last digits, on segments that are short enough."""
     for _ in range(MOST_HALVINGS):
-        for _ in range(CHOICES):
+        for _ in range(CHOICES if len(x) > 1 else 1):
             choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
             failure = left_over(net, x, choosing, False)
             if failure != GOES_ON:
@@ -235,10 +261,10 @@ def extrapolate_net(net: NetProblem, sea: Sea, x: Sequence[float]) -> float:
     deep = taut = moved = greatest = 0.0
     kinked = False
     for k in range(len(x)):
-        third = (x[k] - net.coarse[k]) / 3.0
-        net.better[k] = x[k] + third
-        if k >= net.nodes_at:
-            moved = max(moved, abs(third))
+        net.better[k] = x[k] + (x[k] - net.coarse[k]) / 3.0
+    for k in range(net.nodes_at, len(x), 3):
+        east, north = net.better[k] - x[k], net.better[k + 1] - x[k + 1]
+        moved = max(moved, sqrt(east * east + north * north), abs(net.better[k + 2] - x[k + 2]))
     for i in range(len(net.legs)):
         state, record, leg = net.state[i], records[i][FINE], leg_of(net, sea, i)
         nodes, hanging = int(state[COUNT]), int(state[HUNG]) - 1
@@ -267,7 +293,7 @@ def extrapolate_net(net: NetProblem, sea: Sea, x: Sequence[float]) -> float:
 
 class AskedNet(NamedTuple):
     """Hold what `ask_net` is asked: to march a net, with the slopes or without, to close it or to
-    settle it, from unknowns that it changes.
+    settle it, from unknowns that it changes; or whether the net as it was settled drifts.
 
     Attributes
     ----------
@@ -282,12 +308,14 @@ class AskedNet(NamedTuple):
     known: bool
 
 
-MARCH, SLOPES, CLOSE, SETTLE = range(4)
+MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
 def ask_net(asked: AskedNet, _: float) -> float:
     """Do what is asked; how it ended."""
     net, x, how = asked.net, asked.x, asked.how
+    if asked.task == DRIFTS:
+        return 1.0 if drifts(net) else 0.0
     if asked.task == SETTLE:
         return float(settle(net, how.sea, x, how.step, asked.enough))
     if asked.task == CLOSE:

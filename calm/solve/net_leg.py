@@ -177,6 +177,18 @@ class LaidLeg:
         weights = [weight_of(course, stage, self.bed.excess) for stage in stages]
         return sum(stage.length for stage in stages), sum(weights)
 
+    def most_lying(self, height: float) -> float:
+        """Weight that the seabed bears at most below an upper end at a height above it [N]: of all
+        but so much of the leg; inf where it cannot lie."""
+        course, hung, weight = self.problem.course, max(height, 0.0), 0.0
+        if self.may_lie[1] <= 0.0:
+            return inf
+        for number, stage in enumerate(course.stages):
+            own = weight_of(course, stage, self.bed.excess) if number >= course.landing else 0.0
+            share = min(hung / stage.length, 1.0) if stage.length > 0.0 else float(hung > 0.0)
+            weight, hung = weight + (1.0 - share) * own, max(hung - stage.length, 0.0)
+        return weight
+
     @property
     def highest(self) -> float:
         """Return how high it may come [m]: to the surface, or where an end is held above it."""
@@ -321,6 +333,7 @@ def leg_found(
         closure=closure,
         moment_residual=moment,
         pulled=bool(first),
+        slack=float(state[net_problem.SLACK]),
     )
 
 

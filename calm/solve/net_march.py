@@ -18,6 +18,7 @@ from calm.solve.net_problem import (
     FREQUENCY,
     GROUNDED,
     HUNG,
+    LACKING,
     MARCHES,
     OUT,
     PULLED,
@@ -40,9 +41,9 @@ JUMP = 1e-6
 """Share by which an unknown is moved for the slopes."""
 LEAST_PULL = 1e-3
 """Pull of a leg, as a share of its weight, below which that is the scale of its forces."""
-ROUGHLY_SETTLED, SETTLED, MOST_TURNS = 1e-3, 1e-9, 20
-"""What a frequency may lack, as a share of it, where segments are chosen and where they are given,
-and how often a leg is marched for it."""
+ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-2, 1e-9, 50, -0.3
+"""What a frequency may lack, as a share of it, where segments are chosen and where they are given;
+how often a leg is marched for it, and the slope at which its secants are held."""
 
 
 def begun(net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]) -> tuple[float, float]:
@@ -69,20 +70,29 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
     """March a leg from what is unknown of it; how that ended, see `calm.physics.line`.
 
     One that strums until it does at the frequency of the vortices at its end. That falls as the
-    frequency assumed rises, since more drag lifts the line: there is one, found by secants.
+    frequency assumed rises, since more drag lifts the line: it is found by secants, and by halving
+    a bracket where these do not lead on.
     """
     leg, state = net.legs[i], net.state[i]
     failure = march_once(net, i, x, how)
-    before, lacked, settled = 0.0, 0.0, SETTLED if how.given else ROUGHLY_SETTLED
-    for turn in range(MOST_TURNS if leg.sheds > 0.0 else 0):
+    low, high, before, lacked = -inf, inf, 0.0, inf
+    settled = SETTLED if how.given else ROUGHLY_SETTLED
+    for _ in range(MOST_TURNS if leg.sheds > 0.0 else 0):
         frequency = state[FREQUENCY]
         lacking = shed_by(leg, net.passed[i]) - frequency
+        state[LACKING] = lacking
         if failure != GOES_ON or abs(lacking) <= settled * frequency:
             break
-        if turn > 0 and frequency != before:
+        if lacked < inf and frequency != before:
             state[YIELD] = (lacking - lacked) / (frequency - before)
-        before, lacked = frequency, lacking
-        state[FREQUENCY] = frequency - lacking / min(state[YIELD], -1.0)
+        if lacking > 0.0:
+            low = frequency
+        else:
+            high = frequency
+        following = frequency - lacking / min(state[YIELD], GENTLEST)
+        if high - low < inf and not (abs(lacking) < 0.5 * abs(lacked) and low < following < high):
+            following = 0.5 * (low + high)
+        before, lacked, state[FREQUENCY] = frequency, lacking, following
         failure = march_once(net, i, x, how)
     return failure
 
@@ -163,7 +173,8 @@ def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, colu
 
 
 def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes: bool) -> int:
-    """Write what is left to be closed and balanced to `found`, and its slopes where asked for.
+    """Write what is left to be closed and balanced to `found`, and its slopes where asked for, in
+    scales that are taken anew.
 
     Returns how the marches ended.
     """
@@ -178,6 +189,8 @@ def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes:
         failure = march_leg(net, i, x, how)
         if failure != GOES_ON:
             return failure
+        if slopes:
+            take_scale(net, i, x)
         out, at = net.passed[i], leg.first
         add_passed(net, i, out, 1.0, -1)
         start, end = place_of(net, i, x, 0), place_of(net, i, x, 1)
@@ -213,7 +226,7 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
             meet(net, i, x)
             add_passed(net, i, passed, 1.0 / JUMP, start + k)
             x[start + k] = before
-        meet(net, i, x)
+            meet(net, i, x)
     moved = Marching(how.sea, how.step, how.cuts, True, OTHER)
     free = leg.own + (1 if leg.kind == PULLED and leg.start >= 0 else 0)
     for m in range(free):
@@ -240,18 +253,19 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
     return GOES_ON
 
 
-def take_scales(net: NetProblem, x: Sequence[float]) -> None:
-    """Scale the unknown forces on each leg by its own pull, as it was marched last.
+def take_scale(net: NetProblem, i: int, x: Sequence[float]) -> None:
+    """Scale the unknown forces on a leg by its own pull, as it was marched last.
 
     A slack leg pulls with a thousandth of others: steps that suit these say nothing of its slopes.
     """
-    for i in range(len(net.legs)):
-        leg, out = net.legs[i], net.passed[i]
-        if leg.own == 1:
-            continue
-        pull = sqrt(out[3] * out[3] + out[4] * out[4] + out[5] * out[5])
-        if leg.kind == PULLED:
-            east, north, up = x[leg.first], x[leg.first + 1], x[leg.first + 2]
-            pull = max(pull, sqrt(east * east + north * north + up * up))
-        for k in range(3):
-            net.scale[leg.first + k] = max(pull, LEAST_PULL * leg.weight)
+    leg, out = net.legs[i], net.passed[i]
+    if leg.own == 1:
+        return
+    pull = sqrt(out[3] * out[3] + out[4] * out[4] + out[5] * out[5])
+    if leg.kind == PULLED:
+        east, north, up = x[leg.first], x[leg.first + 1], x[leg.first + 2]
+        pull = max(pull, sqrt(east * east + north * north + up * up))
+    for k in range(3):
+        net.scale[leg.first + k] = max(pull, LEAST_PULL * leg.weight)
+    if leg.kind == ANCHORED:
+        meet(net, i, x)

@@ -26,17 +26,19 @@ node, and from the seabed up to such an end."""
     LIES,
     SLACK,
     FREQUENCY,
+    LACKING,
     YIELD,
     COARSE_COUNT,
     COARSE_HUNG,
     COARSE_STAGE,
-) = range(15)
+) = range(16)
 """State of a leg after its last march: the stage where it comes down on the seabed or -1, its length
 there [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and those of
 them that hang; of an anchored leg the way from its touchdown to its upper end to the east and
 north [m], how far the rest reaches along the seabed [m], and how much of that it does not need to
-come to its anchor [m]; the frequency of its cables [Hz], and the slope of what that lacks [-]; its nodes, those that hang and its stage on coarse segments."""
-OF_LEG = 15
+come to its anchor [m]; the frequency of its cables [Hz], what that lacks of the one that is shed
+[Hz], and the slope of this [-]; its nodes, those that hang and its stage on coarse segments."""
+OF_LEG = 16
 OUT = 7
 """Results of a march: way east and north, height and force where it came out, or of an anchored leg
 by how much it misses its anchor; then by how much it begins off the seabed."""

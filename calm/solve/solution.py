@@ -104,6 +104,7 @@ class Solution:
     frequency : of the cables that strum [Hz]; 0 where none does
     pulled : whether its first end is not free but pulled: a leg of a net
     marched : the finer of the two shapes, which passed the audit; None if nothing was extrapolated
+    slack : length on the seabed beyond the way to the anchor, of a leg that nothing pulls there [m]
     """
 
     line: Line
@@ -135,6 +136,7 @@ class Solution:
     closure: float = nan
     moment_residual: float = nan
     pulled: bool = False
+    slack: float = 0.0
     marched: Trace | None = None
 
     @property

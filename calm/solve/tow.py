@@ -7,7 +7,7 @@ comes to the ship, each at the frequency that a line strums with there.
 
 from dataclasses import dataclass, replace
 from functools import partial
-from math import isnan, nan
+from math import inf, isnan, nan
 
 import numpy as np
 
@@ -20,7 +20,8 @@ from calm.solve.finish import march_stopped
 from calm.solve.least_change import bracketed_root
 from calm.solve.net import NetSearch, NetSolution, with_room
 from calm.solve.net_leg import LegEnd, NetLeg
-from calm.solve.problem import CHOSEN, COARSE_STEP, FINE
+from calm.solve.net_problem import FREQUENCY, LACKING
+from calm.solve.problem import CHOSEN, COARSE_STEP, FINE, HALVED
 from calm.solve.solution import OtherEquilibrium, Settings, Solution, Status, expect_many
 
 SURFACE_BAND = 1e-7
@@ -32,10 +33,12 @@ FARTHER = 1.05
 line a march is not quite the same at every depth."""
 ROUGHLY = 1e-3
 """What is left of a rough root, as a share of the line out."""
+SAME = 1e-6
+"""What the frequency of a line that strums may lack, as a share of it."""
 NEARLY_OUT = 2e-3
 """Depth at which a line that will not close is taken to be leaving the water, as a share of it."""
-WIDEST_JUMP, NARROW_JUMP = 0.02, 1e-9
-"""How far from a root that does not close a jump is sought, and how exactly, in lines out."""
+NARROW_JUMP, AT_THE_JUMP = 1e-9, 1e-6
+"""How wide a jump of the miss may be, and how near to the surface what causes it, in lines out."""
 PAY_OUT = "Pay out more line."
 RIDE_CLEAR = "Pay out or take in some line, so that it is clear of the surface."
 AT_SURFACE = "The towed line comes up to the surface behind the ship."
@@ -143,22 +146,28 @@ def _relative(line: Line, water: Water, towing: Towing) -> Water:
 
 
 class _Marches:
-    """Marches of a towed line at an angle step, each with its free end at a depth."""
+    """Marches of a towed line, each with its free end at a depth.
 
-    def __init__(self, net: NetSearch, step: float) -> None:
-        self.net, self.span, self.step = net, net.net.length, step
-        self.allowed = net.settings.tolerance * self.span
+    Parameters
+    ----------
+    step : angle step [rad]
+    kept : the segments to be taken, `CHOSEN` or `HALVED`; None where each march chooses its own
+    """
+
+    def __init__(self, net: NetSearch, step: float, kept: int | None = None) -> None:
+        self.net, self.span = net, net.net.length
+        cuts = CHOSEN if kept is None else kept
+        self._how = net.marching(step, cuts, FINE, given=kept is not None)
+        self.failure = GOES_ON
 
     @property
     def shape(self) -> Trace:
         """The shape that was marched last."""
-        return self.net.shape(0, self.x)
+        return self.net.shape(0, np.zeros(1))
 
     def miss(self, _: None, depth: float) -> float:
         """How high the line ends above the tow point [m]; NaN where the march stops."""
-        self.x = np.array([depth])
-        how = self.net.marching(self.step, CHOSEN, FINE, given=False)
-        self.failure, _same = self.net.asked(net_closing.MARCH, self.x, how)
+        self.failure, _same = self.net.asked(net_closing.MARCH, np.array([depth]), self._how)
         return float(self.net.net.found[0]) * self.span if self.failure == GOES_ON else nan
 
 
@@ -166,16 +175,22 @@ def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
     """Return the deepest equilibrium, and the depth of the free end at the next one above [m]."""
     rough = _Marches(net, max(COARSE_STEP, 2.0 * net.settings.angle_step))
     start, other_depth = _locate(rough, towing)
-    try:
-        x = net.settled(np.array([start]))
-    except NoEquilibrium as failure:
-        raise _why_not(rough, start, towing) from failure
+    how = net.marching(net.settings.angle_step, CHOSEN, FINE, given=False)
+    ending, x = net.asked(net_closing.SETTLE, np.array([start]), how, net_closing.CLOSED)
+    if ending != net_closing.CAME_OUT or _lacking(net):
+        raise _why_not(rough, start, float(x[0]), towing)
     return net.told(x), other_depth
+
+
+def _lacking(net: NetSearch) -> bool:
+    """Whether the line does not strum as it sheds, as it was marched last."""
+    return bool(abs(net.net.state[0][LACKING]) > SAME * net.net.state[0][FREQUENCY])
 
 
 def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
     """Find the depth of the free end at the deepest root, and that of the next one above [m]."""
     span, found = rough.span, []
+    allowed = rough.net.settings.tolerance * span
     shallowest = -towing.height - span if towing.in_air else 0.0
     depth = max(span - towing.height, 1e-3 * span)
     low = rough.miss(None, depth)
@@ -196,8 +211,8 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
             if high <= 0.0:
                 raise Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW)
         _refuse_stopped(rough, high)
-        if upper == shallowest and -rough.allowed <= high <= 0.0:
-            high = rough.allowed  # at the surface, to within what is allowed
+        if upper == shallowest and -allowed <= high <= 0.0:
+            high = allowed  # at the surface, to within what is allowed
         if (low <= 0.0) is not (high <= 0.0):
             found.append(_root(rough, upper, high, depth, low))
             if len(found) > 1:
@@ -241,54 +256,58 @@ def _refuse_stopped(rough: _Marches, miss: float) -> None:
         raise march_stopped(rough.failure)
 
 
-def _why_not(rough: _Marches, start: float, towing: Towing) -> NoEquilibrium:
-    """Why a tow does not close near a rough root."""
-    stopped = rough.net.net.lines.work.left[0][FAILURE]
+def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEquilibrium:
+    """Why a tow does not close near a rough root; the depth tried last was `last` [m]."""
+    net, nearly_out = rough.net, NEARLY_OUT * rough.span
+    stopped, lacking = net.net.lines.work.left[0][FAILURE], _lacking(net)
     failure = Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
     if stopped != GOES_ON:
         failure = march_stopped(stopped)
+    elif lacking:
+        failure = Status.NOT_CONVERGED.because(
+            "The frequency of the strumming line does not settle."
+        )
     if towing.in_air:
         return failure
-    nearly_out = NEARLY_OUT * rough.span
+    half_out = _half_out(net, last, lacking)
     surfaces = start < nearly_out
     if not isnan(rough.miss(None, start)):
         height = rough.shape.position[:, 2]
         surfaces = bool(height[: int(np.argmin(height)) + 1].max() > -nearly_out)
     if surfaces:
         return Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW)
-    return _half_out(_Marches(rough.net, rough.net.settings.angle_step), start) or failure
+    return half_out or failure
 
 
-def _half_out(fine: _Marches, root: float) -> NoEquilibrium | None:
-    """Return why a tow does not close where its miss jumps; None where it does not jump there.
+def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | None:
+    """Return why a tow does not close at a depth where its miss jumps, or its frequency, which is
+    then lacking; None where neither does.
 
     A rigid piece or a clamp is in the water or out of it, by its middle. Where the line is too
     high with one in the water and too low with it out, it would ride half out: no equilibrium.
     """
-    span, reach = fine.span, 1e-4 * fine.span
-    while not fine.miss(None, root - reach) > 0.0 >= fine.miss(None, root + reach):
-        reach *= 2.0
-        if reach > WIDEST_JUMP * span:
-            return None
-    high, low = root - reach, root + reach
-    while low - high > NARROW_JUMP * span:
-        middle = 0.5 * (high + low)
-        high, low = (middle, low) if fine.miss(None, middle) > 0.0 else (high, middle)
-    above, below = fine.miss(None, high), fine.miss(None, low)
-    shape, flexible = fine.shape, fine.net.laid[0].line.flexible
-    single = np.flatnonzero(~flexible[shape.piece] | (shape.clamp >= 0))
-    heights = 0.5 * np.abs(shape.position[single, 2] + shape.position[single + 1, 2])
-    if not above - below > fine.allowed or not heights.min(initial=span) < fine.allowed:
-        return None
-    element = single[int(np.argmin(heights))]
-    what = "{piece}" if shape.clamp[element] < 0 else "a clamp on {piece}"
-    return Status.NO_EQUILIBRIUM.because(
-        f"The line closes neither with {what} in the water nor with it out: its upper end "
-        f"would be {above:.2g} m above the tow point or {-below:.2g} m below. It would "
-        "ride half out of the water, which CALM does not solve.",
-        int(shape.piece[element]),
-        RIDE_CLEAR,
-    )
+    step, flexible = net.settings.angle_step, net.laid[0].line.flexible
+    for kept in (_Marches(net, 2.0 * step, CHOSEN), _Marches(net, step, HALVED)):
+        beside = NARROW_JUMP * kept.span
+        above, below = kept.miss(None, depth - beside), kept.miss(None, depth + beside)
+        shape, height = kept.shape, kept.shape.position[:, 2]
+        bodies = np.flatnonzero(~flexible[shape.piece] | (shape.clamp >= 0))
+        ends = np.sort([height[bodies], height[bodies + 1]], axis=0)
+        off = np.maximum(ends[0], -ends[1])  # from the surface
+        if not (lacking or above > 0.0 > below) or off.min(initial=inf) > AT_THE_JUMP * kept.span:
+            continue
+        body = bodies[np.argmin(off)]
+        what = "{piece}" if shape.clamp[body] < 0 else "a clamp on {piece}"
+        why = f"its upper end would be {above:.2g} m above the tow point or {-below:.2g} m below"
+        if lacking:
+            why = "in neither state does it strum at the frequency that it sheds at the ship"
+        return Status.NO_EQUILIBRIUM.because(
+            f"The line closes neither with {what} in the water nor with it out: {why}. It would "
+            "ride half out of the water, which CALM does not solve.",
+            int(shape.piece[body]),
+            RIDE_CLEAR,
+        )
+    return None
 
 
 def _refuse_misplaced(solution: Solution, towing: Towing) -> None:

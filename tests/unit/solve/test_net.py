@@ -367,7 +367,7 @@ def test_the_audit_sees_a_moved_node(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_legs_too_short_to_meet_do_not_come_to_rest() -> None:
     legs = [
-        NetLeg(line_of(Wire(50.0, stiffness=1e12)), LegEnd(place=(0.0, 0.0, -10.0)),
+        NetLeg(line_of(Wire(50.0, stiffness=np.inf)), LegEnd(place=(0.0, 0.0, -10.0)),
                LegEnd(place=(80.0, 0.0, -10.0)))
     ]  # fmt: skip
     with pytest.raises(NoEquilibrium) as refused:
