@@ -9,7 +9,6 @@ from calm.physics.compiled import packed, within
 from calm.physics.line import Floats, Water
 from calm.physics.seawater import REFERENCE_DENSITY
 
-
 SLIVER = 0.01
 """Part of a segment, as a share of it, at which no chosen segment ends."""
 
