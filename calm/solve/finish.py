@@ -127,6 +127,8 @@ def _buoyancy_in_use(problem: LineProblem, refined: Refined) -> tuple[float, flo
 
 def carried_by(line: Line, problem: LineProblem) -> Line:
     """The line as it is loaded: what is at the surface by what is in the water and in use of it."""
+    if not problem.work.left[CHANGED]:
+        return line
     columns = {name: getattr(line, name).copy() for name in (*_OF_PIECE, *_OF_CLAMP)}
     for i in range(int(problem.work.left[CHANGED])):
         load = Load(*problem.course.loads[i])
