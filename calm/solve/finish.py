@@ -180,7 +180,7 @@ def audit_refusal(ending: int, value: float) -> NoEquilibrium:
     return Status.NOT_CONVERGED.because(f"A piece is {value:.1e} rad out of balance.")
 
 
-def closing_refusal(closed: Closed, towed: bool) -> NoEquilibrium:
+def closing_refusal(closed: Closed) -> NoEquilibrium:
     """Return why a line does not close."""
     if closed.ending == solution.MARCH_STOPPED:
         return march_stopped(closed.value)
@@ -190,9 +190,8 @@ def closing_refusal(closed: Closed, towed: bool) -> NoEquilibrium:
         return Status.SLACK.because(
             "The line is slack: its shape depends on the last digits of the buoyancy in use."
         )
-    end_point = "ship" if towed else "anchor"
     return Status.NOT_CONVERGED.because(
-        f"The line's end misses the {end_point} by {closed.value:.3g} m."
+        f"The line's end misses the anchor by {closed.value:.3g} m."
     )
 
 
@@ -210,7 +209,7 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
         solution.MISSES,
         solution.SLACK_ON_DIGITS,
     ):
-        return closing_refusal(found.refined.closed, False)
+        return closing_refusal(found.refined.closed)
     if ending == solution.UNSUPPORTED:
         return too_heavy(standing_lift(line, water))
     if ending == solution.SLACK_AT_REST:

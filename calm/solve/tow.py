@@ -92,8 +92,8 @@ def solve_tow(
     _refuse_limp(line)
     expect_many(1.0)
     water = _relative(line, water, towing)
-    past = tuple(map(float, water.current_at(np.zeros(()))))
-    ship = LegEnd(place=(0.0, 0.0, towing.height), past=past)
+    u, v, w = map(float, water.current_at(np.zeros(())))
+    ship = LegEnd(place=(0.0, 0.0, towing.height), past=(u, v, w))
     leg = NetLeg(line, ship, LegEnd())
     solve = partial(_solved, towing=towing)
     found, other_depth = with_room(solve, [leg], 0, water, settings or Settings())
@@ -190,7 +190,8 @@ def _lacking(net: NetSearch) -> bool:
 
 def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
     """Find the depth of the free end at the deepest root, and that of the next one above [m]."""
-    span, found = rough.span, []
+    span = rough.span
+    found: list[float] = []
     allowed = rough.net.settings.tolerance * span
     shallowest = -towing.height - span if towing.in_air else 0.0
     depth = max(span - towing.height, 1e-3 * span)
