@@ -17,6 +17,7 @@ from calm.physics.line import (
     RUNS_OFF,
     Record,
     State,
+    along_bed,
     off_bed,
     write_element,
 )
@@ -35,6 +36,8 @@ from calm.solve.net_problem import (
     NORTH,
     SLACK,
     STAGE,
+    TO_EAST,
+    TO_NORTH,
     Marching,
     NetProblem,
     bed_of,
@@ -153,8 +156,11 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
     if recorded:
         set_row(problem.course.loads, 0, pull_of(-passed[5], -passed[3], -passed[4]))
         turn_round(record, nodes)
+    state[TO_EAST], state[TO_NORTH] = east, north
     if lies:
-        foot: State = (0.0, 0.0, height, -east, -north, -along, -1.0, level)
+        east, north, up = along_bed(bed, east, north, up)
+        state[TO_EAST], state[TO_NORTH] = east, north
+        foot: State = (0.0, 0.0, height, -east, -north, -up, -1.0, level)
         end, count, grounded = lay_line(
             problem.course, bed, foot, leg.stages - stage, hanging, record, recorded, nodes
         )
@@ -162,7 +168,7 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
         state[LIES] = sqrt(end[0] * end[0] + end[1] * end[1])
         if recorded:
             record[3][nodes - 1], record[4][nodes - 1] = -east, -north
-            record[5][nodes - 1] = -along
+            record[5][nodes - 1] = -up
     meet(net, i, x)
     if recorded and state[SLACK] > 0.0:
         lay_loosely(net, i, x, record)
@@ -261,7 +267,7 @@ def meet(net: NetProblem, i: int, x: Sequence[float]) -> None:
     share, e, n = 0.0, east, north
     if reach > 0.0:
         per_force = net.length / net.scale[at]
-        e, n = e + per_force * x[at], n + per_force * x[at + 1]
+        e, n = e + per_force * state[TO_EAST], n + per_force * state[TO_NORTH]
         share = min(reach / max(sqrt(e * e + n * n), 1e-300), 1.0)
     passed[0], passed[1] = share * e - east, share * n - north
     state[SLACK] = reach - sqrt(east * east + north * north) if share == 1.0 else 0.0
