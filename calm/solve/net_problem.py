@@ -19,8 +19,8 @@ there [m], its share of a float's buoyancy in use, how often it was marched; its
 them that hang."""
 EAST, NORTH, TO_EAST, TO_NORTH, LIES, SLACK = range(6, 12)
 """And of an anchored leg: the way from its touchdown to its upper end east and north [m], the pull
-at the touchdown to the east and north [N], how far the rest reaches along the seabed [m], and how
-much of that it does not need to come to its anchor [m]."""
+at the touchdown to the east and north [N], how far the rest reaches along the seabed [m], and by
+how much that is more than the way to its anchor [m]."""
 OF_LEG = 12
 OUT = 7
 """Results of a march: way east and north, height and force where it came out, or of an anchored leg

@@ -165,7 +165,8 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
             problem.course, bed, foot, leg.stages - stage, hanging, record, recorded, nodes
         )
         state[STAGE], state[COUNT], state[GROUNDED] = leg.stages - stage, count, grounded
-        state[LIES] = sqrt(end[0] * end[0] + end[1] * end[1])
+        down = end[2] - height
+        state[LIES] = sqrt(end[0] * end[0] + end[1] * end[1] + down * down)
         if recorded:
             record[3][nodes - 1], record[4][nodes - 1] = -east, -north
             record[5][nodes - 1] = -up
@@ -266,6 +267,9 @@ def meet(net: NetProblem, i: int, x: Sequence[float]) -> None:
     north = to_north - from_north + state[NORTH]
     share, e, n = 0.0, east, north
     if reach > 0.0:
+        way, rise = sqrt(east * east + north * north), bed.east * east + bed.north * north
+        if way > 0.0:
+            reach *= way / sqrt(way * way + rise * rise)
         per_force = net.length / net.scale[at]
         e, n = e + per_force * state[TO_EAST], n + per_force * state[TO_NORTH]
         share = min(reach / max(sqrt(e * e + n * n), 1e-300), 1.0)
@@ -289,7 +293,8 @@ def lay_loosely(net: NetProblem, i: int, x: Sequence[float], record: Record) -> 
     down = net.legs[i].seabed - record[2][foot]
     for n in range(hung, count):
         dx, dy = record[0][n] - record[0][foot], record[1][n] - record[1][foot]
-        share = sqrt(dx * dx + dy * dy) / reach
+        dz = record[2][n] - record[2][foot]
+        share = sqrt(dx * dx + dy * dy + dz * dz) / reach
         record[0][n] = record[0][foot] + share * east
         record[1][n] = record[1][foot] + share * north
         record[2][n] = record[2][foot] + share * down
