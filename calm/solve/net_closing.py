@@ -35,8 +35,8 @@ WORTH, WORTH_OF_MANY = 5e-5, 2e-5
 """Errors, as shares of the water depth and of the greatest tension, above which segments are
 halved once more, `MOST_HALVINGS` times; of one of many, whose segments are longer."""
 MOST_HALVINGS = 3
-CHOICES = 2
-"""How often segments are chosen: the first time where a shape only about is."""
+BEFORE_CHOICE = 1e-7
+"""As `CLOSED`, of a shape in which segments are chosen that are to depend on nothing but the net."""
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 SINGULAR = 1e-14
@@ -215,19 +215,30 @@ def moved_ends(net: NetProblem, x: Sequence[float], record: int) -> float:
     return greatest
 
 
+def close_coarsely(
+    net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
+) -> int:
+    """Choose segments of twice a step [rad] and close a net that about is on them."""
+    choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
+    failure = left_over(net, x, choosing, False)
+    if failure != GOES_ON:
+        return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
+    coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
+    return close_on(net, x, coarse, enough, True)
+
+
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
     """Close a net that about is to the last digits, on segments that are short enough."""
-    worth = WORTH_OF_MANY if net.lines.limits.near > 0.0 else WORTH
+    many = net.lines.limits.near > 0.0
+    worth = WORTH_OF_MANY if many else WORTH
+    if not many:  # segments are chosen anew where these lead
+        ending = close_coarsely(net, sea, x, step, max(enough, BEFORE_CHOICE))
+        if ending != CAME_OUT:
+            return ending
     for _ in range(MOST_HALVINGS):
-        for _ in range(CHOICES):
-            choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
-            failure = left_over(net, x, choosing, False)
-            if failure != GOES_ON:
-                return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
-            coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
-            ending = close_on(net, x, coarse, enough, True)
-            if ending != CAME_OUT:
-                return ending
+        ending = close_coarsely(net, sea, x, step, enough)
+        if ending != CAME_OUT:
+            return ending
         moved_ends(net, x, COARSE)
         for i in range(len(net.legs)):
             halve(leg_of(net, sea, i))
