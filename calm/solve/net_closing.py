@@ -38,9 +38,8 @@ WORTH = 4e-5
 """Errors, as shares of the span and of the greatest tension, above which segments are halved once
 more, `MOST_HALVINGS` times."""
 MOST_HALVINGS = 3
-CHOICES = 2
-"""How often segments are chosen: the first time where a shape only about is. The root of a single
-unknown is found that well beforehand."""
+BEFORE_CHOICE = 1e-7
+"""As `CLOSED`, of a shape in which segments are chosen that are to depend on nothing but the net."""
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
@@ -226,18 +225,29 @@ def drifts(net: NetProblem) -> bool:
     return anchored
 
 
+def close_coarsely(
+    net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
+) -> int:
+    """Choose segments of twice a step [rad] and close a net that about is on them."""
+    choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
+    failure = left_over(net, x, choosing, False)
+    if failure != GOES_ON:
+        return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
+    coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
+    return close_on(net, x, coarse, enough, True)
+
+
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
     """Close a net that about is to the last digits, on segments that are short enough."""
+    # the root of a single unknown is known well; else segments are chosen anew where these lead
+    if len(x) > 1 and net.lines.limits.near == 0.0:
+        ending = close_coarsely(net, sea, x, step, max(enough, BEFORE_CHOICE))
+        if ending != CAME_OUT:
+            return ending
     for _ in range(MOST_HALVINGS):
-        for _ in range(CHOICES if len(x) > 1 else 1):
-            choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
-            failure = left_over(net, x, choosing, False)
-            if failure != GOES_ON:
-                return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
-            coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
-            ending = close_on(net, x, coarse, enough, True)
-            if ending != CAME_OUT:
-                return ending
+        ending = close_coarsely(net, sea, x, step, enough)
+        if ending != CAME_OUT:
+            return ending
         keep(x, net.coarse)
         for i in range(len(net.legs)):
             state = net.state[i]
