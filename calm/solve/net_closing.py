@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from calm.physics.line import GOES_ON, NO_ROOM
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
-from calm.solve.accuracy import Extent, bent, extrapolate, take_as_marched, tension_at
+from calm.solve.accuracy import Extent, extrapolate, tension_at
 from calm.solve.net_march import left_over
 from calm.solve.net_problem import (
     ANCHORED,
@@ -25,7 +25,6 @@ from calm.solve.net_problem import (
     STANDING,
     Marching,
     NetProblem,
-    leg_of,
 )
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 
@@ -256,35 +255,29 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
         ending = close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
         if ending != CAME_OUT:
             return ending
-        if extrapolate_net(net, sea, x) <= 1.0:
+        if extrapolate_net(net, x) <= 1.0:
             break
         step *= 0.5
     return CAME_OUT
 
 
-def extrapolate_net(net: NetProblem, sea: Sea, x: Sequence[float]) -> float:
+def extrapolate_net(net: NetProblem, x: Sequence[float]) -> float:
     """Extrapolate all legs and the places of nodes; how many times the errors are above the target.
-
-    If a bend in one leg costs as much as the rest, nothing is extrapolated.
     """
     records, near = net.lines.work.records, net.lines.limits.near
     deep = taut = moved = greatest = 0.0
-    kinked = False
     for k in range(len(x)):
         net.better[k] = x[k] + (x[k] - net.coarse[k]) / 3.0
     for k in range(net.nodes_at, len(x), 3):
         east, north = net.better[k] - x[k], net.better[k + 1] - x[k + 1]
         moved = max(moved, sqrt(east * east + north * north), abs(net.better[k + 2] - x[k + 2]))
     for i in range(len(net.legs)):
-        state, record, leg = net.state[i], records[i][FINE], leg_of(net, sea, i)
+        state, record = net.state[i], records[i][FINE]
         nodes, hanging = int(state[COUNT]), int(state[HUNG]) - 1
         coarse_hanging = int(state[COARSE_HUNG]) - 1
         coarse = Extent(int(state[COARSE_COUNT]), coarse_hanging, state[COARSE_STAGE] >= 0.0)
         fine = Extent(nodes, hanging, state[STAGE] >= 0.0)
         errors = extrapolate(records[i][COARSE], coarse, record, fine, near)
-        if near == 0.0:
-            bends, errors = bent(leg, hanging, errors)
-            kinked = kinked or bends
         deep, taut = max(deep, errors.depth), max(taut, errors.tension)
         for n in range(nodes):
             greatest = max(greatest, tension_at(record, n))
@@ -293,10 +286,6 @@ def extrapolate_net(net: NetProblem, sea: Sea, x: Sequence[float]) -> float:
         find_ends(RefereeShape(record, nodes, nodes - 1, first, last))
         keep(first, net.first[i])
         keep(last, net.last[i])
-    if kinked:
-        keep(x, net.better)
-        for i in range(len(net.legs)):
-            take_as_marched(records[i][FINE], int(net.state[i][COUNT]))
     net.errors[DEPTH_ERROR], net.errors[TENSION_ERROR] = deep + moved, taut
     return max((deep + moved) / (WORTH * net.span), taut / (WORTH * max(greatest, 1e-300)))
 
