@@ -262,8 +262,7 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
 
 
 def extrapolate_net(net: NetProblem, x: Sequence[float]) -> float:
-    """Extrapolate all legs and the places of nodes; how many times the errors are above the target.
-    """
+    """Extrapolate all legs and the places of nodes; how many times the errors are above the target."""
     records, near = net.lines.work.records, net.lines.limits.near
     deep = taut = moved = greatest = 0.0
     for k in range(len(x)):
