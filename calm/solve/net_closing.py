@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from calm.physics.line import GOES_ON, NO_ROOM
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
-from calm.solve.accuracy import Extent, bent, extrapolate, take_as_marched, tension_at
+from calm.solve.accuracy import Extent, extrapolate, tension_at
 from calm.solve.net_march import left_over
 from calm.solve.net_problem import (
     ANCHORED,
@@ -25,7 +25,6 @@ from calm.solve.net_problem import (
     STANDING,
     Marching,
     NetProblem,
-    leg_of,
 )
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 
@@ -38,9 +37,8 @@ WORTH = 4e-5
 """Errors, as shares of the span and of the greatest tension, above which segments are halved once
 more, `MOST_HALVINGS` times."""
 MOST_HALVINGS = 3
-CHOICES = 2
-"""How often segments are chosen: the first time where a shape only about is. The root of a single
-unknown is found that well beforehand."""
+BEFORE_CHOICE = 1e-7
+"""As `CLOSED`, of a shape in which segments are chosen that are to depend on nothing but the net."""
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
@@ -226,18 +224,29 @@ def drifts(net: NetProblem) -> bool:
     return anchored
 
 
+def close_coarsely(
+    net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
+) -> int:
+    """Choose segments of twice a step [rad] and close a net that about is on them."""
+    choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
+    failure = left_over(net, x, choosing, False)
+    if failure != GOES_ON:
+        return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
+    coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
+    return close_on(net, x, coarse, enough, True)
+
+
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
     """Close a net that about is to the last digits, on segments that are short enough."""
+    # the root of a single unknown is known well; else segments are chosen anew where these lead
+    if len(x) > 1 and net.lines.limits.near == 0.0:
+        ending = close_coarsely(net, sea, x, step, max(enough, BEFORE_CHOICE))
+        if ending != CAME_OUT:
+            return ending
     for _ in range(MOST_HALVINGS):
-        for _ in range(CHOICES if len(x) > 1 else 1):
-            choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
-            failure = left_over(net, x, choosing, False)
-            if failure != GOES_ON:
-                return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
-            coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
-            ending = close_on(net, x, coarse, enough, True)
-            if ending != CAME_OUT:
-                return ending
+        ending = close_coarsely(net, sea, x, step, enough)
+        if ending != CAME_OUT:
+            return ending
         keep(x, net.coarse)
         for i in range(len(net.legs)):
             state = net.state[i]
@@ -246,35 +255,28 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
         ending = close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
         if ending != CAME_OUT:
             return ending
-        if extrapolate_net(net, sea, x) <= 1.0:
+        if extrapolate_net(net, x) <= 1.0:
             break
         step *= 0.5
     return CAME_OUT
 
 
-def extrapolate_net(net: NetProblem, sea: Sea, x: Sequence[float]) -> float:
-    """Extrapolate all legs and the places of nodes; how many times the errors are above the target.
-
-    If a bend in one leg costs as much as the rest, nothing is extrapolated.
-    """
+def extrapolate_net(net: NetProblem, x: Sequence[float]) -> float:
+    """Extrapolate all legs and the places of nodes; how many times the errors are above the target."""
     records, near = net.lines.work.records, net.lines.limits.near
     deep = taut = moved = greatest = 0.0
-    kinked = False
     for k in range(len(x)):
         net.better[k] = x[k] + (x[k] - net.coarse[k]) / 3.0
     for k in range(net.nodes_at, len(x), 3):
         east, north = net.better[k] - x[k], net.better[k + 1] - x[k + 1]
         moved = max(moved, sqrt(east * east + north * north), abs(net.better[k + 2] - x[k + 2]))
     for i in range(len(net.legs)):
-        state, record, leg = net.state[i], records[i][FINE], leg_of(net, sea, i)
+        state, record = net.state[i], records[i][FINE]
         nodes, hanging = int(state[COUNT]), int(state[HUNG]) - 1
         coarse_hanging = int(state[COARSE_HUNG]) - 1
         coarse = Extent(int(state[COARSE_COUNT]), coarse_hanging, state[COARSE_STAGE] >= 0.0)
         fine = Extent(nodes, hanging, state[STAGE] >= 0.0)
         errors = extrapolate(records[i][COARSE], coarse, record, fine, near)
-        if near == 0.0:
-            bends, errors = bent(leg, hanging, errors)
-            kinked = kinked or bends
         deep, taut = max(deep, errors.depth), max(taut, errors.tension)
         for n in range(nodes):
             greatest = max(greatest, tension_at(record, n))
@@ -283,10 +285,6 @@ def extrapolate_net(net: NetProblem, sea: Sea, x: Sequence[float]) -> float:
         find_ends(RefereeShape(record, nodes, nodes - 1, first, last))
         keep(first, net.first[i])
         keep(last, net.last[i])
-    if kinked:
-        keep(x, net.better)
-        for i in range(len(net.legs)):
-            take_as_marched(records[i][FINE], int(net.state[i][COUNT]))
     net.errors[DEPTH_ERROR], net.errors[TENSION_ERROR] = deep + moved, taut
     return max((deep + moved) / (WORTH * net.span), taut / (WORTH * max(greatest, 1e-300)))
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from calm.physics.line import ENDS, SEGMENT, Record, off_bed
 from calm.physics.passing import FAILURE, NODES
-from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, Extent, bent, extrapolate, take_as_marched
+from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, Extent, extrapolate
 from calm.solve.closing import Closed, Root, not_closed, planned, polish, segments_of
 from calm.solve.problem import (
     BELOW,
@@ -98,11 +98,6 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
             break
         root, step = fine.root, step * max(0.8 / sqrt(excess), 0.2)
     share, grounded = fine.root.x, fine.grounded
-    if problem.limits.near == 0.0:  # the errors of one of many are not reported
-        kinked, errors = bent(problem, fine.hanging, errors)
-        if kinked:
-            take_as_marched(records[FINE], fine.nodes)
-            return Refined(fine, segments, errors, share, grounded)
     if coarse.root.unknown.sought == fine.root.unknown.sought:
         share += (share - coarse.root.x) / 3.0
     if coarse.landed and fine.landed:
