@@ -1,8 +1,8 @@
-"""A towed line: how deep its free end runs behind a ship that steams on steadily.
+"""Steady shape of a line towed by a ship.
 
-It is a leg of a net that is held at the ship, see `calm.solve.net`. What is found here is which of
-its equilibria is closed: rough marches from the deepest free end upwards show where its upper end
-comes to the ship, each at the frequency that a line strums with there.
+A tow is a leg of a net, held at the ship, and `calm.solve.net` closes it. This module finds the
+depth of the free end to start from: rough marches from below upwards, until the upper end of the
+line comes to the tow point.
 """
 
 from dataclasses import dataclass, replace
@@ -32,13 +32,14 @@ FARTHER = 1.05
 """In an even current, how far up the other side of the root is tried, in misses: where levels cut a
 line a march is not quite the same at every depth."""
 ROUGHLY = 5e-3
-"""What is left before the last step towards a rough root, as a share of the line out."""
+"""Miss from which a rough root is one linear step away, as a share of the line out."""
 SAME = 1e-6
-"""What the frequency of a line that strums may lack, as a share of it."""
+"""Relative tolerance of the frequency of a line that strums."""
 NEARLY_OUT = 2e-3
 """Depth at which a line that will not close is taken to be leaving the water, as a share of it."""
 NARROW_JUMP, AT_THE_JUMP = 1e-9, 1e-6
-"""How wide a jump of the miss may be, and how near to the surface what causes it, in lines out."""
+"""Width of a jump of the miss, and distance from the surface of the body that causes it, as shares
+of the line out."""
 PAY_OUT = "Pay out more line."
 RIDE_CLEAR = "Pay out or take in some line, so that it is clear of the surface."
 AT_SURFACE = "The towed line comes up to the surface behind the ship."
@@ -47,7 +48,7 @@ STAY_BELOW = "Give it more weight or a depressor, or tow slower."
 
 @dataclass(frozen=True)
 class Towing:
-    """Hold what tows a line, and in what.
+    """Motion of the ship, height of the tow point, and wind.
 
     Attributes
     ----------
@@ -152,7 +153,7 @@ class _Marches:
     Parameters
     ----------
     step : angle step [rad]
-    kept : the segments to be taken, `CHOSEN` or `HALVED`; None where each march chooses its own
+    kept : the segments that are used, `CHOSEN` or `HALVED`; None if each march chooses its own
     """
 
     def __init__(self, net: NetSearch, step: float, kept: int | None = None) -> None:
@@ -163,17 +164,17 @@ class _Marches:
 
     @property
     def shape(self) -> Trace:
-        """The shape that was marched last."""
+        """Shape of the last march."""
         return self.net.shape(0, np.zeros(1))
 
     def miss(self, _: None, depth: float) -> float:
-        """How high the line ends above the tow point [m]; NaN where the march stops."""
+        """Height of the upper end above the tow point [m]; NaN if the march stops."""
         self.failure, _same = self.net.asked(net_closing.MARCH, np.array([depth]), self._how)
         return float(self.net.net.found[0]) * self.span if self.failure == GOES_ON else nan
 
 
 def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
-    """Return the deepest equilibrium, and the depth of the free end at the next one above [m]."""
+    """Find the deepest equilibrium, and the depth of the free end in the next one above [m]."""
     rough = _Marches(net, max(COARSE_STEP, 2.0 * net.settings.angle_step))
     start, other_depth = _locate(rough, towing)
     how = net.marching(net.settings.angle_step, CHOSEN, FINE, given=False)
@@ -184,12 +185,12 @@ def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
 
 
 def _lacking(net: NetSearch) -> bool:
-    """Whether the line does not strum as it sheds, as it was marched last."""
+    """Whether the frequency of the last march is not the one that the line sheds at the ship."""
     return bool(abs(net.net.state[0][LACKING]) > SAME * net.net.state[0][FREQUENCY])
 
 
 def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
-    """Find the depth of the free end at the deepest root, and that of the next one above [m]."""
+    """Find the depth of the free end at the deepest root, and at the next one above [m]."""
     span = rough.span
     found: list[float] = []
     allowed = rough.net.settings.tolerance * span
@@ -236,7 +237,7 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
 
 
 def _upwards(water: Water, depth: float, low: float, span: float, shallowest: float) -> list[float]:
-    """Depths to try, from below; where nothing changes with depth the miss itself is the way."""
+    """Depths to try, from below. In even water the miss itself is the distance to the root."""
     if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
         steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()
         return steps
@@ -259,7 +260,7 @@ def _refuse_stopped(rough: _Marches, miss: float) -> None:
 
 
 def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEquilibrium:
-    """Why a tow does not close near a rough root; the depth tried last was `last` [m]."""
+    """Diagnose why a tow does not close near a rough root; `last` is the depth tried last [m]."""
     net, nearly_out = rough.net, NEARLY_OUT * rough.span
     stopped, lacking = net.net.lines.work.left[0][FAILURE], _lacking(net)
     failure = Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
@@ -271,7 +272,7 @@ def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEq
         )
     if towing.in_air:
         return failure
-    half_out = _half_out(net, last, lacking)
+    half_out = _half_out(net, last, lacking) if towing.height > 0.0 else None
     surfaces = start < nearly_out
     if not isnan(rough.miss(None, start)):
         height = rough.shape.position[:, 2]
@@ -282,11 +283,15 @@ def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEq
 
 
 def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | None:
-    """Return why a tow does not close at a depth where its miss jumps, or its frequency, which is
-    then lacking; None where neither does.
+    """Diagnose a rigid piece or a clamp at the surface, at which the miss or the frequency jumps.
 
-    A rigid piece or a clamp is in the water or out of it, by its middle. Where the line is too
-    high with one in the water and too low with it out, it would ride half out: no equilibrium.
+    CALM takes such a body to be in the water or out of it, by its middle. If the line closes in
+    neither state, the body would ride half out of the water.
+
+    Parameters
+    ----------
+    depth : of the free end, where the search for a root has ended [m]
+    lacking : whether the frequency was not found there
     """
     step, flexible = net.settings.angle_step, net.laid[0].line.flexible
     for kept in (_Marches(net, 2.0 * step, CHOSEN), _Marches(net, step, HALVED)):
@@ -313,7 +318,7 @@ def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | No
 
 
 def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
-    """Only what hangs between the surface and the ship may be in the air; nothing is in the bed."""
+    """Refuse parts in the air, except between the surface and the ship, and parts in the seabed."""
     height, depth = solution.position[:, 2], solution.water.depth
     margin = max(solution.depth_error, 1e-6 * float(solution.line.length.sum()))
     lowest = int(np.argmin(height))
