@@ -22,10 +22,10 @@ from machine import describe
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from tests.validation.comparison import CONVERGED, Comparison, compared
+from tests.validation.comparison import CONVERGED, NET, Comparison, compared
 from tests.validation.families import FAMILIES
 
-SWEEP = {"mooring": 600, "stepped": 40, "tow": 100, "tow, strumming": 40}
+SWEEP = {"mooring": 600, "stepped": 40, "tow": 100, "tow, strumming": 40, "net": 100}
 QUANTILES = 50, 90, 99, 100
 MARCHES, CLOSURE = 60, 1e-6
 PROMISED, OF_BATCH = (5e-5, 2e-4), (1e-4, 2e-4)
@@ -133,7 +133,7 @@ def print_batch(found: Numbered) -> None:
 def main(cases: str = "", first: str = "1", *families: str) -> None:
     """The sweep, or some cases of every family or of some."""
     print(describe("calm-mooring", "numba", "numpy", "scipy"))
-    chosen = SWEEP if not cases else dict.fromkeys(families or FAMILIES, int(cases))
+    chosen = SWEEP if not cases else dict.fromkeys(families or (*FAMILIES, NET), int(cases))
     for family, count in chosen.items():
         measure(family, count, int(first))
 

@@ -171,7 +171,7 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
         state[STAGE], state[COUNT], state[GROUNDED] = leg.stages - stage, count, grounded
         down = end[2] - height
         state[LIES] = sqrt(end[0] * end[0] + end[1] * end[1] + down * down)
-        if recorded:
+        if recorded and hanging > 0.0:  # else it bears a part of what lies there
             record[3][nodes - 1], record[4][nodes - 1] = -east, -north
             record[5][nodes - 1] = -up
     meet(net, i, x)

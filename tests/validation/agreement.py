@@ -8,6 +8,7 @@ import numpy as np
 
 from calm.solve import Solution
 from tests.validation.closing import Equilibrium
+from tests.validation.continuous import Shape
 from tests.validation.loads import DOWN, Load, Profile, Vector, on_clamp, on_piece
 from tests.validation.towed import Towed
 
@@ -36,16 +37,19 @@ class Difference:
 
 def difference(solution: Solution, referee: Equilibrium | Towed) -> Difference:
     """CALM's solution against the referee's."""
-    return apart(ends_of(solution), integrated_ends(referee), size_of(solution))
+    return apart(ends_of(solution), integrated_ends(referee.shape), size_of(solution))
 
 
 def apart(found: Ends, expected: Ends, size: float) -> Difference:
-    """By how much ends are off what is expected; `size` is what places are measured by [m]."""
+    """By how much ends are off what is expected, where that is known.
+
+    `size` is what places are measured by [m].
+    """
     (places, tensions), (there, right) = found, expected
-    metres, newtons = np.abs(places - there).max(), np.abs(tensions - right)
-    relative = newtons / np.maximum(right, 1e-3 * right.max())
+    metres, newtons = np.nanmax(np.abs(places - there)), np.abs(tensions - right)
+    relative = newtons / np.maximum(right, 1e-3 * np.nanmax(right))
     return Difference(
-        float(metres / size), float(relative.max()), float(metres), float(newtons.max())
+        float(metres / size), float(np.nanmax(relative)), float(metres), float(np.nanmax(newtons))
     )
 
 
@@ -85,9 +89,8 @@ def last_before_touchdown(solution: Solution) -> int:
     return solution.hanging - 2 if solution.landed else solution.hanging
 
 
-def integrated_ends(referee: Equilibrium | Towed) -> Ends:
-    """Those of an answer of the referee."""
-    shape = referee.shape
+def integrated_ends(shape: Shape) -> Ends:
+    """Those of a shape of the referee."""
     forces = np.concatenate([shape.force_top, shape.force_bottom])
     places = np.concatenate([shape.top, shape.bottom, shape.clamp])
     return places, np.linalg.norm(forces, axis=1)

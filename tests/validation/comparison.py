@@ -1,15 +1,20 @@
-"""One case of a family: CALM against the referee, at both speeds, and as one of many profiles."""
+"""One case of a family: CALM against the referee, at both speeds, and as one of many profiles.
+
+Of a net the referee starts from CALM's answer, so that it says nothing of nets that CALM refuses.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from random import Random
+from typing import Any
 
 import numpy as np
 
 from calm.errors import NoEquilibrium
 from calm.physics.seabed import required_weight
 from calm.solve import Settings, Solution
+from calm.solve.net import NetSolution
 from tests.validation.agreement import (
     Difference,
     apart,
@@ -20,13 +25,13 @@ from tests.validation.agreement import (
     integrated_ends,
     size_of,
 )
-from tests.validation.batched import in_company
+from tests.validation.batched import in_company, net_in_company, net_run
 from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.closing import Equilibrium
-from tests.validation.families import FAMILIES, Case, MooringCase
+from tests.validation.families import FAMILIES, Case, MooringCase, NetCase, random_net
 from tests.validation.towed import HalfOut, Towed
 
-CONVERGED = "converged"
+CONVERGED, NET = "converged", "net"
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,9 @@ class Comparison:
 
 
 def compared(family: str, number: int) -> Comparison:
-    """Compare a case of a family, by its number."""
+    """Compare a case of a family, or a net, by its number."""
+    if family == NET:
+        return _compared_net(random_net(Random(f"{family} {number}")))
     case = FAMILIES[family](Random(f"{family} {number}"))
     referee, refusal, undecided = _integrated(case)
     solution, status = _solved(case, compiled=True)
@@ -108,7 +115,41 @@ def _integrated(case: Case) -> tuple[Equilibrium | Towed | None, str, bool]:
         return None, str(none), False
 
 
-def _solved(case: Case, *, compiled: bool) -> tuple[Solution | None, str]:
+def _compared_net(case: NetCase) -> Comparison:
+    (found, status), (plain, plain_status) = (
+        _solved(case, compiled=speed) for speed in (True, False)
+    )
+    differs = (status, _net_bytes(found)) != (plain_status, _net_bytes(plain))
+    batch_status, ends = net_in_company(case.net)
+    out = Comparison(status, "", False, plain_differs=differs, batch_status=batch_status)
+    if found is None:
+        return replace(out, refusal="not sought")
+    if batch_status == CONVERGED:
+        batch = apart(ends, net_run(case.net), case.net.water.depth)
+        out = replace(out, batch=batch)
+    try:
+        expected = case.integrated(found)
+    except NoContinuousSolution as none:
+        return replace(out, refusal=str(none), undecided=True)
+    legs = [ends_of(leg) for leg in found.legs]
+    mine, its = (
+        tuple(np.concatenate(parts) for parts in zip(*each, strict=True))
+        for each in (legs, expected)
+    )  # fmt: skip
+    error = apart(mine, its, case.net.water.depth)
+    return replace(
+        out,
+        error=error,
+        place_ratio=error.metres / found.depth_error,
+        tension_ratio=error.newtons / found.tension_error,
+    )
+
+
+def _net_bytes(found: NetSolution | None) -> bytes:
+    return b"" if found is None else b"".join(map(_bytes, found.legs))
+
+
+def _solved(case: Case | NetCase, *, compiled: bool) -> tuple[Any, str]:
     try:
         return case(Settings(compiled=compiled)), CONVERGED
     except NoEquilibrium as refusal:
@@ -118,7 +159,7 @@ def _solved(case: Case, *, compiled: bool) -> tuple[Solution | None, str]:
 def _stand_apart(solution: Solution, referee: Equilibrium | Towed) -> bool:
     """Whether of two equilibria CALM and the referee have each another one."""
     lands = referee.shape.grounded is not None
-    off = np.abs(ends_of(solution)[0] - integrated_ends(referee)[0]).max()
+    off = np.abs(ends_of(solution)[0] - integrated_ends(referee.shape)[0]).max()
     return solution.landed != lands or bool(off > 1e-3 * size_of(solution))
 
 

@@ -114,24 +114,27 @@ class March:
         ]
         self.lowest_lift = lowest_lift(line, self.clamps)
 
-    def kept(self, depth: float, share: Vector, lands: bool = False) -> Shape:
+    def kept(
+        self, depth: float, share: Vector, lands: bool = False, pull: Vector | None = None
+    ) -> Shape:
         """The shape, with the paths of its cables."""
         self.keeps_paths = True
-        shape = self.down(depth, share, lands=lands)
+        shape = self.down(depth, share, lands=lands, pull=pull)
         self.keeps_paths = False
         return shape
 
     def down(
-        self, depth: float, share: Vector, until: int | None = None, lands: bool = False
-    ) -> Shape:
+        self, depth: float, share: Vector, until: int | None = None, lands: bool = False,
+        pull: Vector | None = None,
+    ) -> Shape:  # fmt: skip
         """The shape with the free end at `depth` and the part `share` (n,) of each buoyancy.
 
         It is left blank below the top of the piece `until`. It may come down level and lie on the
-        seabed, wherever that is, if it `lands`.
+        seabed, wherever that is, if it `lands`. One that begins at no free end has a `pull` there.
         """
         n, m = len(self.line.length), len(self.line.clamp_piece)
         shape = Shape(*(np.zeros((k, 3)) for k in (n, n, n, n, m, m, m)))
-        place = Place(np.array([0.0, 0.0, -depth]), np.zeros(3))
+        place = Place(np.array([0.0, 0.0, -depth]), np.zeros(3) if pull is None else pull)
         shape.depths.append(depth)
         piece = 0
         while piece < (n if until is None else until):

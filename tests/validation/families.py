@@ -14,13 +14,19 @@ from random import Random
 
 import numpy as np
 
+from calm.case.net import Net, load
+from calm.files.legs import nodes_of
 from calm.physics.drag import Friction
 from calm.physics.line import Line, Water
 from calm.solve import Settings, Solution, Towing, solve_mooring, solve_tow
+from calm.solve.net import NetSolution, solve_net
 from tests.property.strategies import float_of, hardware, mooring, sea
 from tests.validation.afloat import Hull
+from tests.validation.agreement import Ends
 from tests.validation.closing import Equilibrium, solve_continuous
+from tests.validation.netted import solve_continuous_net
 from tests.validation.pieces import HALF_DENSITY, Piece, line_of, point
+from tests.validation.random_nets import net_text
 from tests.validation.random_tows import tow
 from tests.validation.test_curves import curved
 from tests.validation.test_random_floats import surface_mooring
@@ -73,6 +79,30 @@ class TowCase:
     def profile(self) -> Passing:
         """The water that its loads are recomputed in."""
         return Passing(self.water, self.towing)
+
+
+@dataclass(frozen=True)
+class NetCase:
+    """A net."""
+
+    net: Net
+
+    def __call__(self, settings: Settings) -> NetSolution:
+        """By CALM."""
+        nodes = len(nodes_of(self.net.file.legs))
+        return solve_net(self.net.legs, nodes, self.net.water, settings)
+
+    def integrated(self, found: NetSolution) -> list[Ends]:
+        """By the referee, near what CALM found."""
+        ends, _ = solve_continuous_net(self.net.legs, found, self.net.water)
+        return ends
+
+
+def random_net(random: Random) -> NetCase:
+    """A surface buoy on several legs, or floats below the surface."""
+    net = load("net.yaml", text=net_text(random))
+    assert isinstance(net, Net)
+    return NetCase(net)
 
 
 Case = MooringCase | TowCase
