@@ -37,6 +37,7 @@ from calm.solve.net import NetSearch, NetSolution
 from calm.solve.net_closing import AskedNet, ask_net, drifts, keep
 from calm.solve.net_problem import Marching, NetProblem, above_bed, place_of
 from calm.solve.problem import CHOSEN, FINE
+from calm.solve.solution import FOUND
 
 ROUGHLY = 1e-6
 """What may be left of lengths and forces, in shares: a run leaves less, which takes longer."""
@@ -118,11 +119,11 @@ def solve_net_rows(
         keep(paper.scale, net.scale)
         how = Marching(sea, 4.0 * step, CHOSEN, False, FINE)
         ending = ask(AskedNet(net_closing.CLOSE, net, paper.x, how, net_closing.NEAR, True), 0.0)
-        if ending == net_closing.CAME_OUT:
+        if ending == FOUND:
             how = Marching(sea, step, CHOSEN, False, FINE)
             ending = ask(AskedNet(net_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
         endings[case] = TO_SOLVE
-        if ending == net_closing.CAME_OUT and stands(net, paper):
+        if ending == FOUND and stands(net, paper):
             endings[case] = 0
             tell_net(net, paper, rows, case)
 

@@ -68,6 +68,7 @@ class Closed(NamedTuple):
     nodes, hanging : of the shape, and its elements above the touchdown, all where there is none
     landed : whether there is a touchdown
     grounded : unstretched length that lies below it [m]
+    segments : how many it has
     """
 
     ending: int
@@ -78,6 +79,7 @@ class Closed(NamedTuple):
     hanging: int
     landed: bool
     grounded: float
+    segments: int
 
 
 def whole_line(problem: LineProblem, lands: bool) -> Unknown:
@@ -268,12 +270,12 @@ def planned(search: Search, root: Root, step: float) -> Root:
     return Root(True, found.unknown, x, found.miss, found.slope)
 
 
-def segments_of(problem: LineProblem) -> int:
-    """Number of halves of the chosen segments."""
+def segments_of(problem: LineProblem, cuts: int) -> int:
+    """Number of the segments that were chosen, or of their halves."""
     chosen = 0
     for k in range(len(problem.course.cables)):
         chosen += problem.work.counts[k]
-    return 2 * chosen
+    return 2 * chosen if cuts == HALVED else chosen
 
 
 def polish(search: Search, root: Root, cuts: int, record: int) -> Closed:
@@ -312,12 +314,15 @@ def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
         ending = MISSES if found.unknown.sought == BELOW else SLACK_ON_DIGITS
         return not_closed(ending, abs(found.miss), found)
     nodes, hanging = int(left[NODES]), int(left[HANGING]) - 1
-    return Closed(FOUND, 0.0, -1, found, nodes, hanging, left[LANDED] >= 0.0, left[GROUNDED])
+    segments = segments_of(problem, cuts)
+    return Closed(
+        FOUND, 0.0, -1, found, nodes, hanging, left[LANDED] >= 0.0, left[GROUNDED], segments
+    )
 
 
 def not_closed(ending: int, value: float, root: Root) -> Closed:
     """Return how a line ended that does not close."""
-    return Closed(ending, value, -1, root, 0, 0, False, 0.0)
+    return Closed(ending, value, -1, root, 0, 0, False, 0.0, 0)
 
 
 def near_root(

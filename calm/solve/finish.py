@@ -104,7 +104,7 @@ def solution_of(
         carried=carried_by(line, problem) if unknown.sought != BELOW else line,
         riding=riding,
         marches=int(problem.work.left[MARCHES]),
-        segments=refined.segments,
+        segments=closed.segments,
         miss=closed.root.miss,
         depth_error=errors.depth,
         tension_error=errors.tension,

@@ -188,7 +188,7 @@ def tell(found: FoundShape, told: MutableSequence[float]) -> None:
     told[UNKNOWN_VALUE], told[MISS], told[SLOPE] = root.x, root.miss, root.slope
     told[NODES], told[HANGING] = closed.nodes, closed.hanging
     told[LANDED], told[GROUNDED] = closed.landed, closed.grounded
-    told[SEGMENTS] = found.refined.segments
+    told[SEGMENTS] = closed.segments
     told[FIRST_ERROR], told[FIRST_ERROR + 1] = errors.depth, errors.tension
     told[FIRST_ERROR + 2] = errors.relative
     told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
@@ -207,10 +207,12 @@ def as_told(told: Sequence[float]) -> FoundShape:
     unknown = Unknown(told[GOAL], sought, bool(rides), bool(lands), stages)
     root = Root(True, unknown, told[UNKNOWN_VALUE], told[MISS], told[SLOPE])
     value = float(told[VALUE])
-    closed = Closed(ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]))
+    closed = Closed(
+        ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]), segments
+    )
     errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
     other = OtherEquilibrium(*(float(figure) for figure in told[FIRST_OTHER : FIRST_OTHER + 5]))
-    refined = Refined(closed, segments, errors, float(told[SHARE_IN_USE]), float(told[LIES]))
+    refined = Refined(closed, errors, float(told[SHARE_IN_USE]), float(told[LIES]))
     audit = float(told[CLOSURE]), float(told[MOMENT])
     return FoundShape(ending, value, piece, refined, errors, *audit, other)
 
@@ -297,7 +299,7 @@ class Nearby:
             raise Status.NOT_CONVERGED.because("It lies on the seabed, or hangs, unlike the other.")
         errors = Errors(base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error)
         referee = referee_of(line, water, 0.0, compiled)
-        refined = Refined(closed, len(self._cuts), errors, closed.root.x, closed.grounded)
+        refined = Refined(closed, errors, closed.root.x, closed.grounded)
         problem = search.problem
         record = problem.work.records[FINE]
         outcome(take_as_marched, compiled, record, closed.nodes)

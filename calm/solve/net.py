@@ -24,7 +24,14 @@ from calm.solve.net_leg import LaidLeg, NetLeg, lay_net, leg_found, refuse_mispl
 from calm.solve.net_problem import Marching
 from calm.solve.net_start import NetStart, start_of
 from calm.solve.problem import CHOSEN, FINE, ROOM
-from calm.solve.solution import Settings, Solution, Status, expect_many, runs_compiled
+from calm.solve.solution import (
+    FOUND,
+    Settings,
+    Solution,
+    Status,
+    expect_many,
+    runs_compiled,
+)
 
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
@@ -120,7 +127,7 @@ class NetSearch:
         """Newton's method; None where it leads nowhere."""
         how = self.marching(step, CHOSEN, FINE, given=False)
         ending, found = self.asked(net_closing.CLOSE, x, how, enough)
-        return found if ending == net_closing.CAME_OUT else None
+        return found if ending == FOUND else None
 
     def settled(self, x: Floats) -> Floats:
         """The unknowns closed to the last digits, on segments that are short enough.
@@ -130,7 +137,7 @@ class NetSearch:
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=False)
         for enough in (net_closing.CLOSED, 100.0 * net_closing.CLOSED):  # slack ones; audited too
             ending, found = self.asked(net_closing.SETTLE, x, how, enough)
-            if ending == net_closing.CAME_OUT:
+            if ending == FOUND:
                 return found
         raise unsettled("its legs do not come together to the last digits")
 
@@ -296,7 +303,7 @@ class NearbyNet:
         chosen = net.marching(step, CHOSEN, FINE, given=False)
         _, x = net.asked(net_closing.MARCH, about(net, near), chosen)
         ending, self._x = net.asked(net_closing.CLOSE, x, self._how, net_closing.CLOSED)
-        if ending != net_closing.CAME_OUT:
+        if ending != FOUND:
             raise unsettled("its legs do not come together to the last digits")
         net.asked(net_closing.SLOPES, self._x, self._how)
         self._slopes = np.array(net.net.slopes)

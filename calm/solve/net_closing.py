@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from calm.physics.line import GOES_ON, NO_ROOM
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
-from calm.solve.accuracy import Extent, bent, extrapolate, take_as_marched, tension_at
+from calm.solve.accuracy import Errors, Extent, take_as_marched
 from calm.solve.net_march import left_over
 from calm.solve.net_problem import (
     ANCHORED,
@@ -28,16 +28,14 @@ from calm.solve.net_problem import (
     leg_of,
 )
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
+from calm.solve.settle import MOST_ROUNDS, compare, finer
+from calm.solve.solution import FOUND, NO_SHAPE_NEAR
 
 MOST_STEPS, HALVINGS = 60, 9
 """Newton steps towards a shape, and how often one is halved that leads nowhere."""
 NEAR, CLOSED = 1e-4, 1e-10
 """What is left of lengths and forces, as shares of the longest leg and of a typical force: before
 segments are kept, and in a shape."""
-WORTH = 4e-5
-"""Errors, as shares of the span and of the greatest tension, above which segments are halved once
-more, `MOST_HALVINGS` times."""
-MOST_HALVINGS = 3
 CHOICES = 2
 """How often segments are chosen: the first time where a shape only about is. The root of a single
 unknown is found that well beforehand."""
@@ -50,8 +48,8 @@ SINGULAR = 1e-14
 NO_HOLD = 1e-5
 """Pull at a touchdown, as a share of the weight of a leg, that holds nothing in place: more than the
 drag in a breath of current."""
-CAME_OUT, NOT_CLOSED, NEEDS_ROOM = range(3)
-"""How a net ends: closed; not; more segments than there is room for."""
+NEEDS_ROOM = -1
+"""How a net ends, besides FOUND and NO_SHAPE_NEAR: more segments than there is room for."""
 
 DEPTH_ERROR, TENSION_ERROR = range(2)
 
@@ -130,7 +128,7 @@ def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough:
     net.slopes[0][0] = slope
     if failure == NO_ROOM:
         return NEEDS_ROOM
-    return CAME_OUT if failure == GOES_ON and abs(net.found[0]) <= 100.0 * enough else NOT_CLOSED
+    return FOUND if failure == GOES_ON and abs(net.found[0]) <= 100.0 * enough else NO_SHAPE_NEAR
 
 
 def close_net(
@@ -148,7 +146,7 @@ def close_net(
         return close_one(net, x, how, enough)
     failure = left_over(net, x, how, not known)
     if failure != GOES_ON:
-        return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
+        return NEEDS_ROOM if failure == NO_ROOM else NO_SHAPE_NEAR
     return close_on(net, x, how, enough, known)
 
 
@@ -180,7 +178,7 @@ def close_on(
         plain = now < inf
         if not plain and fresh:
             if squares(left) > 1e4 * enough * enough:
-                return NOT_CLOSED
+                return NO_SHAPE_NEAR
             break
         if plain:
             keep(trial, x)
@@ -194,14 +192,14 @@ def close_on(
         if fresh and (not plain or squares(left) > enough * enough):
             failure = left_over(net, x, how, True)
             if failure != GOES_ON:
-                return NOT_CLOSED
+                return NO_SHAPE_NEAR
             keep(net.found, left)
             plain = False
     if squares(left) > 1e4 * enough * enough:
-        return NOT_CLOSED
+        return NO_SHAPE_NEAR
     if not plain:
         left_over(net, x, how, False)
-    return CAME_OUT
+    return FOUND
 
 
 def drifts(net: NetProblem) -> bool:
@@ -228,37 +226,47 @@ def drifts(net: NetProblem) -> bool:
 
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
     """Close a net that about is to the last digits, on segments that are short enough."""
-    for _ in range(MOST_HALVINGS):
-        for _ in range(CHOICES if len(x) > 1 else 1):
-            choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
-            failure = left_over(net, x, choosing, False)
-            if failure != GOES_ON:
-                return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
-            coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
-            ending = close_on(net, x, coarse, enough, True)
-            if ending != CAME_OUT:
-                return ending
-        keep(x, net.coarse)
-        for i in range(len(net.legs)):
-            state = net.state[i]
-            state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
-            state[COARSE_STAGE] = state[STAGE]
-        ending = close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
-        if ending != CAME_OUT:
+    asked = step
+    for _ in range(MOST_ROUNDS):
+        ending = close_both(net, sea, x, step, enough)
+        if ending != FOUND:
             return ending
-        if extrapolate_net(net, sea, x) <= 1.0:
+        segments = 0
+        for i in range(len(net.legs)):
+            for k in range(net.legs[i].cables):
+                segments += 2 * net.lines.work.counts[i][k]
+        step = finer(compare_legs(net, sea, x), net.span, asked, step, segments)
+        if step == 0.0:
             break
-        step *= 0.5
-    return CAME_OUT
+    return FOUND
 
 
-def extrapolate_net(net: NetProblem, sea: Sea, x: Sequence[float]) -> float:
-    """Extrapolate all legs and the places of nodes; how many times the errors are above the target.
+def close_both(
+    net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
+) -> int:
+    """Close a net near its unknowns on the segments chosen at twice a step, and on their halves."""
+    for _ in range(CHOICES if len(x) > 1 else 1):
+        failure = left_over(net, x, Marching(sea, 2.0 * step, CHOSEN, False, COARSE), False)
+        if failure != GOES_ON:
+            return NEEDS_ROOM if failure == NO_ROOM else NO_SHAPE_NEAR
+        coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
+        ending = close_on(net, x, coarse, enough, True)
+        if ending != FOUND:
+            return ending
+    keep(x, net.coarse)
+    for i in range(len(net.legs)):
+        state = net.state[i]
+        state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
+        state[COARSE_STAGE] = state[STAGE]
+    return close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
+
+
+def compare_legs(net: NetProblem, sea: Sea, x: Sequence[float]) -> Errors:
+    """Extrapolate all legs and the places of nodes; their errors, but for bends in segments.
 
     If a bend in one leg costs as much as the rest, nothing is extrapolated.
     """
-    records, near = net.lines.work.records, net.lines.limits.near
-    deep = taut = moved = greatest = 0.0
+    moved = deep = taut = relative = strayed = lost = 0.0
     kinked = False
     for k in range(len(x)):
         net.better[k] = x[k] + (x[k] - net.coarse[k]) / 3.0
@@ -266,18 +274,16 @@ def extrapolate_net(net: NetProblem, sea: Sea, x: Sequence[float]) -> float:
         east, north = net.better[k] - x[k], net.better[k + 1] - x[k + 1]
         moved = max(moved, sqrt(east * east + north * north), abs(net.better[k + 2] - x[k + 2]))
     for i in range(len(net.legs)):
-        state, record, leg = net.state[i], records[i][FINE], leg_of(net, sea, i)
-        nodes, hanging = int(state[COUNT]), int(state[HUNG]) - 1
-        coarse_hanging = int(state[COARSE_HUNG]) - 1
-        coarse = Extent(int(state[COARSE_COUNT]), coarse_hanging, state[COARSE_STAGE] >= 0.0)
-        fine = Extent(nodes, hanging, state[STAGE] >= 0.0)
-        errors = extrapolate(records[i][COARSE], coarse, record, fine, near)
-        if near == 0.0:
-            bends, errors = bent(leg, hanging, errors)
-            kinked = kinked or bends
+        state, record = net.state[i], net.lines.work.records[i][FINE]
+        nodes, hung, coarse_hung = int(state[COUNT]), int(state[HUNG]), int(state[COARSE_HUNG])
+        coarse = Extent(int(state[COARSE_COUNT]), coarse_hung - 1, state[COARSE_STAGE] >= 0.0)
+        fine = Extent(nodes, hung - 1, state[STAGE] >= 0.0)
+        compared = compare(leg_of(net, sea, i), coarse, fine)
+        errors, stated = compared.errors, compared.stated
+        kinked = kinked or compared.kinked
         deep, taut = max(deep, errors.depth), max(taut, errors.tension)
-        for n in range(nodes):
-            greatest = max(greatest, tension_at(record, n))
+        strayed, lost = max(strayed, stated.depth), max(lost, stated.tension)
+        relative = max(relative, errors.relative)
         pieces = net.legs[i].pieces
         first, last = net.first[i][:pieces], net.last[i][:pieces]
         find_ends(RefereeShape(record, nodes, nodes - 1, first, last))
@@ -286,9 +292,9 @@ def extrapolate_net(net: NetProblem, sea: Sea, x: Sequence[float]) -> float:
     if kinked:
         keep(x, net.better)
         for i in range(len(net.legs)):
-            take_as_marched(records[i][FINE], int(net.state[i][COUNT]))
-    net.errors[DEPTH_ERROR], net.errors[TENSION_ERROR] = deep + moved, taut
-    return max((deep + moved) / (WORTH * net.span), taut / (WORTH * max(greatest, 1e-300)))
+            take_as_marched(net.lines.work.records[i][FINE], int(net.state[i][COUNT]))
+    net.errors[DEPTH_ERROR], net.errors[TENSION_ERROR] = strayed + moved, lost
+    return Errors(deep + moved, taut, relative, taut, taut)
 
 
 class AskedNet(NamedTuple):

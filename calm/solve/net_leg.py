@@ -297,11 +297,10 @@ def leg_found(
     root = Root(True, Unknown(0.0, sought, problem.limits.rides, False, 0), share, 0.0, 0.0)
     closed = Closed(
         FOUND, 0.0, -1, root, int(state[net_problem.COUNT]), int(state[net_problem.HUNG]) - 1, landed,
-        float(state[net_problem.GROUNDED]),
+        float(state[net_problem.GROUNDED]), 2 * int(sum(work.counts)),
     )  # fmt: skip
     told = Errors(deep, taut, 0.0, taut, taut)
-    segments = 2 * int(sum(work.counts))
-    refined = Refined(closed, segments, told, share, closed.grounded)
+    refined = Refined(closed, told, share, closed.grounded)
     found = solution_of(problem, laid.line, water, settings, refined, told, frequency)
     referee = referee_of(carried_by(laid.line, problem), water, frequency, compiled)
     shape = RefereeShape(

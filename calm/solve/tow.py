@@ -22,7 +22,14 @@ from calm.solve.net import NetSearch, NetSolution, with_room
 from calm.solve.net_leg import LegEnd, NetLeg
 from calm.solve.net_problem import FREQUENCY, LACKING
 from calm.solve.problem import CHOSEN, COARSE_STEP, FINE, HALVED
-from calm.solve.solution import OtherEquilibrium, Settings, Solution, Status, expect_many
+from calm.solve.solution import (
+    FOUND,
+    OtherEquilibrium,
+    Settings,
+    Solution,
+    Status,
+    expect_many,
+)
 
 SURFACE_BAND = 1e-7
 """Thickness of the band from water to air, as a share of the line out."""
@@ -177,7 +184,7 @@ def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
     start, other_depth = _locate(rough, towing)
     how = net.marching(net.settings.angle_step, CHOSEN, FINE, given=False)
     ending, x = net.asked(net_closing.SETTLE, np.array([start]), how, net_closing.CLOSED)
-    if ending != net_closing.CAME_OUT or _lacking(net):
+    if ending != FOUND or _lacking(net):
         raise _why_not(rough, start, float(x[0]), towing)
     return net.told(x), other_depth
 
