@@ -258,9 +258,7 @@ def planned(search: Search, root: Root, step: float) -> Root:
     the cuts it took last it is: the root is a last step away, which the caller marches.
     """
     limits = search.problem.limits
-    rough = limits.near > 0.0
-    small, record = (ABOUT, OTHER) if rough else (1e-6, NOT_RECORDED)
-    small *= limits.span
+    small, record = ABOUT * limits.span, OTHER if limits.near > 0.0 else NOT_RECORDED
     found = near_root(search, root, step, CHOSEN, False, record, small, COARSEST_BRACKET)
     if not found.found and not isnan(found.miss):
         return root
