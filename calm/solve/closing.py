@@ -241,16 +241,6 @@ def coarse_root(
     return Root(True, unknown, x, miss, slope)
 
 
-def coarser(search: Search, root: Root) -> Root:
-    """The coarse root near another one; that one where there is none."""
-    limits = search.problem.limits
-    small = 1e-4 * limits.span
-    found = near_root(
-        search, root, limits.coarse_step, CHOSEN, False, NOT_RECORDED, small, COARSEST_BRACKET
-    )
-    return found if found.found else root
-
-
 def planned(search: Search, root: Root, step: float) -> Root:
     """The root as the march sees it at a step, near a coarser one; the cuts it takes are chosen.
 

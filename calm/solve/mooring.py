@@ -21,6 +21,7 @@ from calm.solve.accuracy import Errors, take_as_marched
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root, miss_at, not_closed, planned, polish, whole_line
 from calm.solve.finish import closing_refusal, solution_found
+from calm.solve.line_shape import FoundShape, not_audited
 from calm.solve.locate import locate
 from calm.solve.problem import (
     BELOW,
@@ -34,8 +35,7 @@ from calm.solve.problem import (
     Unknown,
     problem_of,
 )
-from calm.solve.refine import Refined
-from calm.solve.search import FoundShape, Referee, audited, find_shape
+from calm.solve.search import Referee, audited, find_shape
 from calm.solve.solution import (
     FOUND,
     MARCH_STOPPED,
@@ -100,7 +100,7 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         if not lacks_room(problem):
             break
         room *= MORE_ROOM
-    slack_in_a_current = found.ending == SLACK_ON_DIGITS and water.moving
+    slack_in_a_current = found.closed.ending == SLACK_ON_DIGITS and water.moving
     if slack_in_a_current and (moving := stirred(water)):
         return solve_mooring(line, moving, settings)
     return solution_found(found, problem, line, water, settings)
@@ -162,7 +162,7 @@ def find_asked(asked: AskedSearch, first: float) -> float:
         return float(fill_starts(asked.search))
     found = find_shape(asked.search, asked.referee)
     tell(found, asked.search.problem.work.found)
-    return float(found.ending)
+    return float(found.closed.ending)
 
 
 def find_now(find: Callable[[AskedSearch, float], float], asked: AskedSearch) -> float:
@@ -179,10 +179,10 @@ from `FIRST_OTHER` on another equilibrium."""
 
 def tell(found: FoundShape, told: MutableSequence[float]) -> None:
     """Write down what was found."""
-    closed, errors = found.refined.closed, found.errors
+    closed, errors = found.closed, found.errors
     root = closed.root
     unknown = root.unknown
-    told[ENDING], told[VALUE], told[PIECE] = found.ending, found.value, found.piece
+    told[ENDING], told[VALUE], told[PIECE] = closed.ending, closed.value, closed.piece
     told[GOAL], told[SOUGHT] = unknown.goal, unknown.sought
     told[RIDES], told[LANDS], told[STAGES] = unknown.rides, unknown.lands, unknown.stages
     told[UNKNOWN_VALUE], told[MISS], told[SLOPE] = root.x, root.miss, root.slope
@@ -192,7 +192,7 @@ def tell(found: FoundShape, told: MutableSequence[float]) -> None:
     told[FIRST_ERROR], told[FIRST_ERROR + 1] = errors.depth, errors.tension
     told[FIRST_ERROR + 2] = errors.relative
     told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
-    told[SHARE_IN_USE], told[LIES] = found.refined.share, found.refined.grounded
+    told[SHARE_IN_USE], told[LIES] = found.share, found.grounded
     told[CLOSURE], told[MOMENT] = found.closure, found.moment
     other = found.other
     told[FIRST_OTHER], told[FIRST_OTHER + 1] = other.depth, other.grounded_length
@@ -212,9 +212,8 @@ def as_told(told: Sequence[float]) -> FoundShape:
     )
     errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
     other = OtherEquilibrium(*(float(figure) for figure in told[FIRST_OTHER : FIRST_OTHER + 5]))
-    refined = Refined(closed, errors, float(told[SHARE_IN_USE]), float(told[LIES]))
-    audit = float(told[CLOSURE]), float(told[MOMENT])
-    return FoundShape(ending, value, piece, refined, errors, *audit, other)
+    told_last = (float(told[k]) for k in (SHARE_IN_USE, LIES, CLOSURE, MOMENT))
+    return FoundShape(closed, errors, *told_last, other)
 
 
 WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
@@ -299,11 +298,11 @@ class Nearby:
             raise Status.NOT_CONVERGED.because("It lies on the seabed, or hangs, unlike the other.")
         errors = Errors(base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error)
         referee = referee_of(line, water, 0.0, compiled)
-        refined = Refined(closed, errors, closed.root.x, closed.grounded)
+        found = not_audited(closed, errors, closed.root.x, closed.grounded)
         problem = search.problem
         record = problem.work.records[FINE]
         outcome(take_as_marched, compiled, record, closed.nodes)
-        found = outcome(audited, compiled, problem, referee, refined)
+        found = outcome(audited, compiled, problem, referee, found)
         return solution_found(found, problem, line, water, self._settings)
 
     def _closed(self, line: Line, water: Water, track: Track | None) -> tuple[Search, Closed]:

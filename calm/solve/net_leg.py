@@ -22,6 +22,7 @@ from calm.solve.accuracy import Errors
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root
 from calm.solve.finish import carried_by, risen, solution_of, touching
+from calm.solve.line_shape import not_audited
 from calm.solve.net_problem import LegRow, NetProblem
 from calm.solve.net_touchdown import course_from_below, weight_of
 from calm.solve.problem import (
@@ -36,7 +37,6 @@ from calm.solve.problem import (
     problem_of,
     work_for,
 )
-from calm.solve.refine import Refined
 from calm.solve.search import residuals
 from calm.solve.solution import FOUND, Settings, Solution, Status
 
@@ -300,8 +300,8 @@ def leg_found(
         float(state[net_problem.GROUNDED]), 2 * int(sum(work.counts)),
     )  # fmt: skip
     told = Errors(deep, taut, 0.0, taut, taut)
-    refined = Refined(closed, told, share, closed.grounded)
-    found = solution_of(problem, laid.line, water, settings, refined, told, frequency)
+    before = not_audited(closed, told, share, closed.grounded)
+    found = solution_of(problem, laid.line, water, settings, before, frequency)
     referee = referee_of(carried_by(laid.line, problem), water, frequency, compiled)
     shape = RefereeShape(
         work.records[FINE], closed.nodes, closed.hanging, referee.first, referee.last

@@ -20,7 +20,13 @@ from calm.solve.problem import (
     Search,
 )
 from calm.solve.settle import MOST_ROUNDS, Compared, compare, finer
-from calm.solve.solution import BELOW_SEABED, FOUND, MARCH_STOPPED, NO_SHAPE_NEAR
+from calm.solve.solution import (
+    BELOW_SEABED,
+    FOUND,
+    MARCH_STOPPED,
+    NO_SHAPE_NEAR,
+    OtherEquilibrium,
+)
 
 MOST_BETWEEN = 6
 """Marches that look for two shapes between which all is linear."""
@@ -32,8 +38,8 @@ FAR_BELOW = 0.01
 """How far below the seabed, in depths of the water, a line need not be cut finer to be refused."""
 
 
-class Refined(NamedTuple):
-    """A line closed on fine segments, and what is reported of it.
+class FoundShape(NamedTuple):
+    """A shape of a line, or why there is none.
 
     Attributes
     ----------
@@ -41,21 +47,35 @@ class Refined(NamedTuple):
         extrapolated
     errors : see `calm.solve.accuracy`
     share, grounded : extrapolated unknown, and length on the seabed [m]
+    closure, moment : what the audit found
+    other : another equilibrium that the search came upon
     """
 
     closed: Closed
     errors: Errors
     share: float
     grounded: float
+    closure: float
+    moment: float
+    other: OtherEquilibrium
 
 
-def unrefined(closed: Closed) -> Refined:
-    """Why there is no refined shape."""
-    return Refined(closed, UNKNOWN_ERRORS, closed.root.x, 0.0)
+NO_OTHER = OtherEquilibrium(-1.0, 0.0, 0.0, 0.0, 0.0)
 
 
-def refine(search: Search, root: Root, hangs: bool) -> Refined:
-    """Close the line finely enough, from a coarse root; in the record `FINE`.
+def not_audited(closed: Closed, errors: Errors, share: float, grounded: float) -> FoundShape:
+    """The shape before it is audited."""
+    return FoundShape(closed, errors, share, grounded, 0.0, 0.0, NO_OTHER)
+
+
+def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
+    """Return why there is no shape."""
+    closed = Closed(ending, value, piece, root, 0, 0, False, 0.0, 0)
+    return not_audited(closed, UNKNOWN_ERRORS, root.x, 0.0)
+
+
+def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
+    """Close the line finely enough, from a coarse root; in the record `FINE`, not audited.
 
     Parameters
     ----------
@@ -67,7 +87,7 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
     for _ in range(MOST_ROUNDS):
         coarse, fine = close_both(search, fine.root, step, hangs)
         if fine.ending != FOUND:
-            return unrefined(fine)
+            return not_audited(fine, UNKNOWN_ERRORS, fine.root.x, 0.0)
         compared = compare(problem, extent_of(coarse), extent_of(fine))
         step = finer(compared.errors, limits.span, limits.angle_step, step, fine.segments)
         if step == 0.0:
@@ -75,18 +95,18 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
     share, grounded = fine.root.x, fine.grounded
     if compared.kinked:
         take_as_marched(problem.work.records[FINE], fine.nodes)
-        return Refined(fine, compared.stated, share, grounded)
+        return not_audited(fine, compared.stated, share, grounded)
     if coarse.root.unknown.sought == fine.root.unknown.sought:
         share += (share - coarse.root.x) / 3.0
     if coarse.landed and fine.landed:
         grounded += (grounded - coarse.grounded) / 3.0
-    return Refined(fine, compared.stated, share, grounded)
+    return not_audited(fine, compared.stated, share, grounded)
 
 
 def close_both(search: Search, root: Root, step: float, hangs: bool) -> tuple[Closed, Closed]:
     """Close a line near a root on the segments chosen at twice a step, and on their halves.
 
-    `hangs` as for `refine`.
+    `hangs` as for `settle_line`.
     """
     root, problem = planned(search, root, 2.0 * step), search.problem
     if isnan(root.miss):
