@@ -58,6 +58,7 @@ class Profiles:
     clamp_depth, clamp_x, clamp_y, clamp_tension, clamp_tilt, clamp_knockdown : (n, m)
     top_depth, anchor_vertical, anchor_horizontal, used_buoyancy : (n,), or (n, l) of the legs of a
         net: NaN where one has no free upper end or no anchor
+    other_used_buoyancy : (n,) or (n, l) in another equilibrium at the surface; NaN without one
     status : (n,) index in `STATUSES`
     """
 
@@ -80,6 +81,7 @@ class Profiles:
     anchor_vertical: Floats
     anchor_horizontal: Floats
     used_buoyancy: Floats
+    other_used_buoyancy: Floats
     status: NDArray[np.int8]
 
     def __repr__(self) -> str:

@@ -5,7 +5,7 @@ and on halved cuts lead to is extrapolated from both.
 """
 
 from collections.abc import Callable
-from math import atan2, inf, isfinite, pi, sqrt
+from math import atan2, inf, isfinite, nan, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +15,7 @@ from calm.physics.line import BETTER, NO_ROOM, Floats, Integers, Water
 from calm.physics.passing import FAILURE
 from calm.physics.profile import Interval, Sea, find_bends
 from calm.physics.referee import RefereeShape, find_ends
-from calm.solve.mooring import HANGING, NODES, SHARE_IN_USE, SOUGHT, AskedSearch
+from calm.solve.mooring import FIRST_OTHER, HANGING, NODES, SHARE_IN_USE, SOUGHT, AskedSearch
 from calm.solve.problem import BELOW, FINE, Limits, LineProblem, Search
 from calm.solve.search import Referee
 from calm.solve.solution import FOLDED, FOUND, MARCH_STOPPED, SUPPORTED, TOO_HEAVY, UNSUPPORTED
@@ -23,7 +23,10 @@ from calm.solve.solution import FOLDED, FOUND, MARCH_STOPPED, SUPPORTED, TOO_HEA
 DEPTH, EAST, NORTH, TENSION_TOP, TENSION_BOTTOM, TILT = range(6)
 OF_PIECE = ("depth_top", "x_top", "y_top", "tension_top", "tension_bottom", "tilt")
 OF_CLAMP = ("depth", "x", "y", "tension", "tilt")
-OF_ENDS = ("top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy", "end_depth")
+OF_ENDS = (
+    "top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy", "end_depth",
+    "other_used_buoyancy",
+)  # fmt: skip
 
 NO_CURRENT, LEVELS_COINCIDE, HEAPED, LACKS_ROOM = range(100, 104)
 """How a profile ends, besides the endings of `calm.solve.solution`: no level with a value, two of
@@ -31,7 +34,7 @@ one depth, a heap on the seabed of what is meant to stand; more segments than th
 
 
 class Results(NamedTuple):
-    """Rows of the profiles: of pieces (n, 6, p), clamps (n, 5, m) and ends (n, 5)."""
+    """Rows of the profiles: of pieces (n, 6, p), clamps (n, 5, m) and ends (n, 6)."""
 
     pieces: Floats
     clamps: Floats
@@ -214,6 +217,7 @@ def measure(
             ends[case, 4] = -k
     ends[case, 0] = pieces[case, DEPTH, 0]
     ends[case, 3] = used_buoyancy(problem)
+    ends[case, 5] = told[FIRST_OTHER + 2] if told[FIRST_OTHER] >= 0.0 else nan
     if head > 1:
         lean_of_head(problem, referee, results, case, head)
     measure_clamps(problem, results, case)

@@ -212,6 +212,14 @@ class Result(Solved):
     profilers: tuple[ProfilerTravel, ...] = ()
 
     @property
+    def other_used_buoyancy(self) -> float:
+        """Share in use of the buoyancy of the float in another equilibrium at the surface; NaN if
+        none was found.
+        """
+        afloat = self.other is not None and self.other.used_buoyancy < 1.0
+        return self.other.used_buoyancy if self.other is not None and afloat else nan
+
+    @property
     def other_equilibrium(self) -> dict[str, float] | None:
         """Depth of the free end, length on the seabed, buoyancy in use and anchor load of another
         equilibrium; None if none was found.
@@ -339,6 +347,7 @@ class NetResult(ResultForms):
             "anchor_vertical": np.array([leg.anchor.vertical for leg in self.legs]),
             "anchor_horizontal": np.array([leg.anchor.horizontal for leg in self.legs]),
             "used_buoyancy": free * [leg.top.used_buoyancy for leg in self.legs],
+            "other_used_buoyancy": nan * free,
         }
 
     def to_dict(self) -> dict[str, Any]:

@@ -172,6 +172,7 @@ OF_ENDS: Mapping[str, tuple[str, str, Attributes]] = {
     "anchor_vertical": ("N", "upward pull of the line on the anchor", {}),
     "anchor_horizontal": ("N", "horizontal pull of the line on the anchor", {}),
     "used_buoyancy": ("1", "share of the buoyancy at the surface that is in use", {}),
+    "other_used_buoyancy": ("1", "the same share in another equilibrium, if one was found", {}),
 }
 """The same of the line as a whole."""
 

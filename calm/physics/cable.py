@@ -20,21 +20,29 @@ from calm.physics.line import NO_BALANCE, Bed, State, off_bed
 from calm.physics.profile import (
     Sea,
     counts_across,
-    distance_to_level,
+    distance_to_bend,
     in_interval,
     level_within,
     water_at,
 )
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
-from calm.physics.strumming import Vibration, amplified_share, strummed, with_beat
+from calm.physics.strumming import (
+    Vibration,
+    amplified_share,
+    strummed,
+    strummed_freely,
+    with_beat,
+)
 from calm.physics.track import CableStretch
 
 PASSES, STALLED = 200, 50
 """The most passes of a segment, and those after which they go half the way: one that nothing pulls
 would hang plumb and trail by turns where the current begins."""
-NEAR_A_TURN = 1e-6
-"""Accuracy of the place where the flow along a segment turns round, as a share of the segment."""
+NEAR_A_SWITCH = 1e-6
+"""Accuracy of the place where a law of drag switches, as a share of the segment."""
+OF_FRICTION, OF_STRUMMING = range(2)
+"""Laws that switch, see `switch_at`."""
 AT_A_LEVEL, TRIALS = 1e-9, 10
 """Distance from a level at which a part of a segment ends there, as a share of the depth range of
 the segment, and the most passes that look for it."""
@@ -287,7 +295,7 @@ def pass_part(
     expected: Vector,
     share: float,
 ) -> Passed:
-    """Pass a segment as far as the first level or turn of the flow that splits it.
+    """Pass a segment as far as the first level, or switch of a law of drag, that splits it.
 
     Parameters
     ----------
@@ -298,8 +306,8 @@ def pass_part(
     for turn in range(2):
         passed = pass_halves(cable, knots, vibration, sea, state, part, halves, near, expected)
         below = passed[3]
-        whole = in_interval(sea, below[7], -state[2], -below[2]) and cable.friction != CONSTANT
-        if whole or turn > 0:
+        smooth = cable.friction != CONSTANT and vibration.beat == 0.0
+        if turn > 0 or (smooth and in_interval(sea, below[7], -state[2], -below[2])):
             break
         part = split_length(
             cable, knots, vibration, sea, state, below, cut, halves, near, expected, share
@@ -322,7 +330,8 @@ def split_length(
     expected: Vector,
     share: float,
 ) -> float:
-    """Length of the part of a segment above the first level or turn of the flow that splits it [m].
+    """Length of the part of a segment above the first level, or switch of a law of drag, that
+    splits it [m].
 
     Parameters
     ----------
@@ -335,8 +344,11 @@ def split_length(
         part = until_level(
             cable, knots, vibration, sea, state, below, cut, halves, near, level, share
         )
-    if cable.friction == CONSTANT:
-        part = until_turn(cable, knots, vibration, sea, state, part, halves, near, expected)
+    for law in (OF_FRICTION, OF_STRUMMING):
+        if cable.friction == CONSTANT if law == OF_FRICTION else vibration.beat > 0.0:
+            part = until_switch(
+                cable, knots, vibration, sea, state, part, halves, near, expected, law
+            )
     return part
 
 
@@ -398,7 +410,7 @@ def sinking(fx: float, fy: float, fz: float, load: Vector, length: float) -> flo
     return z / size if size > 0.0 else 0.0
 
 
-def until_turn(
+def until_switch(
     cable: CableStretch,
     knots: Sequence[Knot],
     vibration: Vibration,
@@ -408,20 +420,24 @@ def until_turn(
     halves: bool,
     near: float,
     expected: Vector,
+    law: int,
 ) -> float:
-    """Length of the part of a segment above where the flow along it turns round; `cut` if it does
-    not [m].
+    """Length of the part of a segment above where a law of drag switches; `cut` if it does not [m].
 
-    There a friction of constant size jumps from one direction to the other. By regula falsi, whose
-    end that stays is halved. `halves`, `near` and `expected` are as in `pass_halves`.
+    By regula falsi, whose end that stays is halved.
+
+    Parameters
+    ----------
+    halves, near, expected : see `pass_halves`
+    law : see `switch_at`
     """
     low, high, length = 0.0, cut, cut
-    at_low = at_high = flow_along(sea, state)
+    at_low = at_high = switch_at(vibration, sea, state, law)
     for turn in range(PASSES):
         _, _, _, below, _ = pass_halves(
             cable, knots, vibration, sea, state, length, halves, near, expected
         )
-        here = flow_along(sea, below)
+        here = switch_at(vibration, sea, below, law)
         if turn == 0:
             if not here * at_low < 0.0:
                 break
@@ -430,17 +446,28 @@ def until_turn(
             low, at_low, at_high = length, here, 0.5 * at_high
         else:
             high, at_high, at_low = length, here, 0.5 * at_low
-        if here == 0.0 or high - low <= NEAR_A_TURN * cut:
+        if here == 0.0 or high - low <= NEAR_A_SWITCH * cut:
             break
         length = low + (high - low) * at_low / (at_low - at_high)
     return high
 
 
-def flow_along(sea: Sea, state: State) -> float:
-    """Current along a cable at a node times the tension there, + down the line [N m/s]."""
+def switch_at(vibration: Vibration, sea: Sea, state: State, law: int) -> float:
+    """What changes its sign where a law of drag switches, at a node.
+
+    Of friction, which jumps where its size is constant, it is the flow along the cable times the
+    tension, + down the line [N m/s]; of strumming by how much the factor on Cn is below the
+    greatest.
+    """
     _, _, z, fx, fy, fz, _, level = state
     u, v, w, _, _ = water_at(sea, -z, level)
-    return -(u * fx + v * fy + w * fz)
+    along = -(u * fx + v * fy + w * fz)
+    square = (u * u + v * v + w * w) * (fx * fx + fy * fy + fz * fz)
+    if law == OF_FRICTION or square == 0.0:
+        return along
+    here = with_beat(vibration, vibration.beat / sqrt(u * u + v * v + w * w))
+    sine = sqrt(max(1.0 - along * along / square, 0.0))
+    return vibration.greatest - strummed_freely(here, sine)
 
 
 @within
@@ -452,11 +479,13 @@ def segment_length(
     state: State,
     angle_step: float,
     reach: float,
+    share: float,
 ) -> float:
-    """Return how long the next segment may be [m]: by its turn, by depth, and to the next level.
+    """Return how long the next segment may be [m]: by its turn, by depth, and to the next level or
+    to where the flow is least.
 
     The turn is that of the load at either end of the segment, the tension that at its top. Near a
-    free end the tension vanishes: a floor keeps the count finite.
+    free end the tension vanishes: a floor keeps the count finite. `share` : see `counts_across`.
     """
     _, _, z, fx, fy, fz, _, level = state
     tension = sqrt(fx * fx + fy * fy + fz * fz)
@@ -474,7 +503,7 @@ def segment_length(
         if rate > 0.0:
             length = min(length, max(tension / rate, floor))
         depth = -z + length * sinking
-    return min(distance_to_level(sea.levels, -z, sinking, level, 0.01 * length), length)
+    return min(distance_to_bend(sea, -z, sinking, level, length, share), length)
 
 
 @within
@@ -492,8 +521,9 @@ def rate_of_turn(
 ) -> float:
     """Tension over the allowed length [N/m] for the load at a depth, on a cable of axis t.
 
-    Where a slack line hangs on little more than its own weight it may turn within one segment, so
-    the tension, where there is any, may not fall by more than half in it either.
+    A slack line that hangs on little more than its own weight turns the faster, the more its
+    tension has fallen. So the turn and the fall add up: the tension falls by less than half in a
+    segment, and by far less in one that also turns.
     """
     u, v, w, density, _ = water_at(sea, depth, level)
     lift = segment_lift(cable, 1.0, density, sea.gravity)
@@ -501,4 +531,4 @@ def rate_of_turn(
     along = lift * tz
     qx, qy, qz = qx - along * tx, qy - along * ty, qz + lift - along * tz
     rate = sqrt(qx * qx + qy * qy + qz * qz) / angle_step
-    return max(rate, 2.0 * along) if taut else rate
+    return rate + 2.0 * max(along, 0.0) if taut else rate

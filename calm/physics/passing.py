@@ -35,7 +35,7 @@ from calm.physics.line import (
     write_element,
     write_node,
 )
-from calm.physics.profile import Sea, interval_at
+from calm.physics.profile import SLIVER, Sea, interval_at
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
 from calm.physics.seabed import lay_line
 from calm.physics.strumming import with_beat
@@ -57,8 +57,6 @@ EXACT, ROUGH = 1e-8, 1e-2
 at a level: of a shape to be closed to the last digits, and of other marches."""
 ROUNDING = 1e-12
 """Part of a cable that is left by the rounding of sums, and passed over."""
-SLIVER = 0.01
-"""Part of a segment above a level, as a share of the segment, at which no chosen segment ends."""
 
 
 class How(NamedTuple):
@@ -196,7 +194,9 @@ def pass_cable(
         cut = cuts[used]
         if not how.given:
             left = cable.length - done
-            cut = segment_length(cable, knots, vibration, sea, state, how.angle_step, how.reach)
+            cut = segment_length(
+                cable, knots, vibration, sea, state, how.angle_step, how.reach, share
+            )
             cut = min(left, cut)
             if left - cut < SLIVER * cut:
                 cut = left

@@ -9,6 +9,9 @@ from calm.physics.compiled import packed, within
 from calm.physics.line import Floats, Water
 from calm.physics.seawater import REFERENCE_DENSITY
 
+SLIVER = 0.01
+"""Part of a segment, as a share of it, at which no chosen segment ends."""
+
 
 class Interval(NamedTuple):
     """The water between two levels: its origin [m], values there and what they grow by per metre.
@@ -95,28 +98,44 @@ def viscosity_at(sea: Sea, depth: float) -> float:
     return stratum.value + stratum.slope * (depth - stratum.origin)
 
 
-def distance_to_level(
-    levels: Sequence[float], depth: float, sinking: float, i: int, least: float
+def distance_to_bend(
+    sea: Sea, depth: float, sinking: float, i: int, length: float, share: float
 ) -> float:
-    """Way to the next level from a depth [m], along a path that sinks so much per metre.
+    """Way from a depth to where the drag bends next, along a path that sinks so much per metre [m].
 
-    Searched from interval `i`. A level no farther than `least` is as good as reached: the one
-    behind it counts.
+    That is at the next level; and before it where the flow is least, if it all but vanishes within
+    a length: |V| V bends there. Searched from interval `i`. A level no farther than `SLIVER` of the
+    length is as good as reached, unless a segment of that length has to be split there.
+
+    Parameters
+    ----------
+    length : of a segment [m]
+    share : see `counts_across`
     """
     if sinking == 0.0 or not isfinite(sinking):
         return inf
-    i = interval_at(levels, depth, i)
-    ahead = -1
-    if sinking > 0.0:
-        ahead, i = 1, i + 1
-    gap = (levels[i] - depth) / sinking
-    while gap <= least:
-        i += ahead
-        gap = (levels[i] - depth) / sinking
+    down, deep = sinking > 0.0, length * abs(sinking)
+    i = interval_at(sea.levels, depth, i)
+    k = i + 1 if down else i
+    gap = (sea.levels[k] - depth) / sinking
+    while gap <= SLIVER * length:
+        off = abs(sea.levels[k] - depth)
+        if counts_across(sea, k, min(off, deep - off), deep, share):
+            break
+        k += 1 if down else -1
+        gap = (sea.levels[k] - depth) / sinking
+    row, shorter = sea.intervals[k - 1 if down else k], min(length, gap)
+    square = row.du * row.du + row.dv * row.dv + row.dw * row.dw
+    if square > 0.0:
+        growth = row.u * row.du + row.v * row.dv + row.w * row.dw
+        way = (row.origin - growth / square - depth) / sinking
+        if SLIVER * shorter < way < shorter:
+            least = row.u * row.u + row.v * row.v + row.w * row.w - growth * growth / square
+            if least < square * shorter * shorter * sinking * sinking:
+                return way
     return gap
 
 
-@within
 def in_interval(sea: Sea, i: int, start: float, end: float) -> bool:
     """Whether two depths are in an interval [m]."""
     upper, lower = sea.levels[i], sea.levels[i + 1]

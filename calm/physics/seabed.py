@@ -14,6 +14,9 @@ from calm.physics.referee import Moored, RefereeShape
 from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.track import CABLE, CLAMP, CableStretch, Course
 
+NOTHING = 1e-9
+"""Pull at a touchdown, as a share of all loads, that the audit takes as none: it has no direction."""
+
 
 def lay_line(
     course: Course,
@@ -168,7 +171,7 @@ def closure(
         across = (z + bed.east * x + bed.north * y) / square
         x, y, z = x - across * bed.east, y - across * bed.north, z - across
         tension, left = sqrt(x * x + y * y + z * z), 1.0
-        if tension > 0.0:
+        if tension > NOTHING * whole:
             held = bed.friction / sqrt(square) + z / tension
             left -= held * weight_on_seabed(moored, shape, bed.excess) / tension
         if bears_at_a_point(moored, shape, shape.hanging - 1):

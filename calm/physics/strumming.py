@@ -175,10 +175,17 @@ def strummed(vibration: Vibration, across: float) -> float:
 
     λ = 2π (a/D) F D/(|V| sin φ). Along the flow the factor is the greatest.
     """
+    return min(strummed_freely(vibration, across), vibration.greatest)
+
+
+def strummed_freely(vibration: Vibration, across: float) -> float:
+    """f(λ) as it would be without the greatest factor, at most twice that."""
+    if vibration.beat == 0.0:
+        return 1.0
     if across <= 0.0:
-        return vibration.greatest if vibration.beat > 0.0 else 1.0
+        return 2.0 * vibration.greatest
     ratio = 2.0 * pi * amplitude(vibration, asin(across)) * vibration.beat / across
-    return min(drag_factor(ratio), vibration.greatest)
+    return min(drag_factor(ratio), 2.0 * vibration.greatest)
 
 
 def amplified_share(

@@ -142,6 +142,7 @@ def _ends(result: AnyResult) -> Mapping[str, object]:
             "anchor_vertical": result.anchor.vertical,
             "anchor_horizontal": result.anchor.horizontal,
             "used_buoyancy": result.top.used_buoyancy,
+            "other_used_buoyancy": result.other_used_buoyancy,
         }
     return {
         "speed": result.speed,

@@ -4,24 +4,15 @@ The march is of second order: a third of the change from the coarse to the fine 
 of the fine one, and is added to it (Richardson's extrapolation). Nodes inside the segments of the
 coarse shape, and those at levels that split a segment, take the change of their neighbours.
 
-A load or a stretch that bends inside a segment, where a law of drag switches or an elongation curve
-has a knot, may count for the same on coarse and on halved segments. It shows as a bend between
-neighbours, and adds to the error; if it is as large as the rest, nothing is extrapolated.
+Nothing that jumps or bends is inside a segment: the march splits segments at levels of the profile
+and where a law of drag switches.
 """
 
 from math import sqrt
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from calm.physics.compiled import within
-from calm.physics.drag import Vector
 from calm.physics.line import BETTER, HALVES, NO_SEGMENT, SEGMENT, Record
-from calm.physics.profile import interval_at
-from calm.solve.problem import FINE, LineProblem
-
-KINKED = 0.5
-"""Error of a bend inside a segment, as a share of the rest, from which nothing is extrapolated."""
-AT_A_LEVEL = 0.05
-"""How near to a level, in segments, a node is as good as there: bends are at home at levels."""
 
 
 class Errors(NamedTuple):
@@ -173,108 +164,8 @@ def fill_between(record: Record, first: int, last: int) -> None:
             record[BETTER + column][m] = record[column][m] + above + share * (below - above)
 
 
-def bent(problem: LineProblem, hanging: int, errors: Errors) -> tuple[bool, Errors]:
-    """Add what bends inside the segments of the record `FINE` may cost to its errors.
-
-    Returns
-    -------
-    Whether they cost so much that the shape is not to be extrapolated; and the errors.
-    """
-    strayed, lost = abrupt_change(problem, hanging)
-    whole = Errors(
-        errors.depth + strayed, errors.tension + lost, errors.relative, errors.lift + lost,
-        errors.pull + lost,
-    )  # fmt: skip
-    return strayed > KINKED * errors.depth or lost > KINKED * errors.tension, whole
-
-
 def take_as_marched(record: Record, nodes: int) -> None:
     """Report the places and forces of a shape as they were marched, not extrapolated."""
     for column in range(6):
         for m in range(nodes):
             record[BETTER + column][m] = record[column][m]
-
-
-def abrupt_change(problem: LineProblem, hanging: int) -> tuple[float, float]:
-    """Return what the worst abrupt change inside a segment may cost: in place [m], in tension [N].
-
-    If the slope of what a segment adds per metre bends by Δ inside one of length h, its value at
-    the middle is off by up to Δh²/8. Where the curve is smooth the segments two away bend alike:
-    only what exceeds their bend is abrupt.
-    """
-    record, sizes = problem.work.records[FINE], problem.work.elements
-    levels = problem.sea.levels
-    level, smooth_before = 0, False
-    for k in range(hanging + 1):
-        sizes[0][k] = sizes[1][k] = -1.0
-    for k in range(1, hanging):  # the joint between elements k and k + 1, at node k
-        smooth = (
-            NO_SEGMENT < record[SEGMENT][k] <= HALVES
-            and record[SEGMENT][k + 1] != NO_SEGMENT
-            and record[6][k] == record[6][k + 1]
-            and record[8][k] > 0.0
-            and record[8][k + 1] > 0.0
-        )
-        if smooth:
-            depth = -record[2][k]
-            level = interval_at(levels, depth, level)
-            off = min(depth - levels[level], levels[level + 1] - depth)
-            smooth = off > AT_A_LEVEL * max(record[8][k], record[8][k + 1])
-        if smooth and smooth_before:
-            for part in range(2):
-                x, y, z = bend_in(record, k, 3 * part)
-                sizes[part][k] = sqrt(x * x + y * y + z * z)
-        smooth_before = smooth
-    strayed = lost = 0.0
-    pull = tension_at(record, hanging)
-    for k in range(2, hanging):
-        for part in range(2):
-            size = sizes[part][k]
-            usual = max(sizes[part][k - 2], sizes[part][k + 2] if k + 2 < hanging else -1.0)
-            if size < 0.0 or not (usual >= 0.0 and size > usual):
-                continue
-            share = (size - usual) / size
-            if part == 0:
-                strayed = max(strayed, share * size)
-                continue
-            x, y, z = bend_in(record, k, 3)
-            # what a force adds to the tension there, and where the line hangs from in the end
-            here = along(record, k, tension_at(record, k), x, y, z)
-            there = along(record, hanging, pull, x, y, z)
-            lost = max(lost, share * max(here, there))
-    return strayed, lost
-
-
-def bend_in(record: Any, k: int, column: int) -> Vector:
-    """Return what a bend inside element k may cost of a place, or of a force, by its neighbours'
-    slopes.
-
-    `column` : the first of the three in the record
-    """
-    above, own, below = record[8][k - 1], record[8][k], record[8][k + 1]
-    rise, fall = 0.5 * (above + own), 0.5 * (own + below)
-    scale = own * own / 8.0
-    return (
-        bend_of(record[column], k, above, own, below, rise, fall) * scale,
-        bend_of(record[column + 1], k, above, own, below, rise, fall) * scale,
-        bend_of(record[column + 2], k, above, own, below, rise, fall) * scale,
-    )
-
-
-def bend_of(
-    values: Any, k: int, above: float, own: float, below: float, rise: float, fall: float
-) -> float:
-    """By how much the slope of what is added per metre changes along element k."""
-    first = (values[k - 1] - values[k - 2]) / above
-    second = (values[k] - values[k - 1]) / own
-    third = (values[k + 1] - values[k]) / below
-    bend: float = (third - second) / fall - (second - first) / rise
-    return bend
-
-
-def along(record: Record, node: int, tension: float, x: float, y: float, z: float) -> float:
-    """Return how much of a vector is along the force at a node."""
-    if tension == 0.0:
-        return 0.0
-    pulled: float = abs(x * record[3][node] + y * record[4][node] + z * record[5][node])
-    return pulled / tension

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from calm.physics.line import ENDS, SEGMENT, Record, off_bed
 from calm.physics.passing import FAILURE, NODES
-from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, Extent, take_as_marched
+from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, Extent, extrapolate
 from calm.solve.closing import Closed, Root, not_closed, planned, polish, segments_of
 from calm.solve.problem import (
     BELOW,
@@ -19,7 +19,7 @@ from calm.solve.problem import (
     LineProblem,
     Search,
 )
-from calm.solve.settle import MOST_ROUNDS, Compared, compare, finer
+from calm.solve.settle import MOST_ROUNDS, finer
 from calm.solve.solution import (
     BELOW_SEABED,
     FOUND,
@@ -83,24 +83,23 @@ def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
     """
     problem, limits = search.problem, search.problem.limits
     coarse = fine = not_closed(NO_SHAPE_NEAR, 0.0, root)
-    compared, step = Compared(UNKNOWN_ERRORS, UNKNOWN_ERRORS, False), limits.angle_step
+    errors, step, records = UNKNOWN_ERRORS, limits.angle_step, problem.work.records
     for _ in range(MOST_ROUNDS):
         coarse, fine = close_both(search, fine.root, step, hangs)
         if fine.ending != FOUND:
             return not_audited(fine, UNKNOWN_ERRORS, fine.root.x, 0.0)
-        compared = compare(problem, extent_of(coarse), extent_of(fine))
-        step = finer(compared.errors, limits.span, limits.angle_step, step, fine.segments)
+        errors = extrapolate(
+            records[COARSE], extent_of(coarse), records[FINE], extent_of(fine), limits.near
+        )
+        step = finer(errors, limits.span, limits.angle_step, step, fine.segments)
         if step == 0.0:
             break
     share, grounded = fine.root.x, fine.grounded
-    if compared.kinked:
-        take_as_marched(problem.work.records[FINE], fine.nodes)
-        return not_audited(fine, compared.stated, share, grounded)
     if coarse.root.unknown.sought == fine.root.unknown.sought:
         share += (share - coarse.root.x) / 3.0
     if coarse.landed and fine.landed:
         grounded += (grounded - coarse.grounded) / 3.0
-    return not_audited(fine, compared.stated, share, grounded)
+    return not_audited(fine, errors, share, grounded)
 
 
 def close_both(search: Search, root: Root, step: float, hangs: bool) -> tuple[Closed, Closed]:

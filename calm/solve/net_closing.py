@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from calm.physics.line import GOES_ON, NO_ROOM
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
-from calm.solve.accuracy import Errors, Extent, take_as_marched
+from calm.solve.accuracy import Errors, Extent, extrapolate
 from calm.solve.net_march import left_over
 from calm.solve.net_problem import (
     ANCHORED,
@@ -25,10 +25,9 @@ from calm.solve.net_problem import (
     STANDING,
     Marching,
     NetProblem,
-    leg_of,
 )
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
-from calm.solve.settle import MOST_ROUNDS, compare, finer
+from calm.solve.settle import MOST_ROUNDS, finer
 from calm.solve.solution import FOUND, NO_SHAPE_NEAR
 
 MOST_STEPS, HALVINGS = 60, 9
@@ -36,9 +35,8 @@ MOST_STEPS, HALVINGS = 60, 9
 NEAR, CLOSED = 1e-4, 1e-10
 """What is left of lengths and forces, as shares of the longest leg and of a typical force: before
 segments are kept, and in a shape."""
-CHOICES = 2
-"""How often segments are chosen: the first time where a shape only about is. The root of a single
-unknown is found that well beforehand."""
+BEFORE_CHOICE = 1e-7
+"""As `CLOSED`, of a shape in which segments are chosen that are to depend on nothing but the net."""
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
@@ -224,18 +222,31 @@ def drifts(net: NetProblem) -> bool:
     return anchored
 
 
+def close_coarsely(
+    net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
+) -> int:
+    """Choose segments of twice a step [rad] and close a net that about is on them."""
+    choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
+    failure = left_over(net, x, choosing, False)
+    if failure != GOES_ON:
+        return NEEDS_ROOM if failure == NO_ROOM else NO_SHAPE_NEAR
+    coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
+    return close_on(net, x, coarse, enough, True)
+
+
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
     """Close a net that about is to the last digits, on segments that are short enough."""
+    # the root of a single unknown is known well; else segments are chosen anew where these lead
+    if len(x) > 1 and net.lines.limits.near == 0.0:
+        ending = close_coarsely(net, sea, x, step, max(enough, BEFORE_CHOICE))
+        if ending != FOUND:
+            return ending
     asked = step
     for _ in range(MOST_ROUNDS):
         ending = close_both(net, sea, x, step, enough)
         if ending != FOUND:
             return ending
-        segments = 0
-        for i in range(len(net.legs)):
-            for k in range(net.legs[i].cables):
-                segments += 2 * net.lines.work.counts[i][k]
-        step = finer(compare_legs(net, sea, x), net.span, asked, step, segments)
+        step = finer(extrapolate_legs(net, x), net.span, asked, step, segments_of(net))
         if step == 0.0:
             break
     return FOUND
@@ -245,14 +256,9 @@ def close_both(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
     """Close a net near its unknowns on the segments chosen at twice a step, and on their halves."""
-    for _ in range(CHOICES if len(x) > 1 else 1):
-        failure = left_over(net, x, Marching(sea, 2.0 * step, CHOSEN, False, COARSE), False)
-        if failure != GOES_ON:
-            return NEEDS_ROOM if failure == NO_ROOM else NO_SHAPE_NEAR
-        coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
-        ending = close_on(net, x, coarse, enough, True)
-        if ending != FOUND:
-            return ending
+    ending = close_coarsely(net, sea, x, step, enough)
+    if ending != FOUND:
+        return ending
     keep(x, net.coarse)
     for i in range(len(net.legs)):
         state = net.state[i]
@@ -261,39 +267,39 @@ def close_both(
     return close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
 
 
-def compare_legs(net: NetProblem, sea: Sea, x: Sequence[float]) -> Errors:
-    """Extrapolate all legs and the places of nodes; their errors, but for bends in segments.
+def segments_of(net: NetProblem) -> int:
+    """Number of the halves of all segments that were chosen."""
+    segments = 0
+    for i in range(len(net.legs)):
+        for k in range(net.legs[i].cables):
+            segments += 2 * net.lines.work.counts[i][k]
+    return segments
 
-    If a bend in one leg costs as much as the rest, nothing is extrapolated.
-    """
-    moved = deep = taut = relative = strayed = lost = 0.0
-    kinked = False
+
+def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
+    """Extrapolate all legs and the places of nodes; their errors."""
+    records, near = net.lines.work.records, net.lines.limits.near
+    deep = taut = moved = relative = 0.0
     for k in range(len(x)):
         net.better[k] = x[k] + (x[k] - net.coarse[k]) / 3.0
     for k in range(net.nodes_at, len(x), 3):
         east, north = net.better[k] - x[k], net.better[k + 1] - x[k + 1]
         moved = max(moved, sqrt(east * east + north * north), abs(net.better[k + 2] - x[k + 2]))
     for i in range(len(net.legs)):
-        state, record = net.state[i], net.lines.work.records[i][FINE]
-        nodes, hung, coarse_hung = int(state[COUNT]), int(state[HUNG]), int(state[COARSE_HUNG])
-        coarse = Extent(int(state[COARSE_COUNT]), coarse_hung - 1, state[COARSE_STAGE] >= 0.0)
-        fine = Extent(nodes, hung - 1, state[STAGE] >= 0.0)
-        compared = compare(leg_of(net, sea, i), coarse, fine)
-        errors, stated = compared.errors, compared.stated
-        kinked = kinked or compared.kinked
+        state, record = net.state[i], records[i][FINE]
+        nodes, hanging = int(state[COUNT]), int(state[HUNG]) - 1
+        coarse_hanging = int(state[COARSE_HUNG]) - 1
+        coarse = Extent(int(state[COARSE_COUNT]), coarse_hanging, state[COARSE_STAGE] >= 0.0)
+        fine = Extent(nodes, hanging, state[STAGE] >= 0.0)
+        errors = extrapolate(records[i][COARSE], coarse, record, fine, near)
         deep, taut = max(deep, errors.depth), max(taut, errors.tension)
-        strayed, lost = max(strayed, stated.depth), max(lost, stated.tension)
         relative = max(relative, errors.relative)
         pieces = net.legs[i].pieces
         first, last = net.first[i][:pieces], net.last[i][:pieces]
         find_ends(RefereeShape(record, nodes, nodes - 1, first, last))
         keep(first, net.first[i])
         keep(last, net.last[i])
-    if kinked:
-        keep(x, net.better)
-        for i in range(len(net.legs)):
-            take_as_marched(net.lines.work.records[i][FINE], int(net.state[i][COUNT]))
-    net.errors[DEPTH_ERROR], net.errors[TENSION_ERROR] = strayed + moved, lost
+    net.errors[DEPTH_ERROR], net.errors[TENSION_ERROR] = deep + moved, taut
     return Errors(deep + moved, taut, relative, taut, taut)
 
 

@@ -257,6 +257,8 @@ def take_scale(net: NetProblem, i: int, x: Sequence[float]) -> None:
     """Scale the unknown forces on a leg by its own pull, as it was marched last.
 
     A slack leg pulls with a thousandth of others: steps that suit these say nothing of its slopes.
+    None is scaled by more than what the heaviest leg weighs: legs too short for their ends would
+    else be stretched until they meet.
     """
     leg, out = net.legs[i], net.passed[i]
     if leg.own == 1:
@@ -266,6 +268,6 @@ def take_scale(net: NetProblem, i: int, x: Sequence[float]) -> None:
         east, north, up = x[leg.first], x[leg.first + 1], x[leg.first + 2]
         pull = max(pull, sqrt(east * east + north * north + up * up))
     for k in range(3):
-        net.scale[leg.first + k] = max(pull, LEAST_PULL * leg.weight)
+        net.scale[leg.first + k] = min(max(pull, LEAST_PULL * leg.weight), net.force)
     if leg.kind == ANCHORED:
         meet(net, i, x)

@@ -14,31 +14,20 @@ from calm.solve.problem import LineProblem, SearchArrays
 STANDING, HANGING_DOWN, PULLED, ANCHORED = range(4)
 """Legs marched from a free upper end, from a free lower end, from an upper end that is held or at a
 node, and from the seabed up to such an end."""
-(
-    STAGE,
-    GROUNDED,
-    SHARE,
-    MARCHES,
-    COUNT,
-    HUNG,
-    EAST,
-    NORTH,
-    LIES,
-    SLACK,
-    FREQUENCY,
-    LACKING,
-    YIELD,
-    COARSE_COUNT,
-    COARSE_HUNG,
-    COARSE_STAGE,
-) = range(16)
+STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG = range(6)
 """State of a leg after its last march: the stage where it comes down on the seabed or -1, its length
 there [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and those of
-them that hang; of an anchored leg the way from its touchdown to its upper end to the east and
-north [m], how far the rest reaches along the seabed [m], and how much of that it does not need to
-come to its anchor [m]; the frequency of its cables [Hz], what that lacks of the one that is shed
-[Hz], and the slope of this [-]; its nodes, those that hang and its stage on coarse segments."""
-OF_LEG = 16
+them that hang."""
+EAST, NORTH, TO_EAST, TO_NORTH, LIES, SLACK = range(6, 12)
+"""And of an anchored leg: the way from its touchdown to its upper end east and north [m], the pull
+at the touchdown to the east and north [N], how far the rest reaches along the seabed [m], and by
+how much that is more than the way to its anchor [m]."""
+FREQUENCY, LACKING, YIELD = range(12, 15)
+"""And of a leg that strums: the frequency of its cables [Hz], what that lacks of the one that is
+shed [Hz], and the slope of this [-]."""
+COARSE_COUNT, COARSE_HUNG, COARSE_STAGE = range(15, 18)
+"""And on coarse segments: its nodes, those of them that hang, and the stage where it comes down."""
+OF_LEG = 18
 OUT = 7
 """Results of a march: way east and north, height and force where it came out, or of an anchored leg
 by how much it misses its anchor; then by how much it begins off the seabed."""

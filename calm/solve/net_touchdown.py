@@ -21,6 +21,7 @@ from calm.physics.line import (
     SEGMENT,
     Record,
     State,
+    along_bed,
     off_bed,
     write_element,
 )
@@ -39,6 +40,8 @@ from calm.solve.net_problem import (
     NORTH,
     SLACK,
     STAGE,
+    TO_EAST,
+    TO_NORTH,
     Marching,
     NetProblem,
     bed_of,
@@ -157,16 +160,20 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
     if recorded:
         set_row(problem.course.loads, 0, pull_of(-passed[5], -passed[3], -passed[4]))
         turn_round(record, nodes)
+    state[TO_EAST], state[TO_NORTH] = east, north
     if lies:
-        foot: State = (0.0, 0.0, height, -east, -north, -along, -1.0, level)
+        east, north, up = along_bed(bed, east, north, up)
+        state[TO_EAST], state[TO_NORTH] = east, north
+        foot: State = (0.0, 0.0, height, -east, -north, -up, -1.0, level)
         end, count, grounded = lay_line(
             problem.course, bed, foot, leg.stages - stage, hanging, record, recorded, nodes
         )
         state[STAGE], state[COUNT], state[GROUNDED] = leg.stages - stage, count, grounded
-        state[LIES] = sqrt(end[0] * end[0] + end[1] * end[1])
+        down = end[2] - height
+        state[LIES] = sqrt(end[0] * end[0] + end[1] * end[1] + down * down)
         if recorded:
             record[3][nodes - 1], record[4][nodes - 1] = -east, -north
-            record[5][nodes - 1] = -along
+            record[5][nodes - 1] = -up
     meet(net, i, x)
     if recorded and state[SLACK] > 0.0:
         lay_loosely(net, i, x, record)
@@ -274,8 +281,11 @@ def meet(net: NetProblem, i: int, x: Sequence[float]) -> None:
     north = to_north - from_north + state[NORTH]
     share, e, n = 0.0, east, north
     if reach > 0.0:
+        way, rise = sqrt(east * east + north * north), bed.east * east + bed.north * north
+        if way > 0.0:
+            reach *= way / sqrt(way * way + rise * rise)
         per_force = net.length / net.scale[at]
-        e, n = e + per_force * x[at], n + per_force * x[at + 1]
+        e, n = e + per_force * state[TO_EAST], n + per_force * state[TO_NORTH]
         share = min(reach / max(sqrt(e * e + n * n), 1e-300), 1.0)
     passed[0], passed[1] = share * e - east, share * n - north
     state[SLACK] = reach - sqrt(east * east + north * north) if share == 1.0 else 0.0
@@ -297,7 +307,8 @@ def lay_loosely(net: NetProblem, i: int, x: Sequence[float], record: Record) -> 
     down = net.legs[i].seabed - record[2][foot]
     for n in range(hung, count):
         dx, dy = record[0][n] - record[0][foot], record[1][n] - record[1][foot]
-        share = sqrt(dx * dx + dy * dy) / reach
+        dz = record[2][n] - record[2][foot]
+        share = sqrt(dx * dx + dy * dy + dz * dz) / reach
         record[0][n] = record[0][foot] + share * east
         record[1][n] = record[1][foot] + share * north
         record[2][n] = record[2][foot] + share * down

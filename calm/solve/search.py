@@ -151,7 +151,7 @@ def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
     end = closed.nodes - 1
     x, y, z = record[BETTER + 3][end], record[BETTER + 4][end], record[BETTER + 5][end]
     share = found.share if closed.root.unknown.sought != BELOW else 1.0
-    depth = -record[BETTER + 2][0]
+    depth = 0.0 - record[BETTER + 2][0]
     return OtherEquilibrium(depth, found.grounded, share, z, sqrt(x * x + y * y))
 
 
@@ -172,8 +172,12 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
     if located.ending != FOUND:
         return refused(located.ending, located.value, -1, located.root)
     found = shape_near(search, referee, located.root, lands)
-    if found.closed.ending != FOUND or not located.other.found or problem.limits.near > 0.0:
+    if found.closed.ending != FOUND or not located.other.found:
         return found
+    if problem.limits.near > 0.0:  # of one of many its share is told, found roughly
+        afloat = located.other.unknown.sought != BELOW
+        share = OtherEquilibrium(0.0, 0.0, located.other.x, nan, nan)
+        return beside(found, share) if afloat else found
     keep(problem, OTHER, FINE, found)
     second = shape_near(search, referee, located.other, lands)
     other = other_of(problem, second) if second.closed.ending == FOUND else NO_OTHER

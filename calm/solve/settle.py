@@ -6,10 +6,8 @@ halved. The march is of second order, so a third of the change is the error of t
 """
 
 from math import degrees, sqrt
-from typing import NamedTuple
 
-from calm.solve.accuracy import Errors, Extent, bent, extrapolate
-from calm.solve.problem import COARSE, FINE, LineProblem
+from calm.solve.accuracy import Errors
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
@@ -18,34 +16,6 @@ smaller, at an angle step of 1°; they follow its square."""
 MOST_ROUNDS = 6
 """How often all is done, at most."""
 MOST_SEGMENTS = 20_000
-
-
-class Compared(NamedTuple):
-    """Hold what a shape on coarse and one on fine segments lead to.
-
-    Attributes
-    ----------
-    errors : by the change from the one to the other
-    stated : with what bends inside segments
-    kinked : whether that is too much for the shape to be extrapolated
-    """
-
-    errors: Errors
-    stated: Errors
-    kinked: bool
-
-
-def compare(problem: LineProblem, coarse: Extent, fine: Extent) -> Compared:
-    """Extrapolate from the shapes of a line in the records `COARSE` and `FINE`.
-
-    One of many is not looked through for bends: its errors are not reported.
-    """
-    records, near = problem.work.records, problem.limits.near
-    errors = extrapolate(records[COARSE], coarse, records[FINE], fine, near)
-    kinked, stated = False, errors
-    if near == 0.0:
-        kinked, stated = bent(problem, fine.hanging, errors)
-    return Compared(errors, stated, kinked)
 
 
 def finer(errors: Errors, span: float, asked: float, step: float, segments: int) -> float:

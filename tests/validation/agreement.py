@@ -57,10 +57,15 @@ def ends_of(solution: Solution) -> Ends:
 
 
 def inside_cables(solution: Solution, referee: Equilibrium | Towed) -> tuple[float, float]:
-    """The worst departures at the nodes of hanging cables: of a place [m] and of a tension [N]."""
+    """The worst departures at the nodes of hanging cables: of a place [m] and of a tension [N].
+
+    What is extrapolated of the touchdown is its place, which is at another length of the line in
+    every shape: it does not count here.
+    """
     metres = newtons = 0.0
+    lowest = last_before_touchdown(solution)
     for piece in np.flatnonzero(solution.line.flexible):
-        first, last = solution.piece_nodes[piece]
+        first, last = np.minimum(solution.piece_nodes[piece], lowest)
         s = np.concatenate([[0.0], np.cumsum(solution.cut[first:last])])
         there = referee.shape.inside(int(piece), s)
         known = np.isfinite(there[:, 0])
@@ -72,6 +77,12 @@ def inside_cables(solution: Solution, referee: Equilibrium | Towed) -> tuple[flo
         more[np.isclose(s[known, None], clamps, rtol=0.0, atol=1e-9 * s[-1]).any(axis=1)] = 0.0
         metres, newtons = max(metres, 0.0, *off.ravel()), max(newtons, 0.0, *more)
     return float(metres), float(newtons)
+
+
+def last_before_touchdown(solution: Solution) -> int:
+    """The last node of what hangs, but of a line that lands the touchdown and the middle of the
+    segment above it."""
+    return solution.hanging - 2 if solution.landed else solution.hanging
 
 
 def integrated_ends(referee: Equilibrium | Towed) -> Ends:
@@ -94,8 +105,8 @@ def closure(solution: Solution, profile: Profile | None = None) -> float:
 
     The loads are recomputed here from the final coordinates, by the referee's formulas, in the
     water of the solution or in that of `profile`. Of a line on the seabed they are those above the
-    touchdown; where a rigid piece or a clamp comes down there, it and the seabed settle the
-    vertical ones between them.
+    touchdown, with friction the force is that there; where a rigid piece or a clamp comes down
+    there, it and the seabed settle the vertical ones between them.
     """
     closed = solution.marched or solution
     line, position = solution.carried, closed.position
@@ -124,7 +135,8 @@ def closure(solution: Solution, profile: Profile | None = None) -> float:
             if cut > 0.0:
                 stretched = np.linalg.norm(ends[1] - ends[0]) / cut
                 total += cut * pull(load, *ends, stretched ** line.thinning[piece])
-    anchor = closed.force[-1]
+    held = solution.landed and solution.settings.seabed_friction > 0.0
+    anchor = closed.force[solution.hanging if held else -1]
     if solution.landed:
         around = slice(solution.hanging - 1, solution.hanging + 1)
         piece, segment = solution.element_piece[around], solution.element_clamp[around] < 0

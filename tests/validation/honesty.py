@@ -22,7 +22,7 @@ from calm.errors import NoEquilibrium
 from calm.physics.line import Floats, Integers
 from calm.physics.seabed import required_weight
 from calm.solve import Settings, Solution
-from tests.validation.agreement import clamp_nodes
+from tests.validation.agreement import clamp_nodes, last_before_touchdown
 from tests.validation.families import FAMILIES
 
 FINE = Settings(radians(0.1), 1e-10)
@@ -97,17 +97,24 @@ def _ends(solution: Solution) -> Integers:
 
 
 def _inside(solution: Solution, fine: Solution) -> Floats:
-    """(k, 4) departures in x, y, z and tension at the nodes inside cables, between their clamps."""
+    """(k, 4) departures in x, y, z and tension at the nodes inside cables, between their clamps.
+
+    What is extrapolated of the touchdown is its place, which is at another length of the line in
+    every shape: it does not count here, nor does what lies below it.
+    """
     departures = [np.zeros((0, 4))]
-    for ours, theirs in zip(_runs(solution), _runs(fine), strict=True):
+    hanging = last_before_touchdown(solution)
+    for (first, *ours), (_, *theirs) in zip(_runs(solution), _runs(fine), strict=True):
         if len(theirs[0]) > 3:
             there = PchipInterpolator(*theirs)(ours[0])
-            departures.append(np.abs(there - ours[1]))
+            departures.append(np.abs(there - ours[1])[: max(hanging + 1 - first, 0)])
     return np.concatenate(departures)
 
 
-def _runs(solution: Solution) -> list[tuple[Floats, Floats]]:
-    """Of every stretch of cable without clamps: unstretched length and x, y, z, tension."""
+def _runs(solution: Solution) -> list[tuple[int, Floats, Floats]]:
+    """Of every stretch of cable without clamps: its first node, and of all of its nodes the
+    unstretched length from there and x, y, z, tension.
+    """
     columns = np.column_stack([solution.position, solution.tension])
     runs = []
     for first, last in solution.piece_nodes[solution.line.flexible]:
@@ -116,5 +123,5 @@ def _runs(solution: Solution) -> list[tuple[Floats, Floats]]:
         for start, stop in zip(starts, stops, strict=True):
             along = np.concatenate([[0.0], np.cumsum(solution.cut[start:stop])])
             if along[-1] > 0.0:
-                runs.append((along, columns[start : stop + 1]))
+                runs.append((start, along, columns[start : stop + 1]))
     return runs

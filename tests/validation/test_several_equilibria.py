@@ -196,3 +196,65 @@ def test_a_surface_float_pulled_under_is_said_to_be() -> None:
     with pytest.raises(calm.NoEquilibrium, match="pulls the line's top under water") as refusal:
         calm.load("pulled.yaml", text=text.replace("800 N", "1000 N")).solve()
     assert refusal.value.status == "grounded"
+
+
+TURNING = """
+environment:
+  depth: 108.9 m
+  density: 1025 kg/m^3
+  current:
+    columns: [depth m, u m/s, v m/s]
+    rows:
+      - [0, 1.5333, -2.84467]
+      - [41.82, -1.49008, 2.76447]
+      - [69.22, 1.18324, -2.19521]
+      - [106.92, -1.08555, 2.01398]
+components:
+  float: {kind: sphere, diameter: 0.94 m, length: 0.94 m, buoyancy: 4335.5 N, cx: 0.5}
+  tether: {kind: cable, diameter: 16.5 mm, weight: 0 N/m, cn: 1.67, ct: 0.05}
+  meter: {kind: body, length: 0.6 m, buoyancy: -180 N, kn: 26.4 N/(m/s)^2, inclination: insensitive}
+  cord: {kind: cable, diameter: 6.5 mm, weight: 0.03 N/m, cn: 1.73, ct: 0.009, stiffness: 6127 N}
+  frame: {kind: cylinder, diameter: 0.36 m, length: 2.71 m, buoyancy: -156 N, cn: 1.1, ct: 0.0}
+  rope: {kind: cable, diameter: 24.2 mm, weight: 1.464 N/m, cn: 1.54, ct: 0.0, stiffness: 11.7 MN}
+  glass: {kind: sphere, diameter: 0.33 m, length: 0.33 m, buoyancy: 110 N, cx: 0.8}
+  line: {kind: cable, diameter: 10.1 mm, weight: 0 N/m, cn: 1.53, ct: 0.013}
+  chain: {kind: chain, diameter: 13 mm, weight: 33 N/m}
+  release: {kind: cylinder, diameter: 0.13 m, length: 1 m, buoyancy: -330 N, cn: 1.2, ct: 0.9}
+  block: {kind: anchor, weight: 100 kN}
+line:
+  - {use: float}
+  - {use: tether, length: 12.63 m}
+  - {use: meter}
+  - {use: cord, length: 28.37 m}
+  - {use: frame}
+  - {use: rope, length: 44.63 m}
+  - {use: glass, count: 2}
+  - {use: line, length: 38.56 m}
+  - {use: chain, length: 19.126 m}
+  - {use: release}
+  - {use: block}
+"""
+
+
+def test_a_float_has_two_equilibria_in_a_current_that_turns_back() -> None:
+    """Both commands give the one that a current rising from zero leads to, without a jump."""
+    mooring = calm.load("turning.yaml", text=TURNING)
+    shares = []
+    for part in np.linspace(0.1, 1.0, 10):
+        water = mooring.water
+        weaker = replace(water, u=part * water.u, v=part * water.v)
+        shares.append(solve_mooring(mooring.line, weaker).buoyancy_used)
+    assert np.abs(np.diff(shares)).max() < 0.1
+    result = mooring.solve()
+    assert result.top.used_buoyancy == pytest.approx(shares[-1], abs=1e-9)
+    other = result.other_equilibrium
+    assert abs(other["used_buoyancy"] - shares[-1]) > 0.2
+    assert (
+        np.hypot(other["anchor_vertical"], other["anchor_horizontal"]) > 1.5 * result.anchor.tension
+    )
+    found = calm.solve_profiles(
+        mooring, *(np.stack([part] * 2) for part in (mooring.water.u, mooring.water.v)),
+        depth=mooring.water.level,
+    )  # fmt: skip
+    assert found.used_buoyancy == pytest.approx(shares[-1], abs=1e-5)
+    assert found.other_used_buoyancy == pytest.approx(other["used_buoyancy"], abs=2e-3)

@@ -12,7 +12,9 @@ OF_COMPONENT = (
     "depth_top", "x_top", "y_top", "tension_top", "tension_bottom", "tilt", "knockdown",
 )  # fmt: skip
 OF_CLAMP = ("clamp_depth", "clamp_x", "clamp_y", "clamp_tension", "clamp_tilt", "clamp_knockdown")
-OF_ENDS = ("top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy")
+OF_ENDS = (
+    "top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy", "other_used_buoyancy",
+)  # fmt: skip
 
 FILE = """
 name: Made
@@ -101,6 +103,7 @@ def one_profile(result):
         anchor_vertical=[result.anchor.vertical],
         anchor_horizontal=[result.anchor.horizontal],
         used_buoyancy=[top.used_buoyancy],
+        other_used_buoyancy=[result.other_used_buoyancy],
     )
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from calm.physics.line import Water
-from calm.physics.profile import Profile, distance_to_level, viscosity_at, water_at
+from calm.physics.profile import Profile, distance_to_bend, viscosity_at, water_at
 
 WATER = Water(
     depth=1000,
@@ -43,11 +43,40 @@ def test_a_single_level_is_uniform():
 
 
 def test_distance_to_the_next_level_either_way():
-    levels = Profile(WATER).sea.levels
-    assert distance_to_level(levels, 100, 0.5, 0, 0.0) == pytest.approx(200)
-    assert distance_to_level(levels, 100, -0.9, 0, 0.0) == pytest.approx(100)
-    assert distance_to_level(levels, 100, 0.0, 0, 0.0) == np.inf
-    assert distance_to_level(levels, 950, 1.0, 0, 0.0) == np.inf
+    sea = Profile(WATER).sea
+    assert distance_to_bend(sea, 100, 0.5, 0, 10.0, 1e-3) == pytest.approx(200)
+    assert distance_to_bend(sea, 100, -0.9, 0, 10.0, 1e-3) == pytest.approx(100)
+    assert distance_to_bend(sea, 100, 0.0, 0, 10.0, 1e-3) == np.inf
+    assert distance_to_bend(sea, 950, 1.0, 0, 10.0, 1e-3) == np.inf
+
+
+def flowing(*rows):
+    level, u, v = np.array(rows).T
+    still = np.zeros(len(level))
+    return Profile(Water(depth=1000, level=level, u=u, v=v, w=still, density=still + 1025)).sea
+
+
+@pytest.mark.parametrize("side", [0.2, 0.0])
+def test_the_flow_that_all_but_vanishes_between_levels_is_met(side):
+    """From 1 to -1 m/s over 200 m it is least in the middle, whichever way the path leads."""
+    sea = flowing((0.0, 1.0, side), (200.0, -1.0, side))
+    assert distance_to_bend(sea, 60, 0.5, 0, 90.0, 1e-3) == pytest.approx(80)
+    assert distance_to_bend(sea, 140, -1.0, 0, 90.0, 1e-3) == pytest.approx(40)
+    assert distance_to_bend(sea, 100, 1.0, 0, 90.0, 1e-3) == pytest.approx(100)
+
+
+def test_a_flow_that_turns_slowly_is_not():
+    """It is still 0.5 m/s where it is least, and changes by 0.2 m/s over a segment."""
+    sea = flowing((0.0, 1.0, 0.5), (200.0, -1.0, 0.5))
+    assert distance_to_bend(sea, 90, 1.0, 0, 20.0, 1e-3) == pytest.approx(110)
+
+
+def test_a_thin_layer_is_met_where_the_flow_changes_in_it():
+    """5 cm, of a segment of 10 m: by 1 m/s it counts, by 1 mm/s the level behind it does."""
+    for change, expected in ((1.0, 0.05), (1e-3, 100.0)):
+        sea = flowing((0.0, 0.5, 0.0), (50.0, 0.5, 0.0), (50.05, 0.5 + change, 0.0),
+                      (150.0, 0.5 + change, 0.0))  # fmt: skip
+        assert distance_to_bend(sea, 50.0, 1.0, 0, 10.0, 3e-3) == pytest.approx(expected)
 
 
 def test_arrays_are_refused_when_they_cannot_be():
