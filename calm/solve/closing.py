@@ -272,6 +272,8 @@ def polish(search: Search, root: Root, cuts: int, record: int) -> Closed:
     Floats at the surface above the one in question are first brought back to the surface.
     """
     unknown, shares = root.unknown, search.problem.work.shares
+    if isnan(root.miss):
+        return not_closed(MARCH_STOPPED, search.problem.work.left[FAILURE], root)
     for k in range(unknown.sought):
         part = down_to(search.problem, with_sought(unknown, k, False), k + 1)
         near = Root(True, part, shares[0][k], 0.0, shares[1][k])

@@ -4,7 +4,7 @@ from math import inf, isnan
 from typing import NamedTuple
 
 from calm.physics.line import ENDS, SEGMENT, Record, off_bed
-from calm.physics.passing import FAILURE, NODES
+from calm.physics.passing import NODES
 from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, Extent, extrapolate
 from calm.solve.closing import Closed, Root, not_closed, planned, polish, segments_of
 from calm.solve.problem import (
@@ -23,7 +23,6 @@ from calm.solve.settle import MOST_ROUNDS, finer
 from calm.solve.solution import (
     BELOW_SEABED,
     FOUND,
-    MARCH_STOPPED,
     NO_SHAPE_NEAR,
     OtherEquilibrium,
 )
@@ -108,9 +107,6 @@ def close_both(search: Search, root: Root, step: float, hangs: bool) -> tuple[Cl
     `hangs` as for `settle_line`.
     """
     root, problem = planned(search, root, 2.0 * step), search.problem
-    if isnan(root.miss):
-        stopped = not_closed(MARCH_STOPPED, problem.work.left[FAILURE], root)
-        return stopped, stopped
     coarse, fine = closed_between(search, root)
     if fine.ending == FOUND:
         return coarse, refused_far_below(problem, fine, FINE, hangs)
@@ -161,7 +157,7 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
     problem, unknown = search.problem, root.unknown
     limits, work = problem.limits, problem.work
     none = not_closed(NO_SHAPE_NEAR, 0.0, root)
-    if limits.near == 0.0 or unknown.sought > 0 or unknown.lands:
+    if limits.near == 0.0 or isnan(root.miss) or unknown.sought > 0 or unknown.lands:
         return none, none
     high, near, halved = limits.span, 0.5, 1.0
     if unknown.sought != BELOW:  # a slack line swings far by little of its buoyancy

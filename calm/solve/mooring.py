@@ -8,7 +8,6 @@ root: two or three marches close it.
 
 from collections.abc import Callable, MutableSequence, Sequence
 from dataclasses import replace
-from math import isnan
 from typing import NamedTuple
 
 import numpy as np
@@ -38,7 +37,6 @@ from calm.solve.problem import (
 from calm.solve.search import Referee, audited, find_shape
 from calm.solve.solution import (
     FOUND,
-    MARCH_STOPPED,
     SLACK_ON_DIGITS,
     OtherEquilibrium,
     Settings,
@@ -340,8 +338,6 @@ def close_coarsely(search: Search, lands: bool) -> Closed:
     if located.ending != FOUND:
         return not_closed(located.ending, located.value, located.root)
     root = planned(search, located.root, search.problem.limits.angle_step)
-    if isnan(root.miss):
-        return not_closed(MARCH_STOPPED, search.problem.work.left[FAILURE], root)
     return polish(search, root, CHOSEN, FINE)
 
 

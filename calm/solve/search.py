@@ -29,12 +29,9 @@ from calm.solve.locate import locate
 from calm.solve.problem import (
     BELOW,
     CHANGED,
-    CHOSEN,
     FINE,
     KEPT,
-    NOT_RECORDED,
     OTHER,
-    About,
     Limits,
     LineProblem,
     Search,
@@ -218,9 +215,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
     if not lands:
         return audited(problem, referee, settle_line(search, root, True))
     clear = hanging_clear(problem, root)
-    about = About(problem, root.unknown, limits.coarse_step, CHOSEN, False, NOT_RECORDED)
-    search.miss(about, root.x)
-    if problem.work.left[FAILURE] > 0.0:
+    if isnan(coarse_miss(search, root.unknown, root.x)):
         return refused(MARCH_STOPPED, problem.work.left[FAILURE], -1, root)
     if problem.work.left[CAME_DOWN] < 0.0:
         return audited(problem, referee, settle_line(search, clear, False))
