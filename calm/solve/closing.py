@@ -36,8 +36,9 @@ OF_A_PART = 0.01
 """Miss of a part of a line, which is light and slack, as a share of that of the whole."""
 NEARLY_LINEAR = 5e-3
 """Miss, as a share of the span, below which a secant through a far larger one finds the root."""
-ABOUT = 2e-3
-"""Miss, as a share of the span, at which one of many is near enough to its root to be closed."""
+ABOUT, WELL_KNOWN = 2e-3, 1e-6
+"""Miss, as a share of the span, at which segments are kept: of one of many, and of a single line. One
+that is slack turns in other places where it is a thousandth off."""
 COARSEST_BRACKET = 1e-7
 NARROWEST_BRACKET = 1e-15
 """Width of the last bracket, as a share of the whole range: of a march that chooses its cuts, and
@@ -248,7 +249,8 @@ def planned(search: Search, root: Root, step: float) -> Root:
     the cuts it took last it is: the root is a last step away, which the caller marches.
     """
     limits = search.problem.limits
-    small, record = ABOUT * limits.span, OTHER if limits.near > 0.0 else NOT_RECORDED
+    small, record = (ABOUT, OTHER) if limits.near > 0.0 else (WELL_KNOWN, NOT_RECORDED)
+    small *= limits.span
     found = near_root(search, root, step, CHOSEN, False, record, small, COARSEST_BRACKET)
     if not found.found and not isnan(found.miss):
         return root
