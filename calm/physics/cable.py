@@ -302,19 +302,17 @@ def pass_part(
     halves, near, expected : see `pass_halves`
     share : see `counts_across`
     """
-    part, passed = cut, (cut, state, 0.0, state, 0.0)
-    for turn in range(2):
-        passed = pass_halves(cable, knots, vibration, sea, state, part, halves, near, expected)
-        below = passed[3]
-        smooth = cable.friction != CONSTANT and vibration.beat == 0.0
-        if turn > 0 or (smooth and in_interval(sea, below[7], -state[2], -below[2])):
-            break
-        part = split_length(
-            cable, knots, vibration, sea, state, below, cut, halves, near, expected, share
-        )
-        if part == cut:
-            break
-    return passed
+    passed = pass_halves(cable, knots, vibration, sea, state, cut, halves, near, expected)
+    below = passed[3]
+    if cable.friction != CONSTANT and vibration.beat == 0.0:
+        if in_interval(sea, below[7], -state[2], -below[2]):
+            return passed
+    part = split_length(
+        cable, knots, vibration, sea, state, below, cut, halves, near, expected, share
+    )
+    if part == cut:
+        return passed
+    return pass_halves(cable, knots, vibration, sea, state, part, halves, near, expected)
 
 
 def split_length(

@@ -52,7 +52,7 @@ LEFT = 10
 
 SHORT = 1e-6
 """Length of a segment, as a share of the longest, that says nothing of the load of the next."""
-EXACT, ROUGH = 1e-8, 1e-2
+EXACT, ROUGH = 1e-6, 1e-2
 """Change of the mean flow along a segment, as a share of the flow, from which the segment is split
 at a level: of a shape to be closed to the last digits, and of other marches."""
 ROUNDING = 1e-12
@@ -181,8 +181,9 @@ def pass_cable(
     The state; the unstretched length above its touchdown [m], -1 where it has none; how many
     segments have been used and nodes passed so far; whether the march can go on.
     """
-    cable, knots = course.cables[place], course.knots
-    vibration = with_beat(course.vibration, course.vibration.beat * cable.diameter)
+    cable, knots, vibration = course.cables[place], course.knots, course.vibration
+    if vibration.beat != 0.0:
+        vibration = with_beat(vibration, vibration.beat * cable.diameter)
     first, done, hanging = used, 0.0, -1.0
     near, halves, expected = how.near, how.halves, (0.0, 0.0, 0.0)
     share = EXACT if how.given and near == 0.0 else ROUGH

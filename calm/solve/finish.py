@@ -127,6 +127,8 @@ def _buoyancy_in_use(problem: LineProblem, found: FoundShape) -> tuple[float, fl
 
 def carried_by(line: Line, problem: LineProblem) -> Line:
     """The line as it is loaded: what is at the surface by what is in the water and in use of it."""
+    if not problem.work.left[CHANGED]:
+        return line
     columns = {name: getattr(line, name).copy() for name in (*_OF_PIECE, *_OF_CLAMP)}
     for i in range(int(problem.work.left[CHANGED])):
         load = Load(*problem.course.loads[i])
@@ -172,7 +174,7 @@ def audit_refusal(ending: int, value: float) -> NoEquilibrium:
     return Status.NOT_CONVERGED.because(f"A piece is {value:.1e} rad out of balance.")
 
 
-def closing_refusal(closed: Closed, towed: bool) -> NoEquilibrium:
+def closing_refusal(closed: Closed) -> NoEquilibrium:
     """Return why a line does not close."""
     if closed.ending == solution.MARCH_STOPPED:
         return march_stopped(closed.value)
@@ -182,9 +184,8 @@ def closing_refusal(closed: Closed, towed: bool) -> NoEquilibrium:
         return Status.SLACK.because(
             "The line is slack: its shape depends on the last digits of the buoyancy in use."
         )
-    end_point = "ship" if towed else "anchor"
     return Status.NOT_CONVERGED.because(
-        f"The line's end misses the {end_point} by {closed.value:.3g} m."
+        f"The line's end misses the anchor by {closed.value:.3g} m."
     )
 
 
@@ -202,7 +203,7 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
         solution.MISSES,
         solution.SLACK_ON_DIGITS,
     ):
-        return closing_refusal(found.closed, False)
+        return closing_refusal(found.closed)
     if ending == solution.UNSUPPORTED:
         return too_heavy(standing_lift(line, water))
     if ending == solution.SLACK_AT_REST:

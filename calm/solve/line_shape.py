@@ -1,4 +1,4 @@
-"""A moored line closed on coarse and on halved segments, for `calm.solve.settle`."""
+"""A moored line closed on coarse and on halved segments, for `calm.solve.fineness`."""
 
 from math import inf, isnan
 from typing import NamedTuple
@@ -7,6 +7,7 @@ from calm.physics.line import ENDS, SEGMENT, Record, off_bed
 from calm.physics.passing import NODES
 from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, Extent, extrapolate
 from calm.solve.closing import Closed, Root, not_closed, planned, polish, segments_of
+from calm.solve.fineness import MOST_ROUNDS, finer
 from calm.solve.problem import (
     BELOW,
     CHOSEN,
@@ -19,7 +20,6 @@ from calm.solve.problem import (
     LineProblem,
     Search,
 )
-from calm.solve.settle import MOST_ROUNDS, finer
 from calm.solve.solution import (
     BELOW_SEABED,
     FOUND,

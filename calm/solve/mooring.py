@@ -243,7 +243,7 @@ class Nearby:
         search = search_of(problem, compiled)
         closed: Closed = outcome(close_coarsely, compiled, search, self.solution.landed)
         if closed.ending != FOUND:
-            raise closing_refusal(closed, False)
+            raise closing_refusal(closed)
         self._root, work = closed.root, problem.work
         self._counts = np.array(work.counts)
         self._cuts = np.array(work.chosen[: int(self._counts.sum())])
@@ -319,7 +319,7 @@ class Nearby:
         moved = self._moved(water, problem)
         closed: Closed = outcome(polish, compiled, search, moved, CHOSEN, FINE)
         if closed.ending != FOUND:
-            raise closing_refusal(closed, False)
+            raise closing_refusal(closed)
         return search, closed
 
     def _moved(self, water: Water, problem: LineProblem) -> Root:

@@ -12,6 +12,7 @@ from calm.physics.line import GOES_ON, NO_ROOM
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
 from calm.solve.accuracy import Errors, Extent, extrapolate
+from calm.solve.fineness import MOST_ROUNDS, finer
 from calm.solve.net_march import left_over
 from calm.solve.net_problem import (
     ANCHORED,
@@ -27,7 +28,6 @@ from calm.solve.net_problem import (
     NetProblem,
 )
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
-from calm.solve.settle import MOST_ROUNDS, finer
 from calm.solve.solution import FOUND, NO_SHAPE_NEAR
 
 MOST_STEPS, HALVINGS = 60, 9

@@ -38,8 +38,8 @@ SCAN = 16
 FARTHER = 1.05
 """In an even current, how far up the other side of the root is tried, in misses: where levels cut a
 line a march is not quite the same at every depth."""
-ROUGHLY = 1e-3
-"""What is left of a rough root, as a share of the line out."""
+ROUGHLY = 5e-3
+"""What is left before the last step towards a rough root, as a share of the line out."""
 SAME = 1e-6
 """What the frequency of a line that strums may lack, as a share of it."""
 NEARLY_OUT = 2e-3
@@ -96,11 +96,11 @@ def solve_tow(
     """
     if not line.length.any():
         raise Status.NO_EQUILIBRIUM.because("The towed line has no length.", advice=PAY_OUT)
-    _refuse_limp(line.reversed())
+    _refuse_limp(line)
     expect_many(1.0)
     water = _relative(line, water, towing)
-    past = tuple(map(float, water.current_at(np.zeros(()))))
-    ship = LegEnd(place=(0.0, 0.0, towing.height), past=past)
+    u, v, w = map(float, water.current_at(np.zeros(())))
+    ship = LegEnd(place=(0.0, 0.0, towing.height), past=(u, v, w))
     leg = NetLeg(line, ship, LegEnd())
     solve = partial(_solved, towing=towing)
     found, other_depth = with_room(solve, [leg], 0, water, settings or Settings())
@@ -110,11 +110,12 @@ def solve_tow(
     return solution
 
 
-def _refuse_limp(towed: Line) -> None:
+def _refuse_limp(line: Line) -> None:
     """A free end of cable without weight or drag along it bears nothing, and points nowhere."""
-    bears = towed.buoyancy[0] or towed.volume[0] or towed.tangential_drag[0]
-    clamped = ((towed.clamp_piece == 0) & (towed.clamp_at == 0.0)).any()
-    if towed.flexible[0] and not bears and not clamped:
+    bears = line.buoyancy[-1] or line.volume[-1] or line.tangential_drag[-1]
+    last = len(line.length) - 1
+    clamped = ((line.clamp_piece == last) & (line.clamp_at == line.length[-1])).any()
+    if line.flexible[-1] and not bears and not clamped:
         raise Status.NO_EQUILIBRIUM.because(
             "The free end of {piece} weighs nothing and has no drag along it, so nothing "
             "stretches it.",
@@ -196,7 +197,8 @@ def _lacking(net: NetSearch) -> bool:
 
 def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
     """Find the depth of the free end at the deepest root, and that of the next one above [m]."""
-    span, found = rough.span, []
+    span = rough.span
+    found: list[float] = []
     allowed = rough.net.settings.tolerance * span
     shallowest = -towing.height - span if towing.in_air else 0.0
     depth = max(span - towing.height, 1e-3 * span)

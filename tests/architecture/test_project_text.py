@@ -1,7 +1,6 @@
 """Rules for the text of the project itself."""
 
 import re
-import statistics
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,15 +32,6 @@ def test_no_file_names_a_place_on_one_machine() -> None:
         if place.search(line)
     ]
     assert not found
-
-
-def test_modules_stay_short() -> None:
-    lengths = {
-        str(path.relative_to(ROOT)): len(path.read_text(encoding="utf-8").splitlines())
-        for path in MODULES
-    }
-    assert {name: length for name, length in lengths.items() if length > 400} == {}
-    assert statistics.median(lengths.values()) <= 280
 
 
 def test_modules_are_named_for_what_they_do() -> None:

@@ -67,6 +67,8 @@ def test_calm_agrees_with_the_referee(block) -> None:
         (997, "no-equilibrium", "weighs nothing and has no drag along it"),
         (2942, "no-equilibrium", "It would ride half out of the water"),
         (4555, "no-equilibrium", "It would ride half out of the water"),
+        (652, "no-equilibrium", "with piece 12 in the water"),
+        (2079, "no-equilibrium", "with piece 9 in the water"),
     ],
 )
 def test_a_tow_without_a_shape_is_refused_by_its_reason(number, status, why) -> None:
@@ -74,6 +76,16 @@ def test_a_tow_without_a_shape_is_refused_by_its_reason(number, status, why) -> 
     with pytest.raises(NoEquilibrium, match=why) as caught:
         solve_tow(*tow(Random(number)))
     assert caught.value.status == status
+
+
+@pytest.mark.parametrize("number", [94, 117, 252])
+def test_a_line_that_closes_at_the_surface_is_solved(number) -> None:
+    """94 has a clamp there, 117 leaves the water at 1.5° under 0.08 N, and the march of 252 stops
+    at depths above its root."""
+    line, water, towing = tow(Random(number))
+    usual, fine = (solve_tow(line, water, towing, Settings(radians(step))) for step in (1.0, 0.1))
+    near = usual.depth_error + fine.depth_error
+    assert usual.position[0] == pytest.approx(fine.position[0], abs=near)
 
 
 def test_a_line_that_would_fly_from_the_surface_hangs_below_it() -> None:

@@ -1,13 +1,16 @@
 """Tows that cannot be: each is told with its own status and what to do."""
 
-from math import inf, pi
+from dataclasses import replace
+from math import inf, pi, radians
 
 import numpy as np
 import pytest
 
 from calm.errors import NoEquilibrium
 from calm.physics.line import Line, Water
+from calm.physics.strumming import BourgetMarichal
 from calm.solve import Settings, Towing, fit_tow_length, solve_tow
+from calm.solve.problem import ROOM
 from tests.unit.solve import simple
 
 DEEP = Water(inf, [0.0], [0.0], [0.0], [0.0], [1025.0])
@@ -101,3 +104,38 @@ def test_an_even_current_given_at_levels_is_even():
         solution = solve_tow(towed, sea, Towing(1.0, 0.0))
         assert solution.position[0, 2] == pytest.approx(even.position[0, 2], abs=0.01)
     assert -even.position[0, 2] == pytest.approx(139.5, abs=0.5)
+
+
+@pytest.mark.parametrize("speed", [1.0, 2.5])
+def test_a_line_that_leaves_the_water_in_still_air_has_a_node_at_the_surface(speed):
+    """Only the density changes there: the ship makes the same wind as current."""
+    a_frame = Towing(speed, 0.0, 5.3)
+    solution = solve_tow(line(60.0, 4.0, 300.0), DEEP, a_frame)
+    fine = solve_tow(line(60.0, 4.0, 300.0), DEEP, a_frame, Settings(radians(0.1)))
+    assert solution.marched is not None
+    assert np.abs(solution.marched.position[:, 2]).min() <= 1e-7 * 60.0
+    assert solution.position[0] == pytest.approx(fine.position[0], abs=solution.depth_error)
+    assert solution.tension[-1] == pytest.approx(fine.tension[-1], abs=solution.tension_error)
+
+
+@pytest.mark.parametrize("current", [0.0, 0.7])
+def test_a_line_strums_at_the_frequency_that_it_sheds_at_the_ship(current):
+    """F = 0.166 |V × T|/(|T| D), of the shape that was marched."""
+    sea = Water(inf, [0.0, 60.0], [0.0, 0.0], [current, 0.0], [0.0, 0.0], [1025.0, 1025.0])
+    strums = replace(line(100.0, 4.0, 800.0), strumming=BourgetMarichal())
+    solution = solve_tow(strums, sea, Towing(1.7, 0.0, 2.0))
+    assert solution.marched is not None
+    pull, past = solution.marched.force[-1], np.array([-1.7, current, 0.0])
+    across = np.linalg.norm(np.cross(past, pull)) / np.linalg.norm(pull)
+    assert solution.frequency == pytest.approx(0.166 * across / 0.01, rel=1e-7)
+
+
+def test_a_line_of_more_segments_than_there_is_room_for_is_the_same_at_both_speeds():
+    strums = replace(line(100.0, 2.5, 50.0), strumming=BourgetMarichal())
+    plain, compiled = (
+        solve_tow(strums, DEEP, Towing(2.0, 0.0), Settings(radians(0.02), compiled=compiled))
+        for compiled in (False, True)
+    )
+    assert len(plain.cut) > ROOM
+    assert plain.position.tobytes() == compiled.position.tobytes()
+    assert plain.frequency == compiled.frequency
