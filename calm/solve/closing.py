@@ -37,8 +37,8 @@ OF_A_PART = 0.01
 NEARLY_LINEAR = 5e-3
 """Miss, as a share of the span, below which a secant through a far larger one finds the root."""
 ABOUT, WELL_KNOWN = 2e-3, 1e-6
-"""Miss, as a share of the span, at which segments are kept: of one of many, and of a single line. One
-that is slack turns in other places where it is a thousandth off."""
+"""Miss, as a share of the span, at which segments are kept: of one of many, and of a single line.
+One that is slack turns in other places where it is a thousandth off."""
 COARSEST_BRACKET = 1e-7
 NARROWEST_BRACKET = 1e-15
 """Width of the last bracket, as a share of the whole range: of a march that chooses its cuts, and

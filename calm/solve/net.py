@@ -257,9 +257,9 @@ def about(net: NetSearch, near: NetSolution | None) -> Floats:
     """
     water, step = net.water, 4.0 * net.settings.angle_step
     legs = tuple(each.leg for each in net.laid)
-    if near is not None:
-        if (x := net.closed(near.unknowns, step, net_closing.NEAR)) is not None:
-            return x
+    x = None if near is None else net.closed(near.unknowns, step, net_closing.NEAR)
+    if x is not None:
+        return x
     still, way, stride = water.still(), 0.0, 1.0
     net.put_in(still)
     x = net.closed(net.begin(start_of(legs, net.nodes, still)), step, net_closing.NEAR)

@@ -36,16 +36,16 @@ NEAR, CLOSED = 1e-4, 1e-10
 """What is left of lengths and forces, as shares of the longest leg and of a typical force: before
 segments are kept, and in a shape."""
 BEFORE_CHOICE = 1e-7
-"""As `CLOSED`, of a shape in which segments are chosen that are to depend on nothing but the net."""
+"""As `CLOSED`, of a shape in which segments are chosen that are to depend on the net alone."""
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
-"""Slope of a single unknown, in shares, at which a secant is held, and how many steps it may take."""
+"""Slope of a single unknown, in shares, at which a secant is held; the most steps it may take."""
 SINGULAR = 1e-14
 """Slope, in shares, below which an unknown is left as it is."""
 NO_HOLD = 1e-5
-"""Pull at a touchdown, as a share of the weight of a leg, that holds nothing in place: more than the
-drag in a breath of current."""
+"""Pull at a touchdown, as a share of the weight of a leg, that holds nothing in place: more than
+the drag in a breath of current."""
 NEEDS_ROOM = -1
 """How a net ends, besides FOUND and NO_SHAPE_NEAR: more segments than there is room for."""
 

@@ -152,8 +152,8 @@ class LaidLeg:
 
     @property
     def stands(self) -> float:
-        """Change of its unknown from a float that is immersed to one out of the water [m]: as great as
-        its length, so that a step towards either lands on the way."""
+        """Change of its unknown from a float that is immersed to one out of the water [m]: as great
+        as its length, so that a step towards either lands on the way."""
         return max(float(self.line.length.sum()), 0.5)
 
     @property
@@ -266,7 +266,8 @@ def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> N
         zeros(count, net_problem.OF_LEG), zeros(count, net_problem.OUT),
         zeros(count, pieces, of=int), zeros(count, pieces, of=int),
         zeros(size), zeros(size), zeros(size, size), zeros(size), zeros(size),
-        zeros(size, size + 1), zeros(size, of=int), zeros(size), zeros(size), taken(scale), taken(rows), zeros(2),
+        zeros(size, size + 1), zeros(size, of=int), zeros(size), zeros(size), taken(scale),
+        taken(rows), zeros(2),
         firsts[-1], length, force, span,
     )  # fmt: skip
 
@@ -296,8 +297,8 @@ def leg_found(
     sought = 0 if share < 1.0 and problem.surfacing else BELOW
     root = Root(True, Unknown(0.0, sought, problem.limits.rides, False, 0), share, 0.0, 0.0)
     closed = Closed(
-        FOUND, 0.0, -1, root, int(state[net_problem.COUNT]), int(state[net_problem.HUNG]) - 1, landed,
-        float(state[net_problem.GROUNDED]), 2 * int(sum(work.counts)),
+        FOUND, 0.0, -1, root, int(state[net_problem.COUNT]), int(state[net_problem.HUNG]) - 1,
+        landed, float(state[net_problem.GROUNDED]), 2 * int(sum(work.counts)),
     )  # fmt: skip
     told = Errors(deep, taut, 0.0, taut, taut)
     before = not_audited(closed, told, share, closed.grounded)

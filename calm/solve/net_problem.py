@@ -15,8 +15,8 @@ STANDING, HANGING_DOWN, PULLED, ANCHORED = range(4)
 """Legs marched from a free upper end, from a free lower end, from an upper end that is held or at a
 node, and from the seabed up to such an end."""
 STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG = range(6)
-"""State of a leg after its last march: the stage where it comes down on the seabed or -1, its length
-there [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and those of
+"""State of a leg after its last march: the stage where it comes down on the seabed or -1, its
+length there [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and those of
 them that hang."""
 EAST, NORTH, TO_EAST, TO_NORTH, LIES, SLACK = range(6, 12)
 """And of an anchored leg: the way from its touchdown to its upper end east and north [m], the pull
