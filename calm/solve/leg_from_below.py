@@ -30,7 +30,7 @@ from calm.physics.profile import interval_at
 from calm.physics.rod_axis import rod_axis
 from calm.physics.seabed import lay_line
 from calm.physics.track import CABLE, ROD, CableStretch, Course, Load, Stage
-from calm.solve.net_problem import (
+from calm.solve.leg_numbers import (
     COUNT,
     EAST,
     GROUNDED,

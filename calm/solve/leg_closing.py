@@ -13,8 +13,8 @@ from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
 from calm.solve.accuracy import Errors, Extent, extrapolate
 from calm.solve.fineness import MOST_ROUNDS, finer
-from calm.solve.net_march import left_over
-from calm.solve.net_problem import (
+from calm.solve.leg_marches import left_over
+from calm.solve.leg_numbers import (
     ANCHORED,
     COARSE_COUNT,
     COARSE_HUNG,
