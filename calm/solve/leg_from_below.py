@@ -58,7 +58,8 @@ NO_PULL = 1e-9
 def course_from_below(course: Course) -> Course:
     """The course of a leg below a point that is pulled at, from its lower end up and with such a
     point there. Pieces keep their numbers."""
-    stages, loads, cables = [course.stages[0]], [course.loads[0]], []
+    stages, loads = [course.stages[0]], [course.loads[0]]
+    cables: list[CableStretch] = []
     for stage in reversed(course.stages[1:]):
         if stage.kind == CABLE:
             stages.append(stage._replace(first=len(cables)))

@@ -210,8 +210,8 @@ def as_told(told: Sequence[float]) -> FoundShape:
     )
     errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
     other = OtherEquilibrium(*(float(figure) for figure in told[FIRST_OTHER : FIRST_OTHER + 5]))
-    told_last = (float(told[k]) for k in (SHARE_IN_USE, LIES, CLOSURE, MOMENT))
-    return FoundShape(closed, errors, *told_last, other)
+    share, lies = float(told[SHARE_IN_USE]), float(told[LIES])
+    return FoundShape(closed, errors, share, lies, float(told[CLOSURE]), float(told[MOMENT]), other)
 
 
 WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
