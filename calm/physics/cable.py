@@ -345,7 +345,7 @@ def split_length(
     for law in (OF_FRICTION, OF_STRUMMING):
         if cable.friction == CONSTANT if law == OF_FRICTION else vibration.beat > 0.0:
             part = until_switch(
-                cable, knots, vibration, sea, state, part, halves, near, expected, law
+                cable, knots, vibration, sea, state, below, cut, part, halves, near, expected, law
             )
     return part
 
@@ -414,27 +414,31 @@ def until_switch(
     vibration: Vibration,
     sea: Sea,
     state: State,
+    below: State,
     cut: float,
+    part: float,
     halves: bool,
     near: float,
     expected: Vector,
     law: int,
 ) -> float:
-    """Length of the part of a segment above where a law of drag switches; `cut` if it does not [m].
+    """Length of a part of a segment as far as a law of drag switches; all of it if none does [m].
 
     By regula falsi, whose end that stays is halved.
 
     Parameters
     ----------
+    below : the state below the whole segment, `cut`
     halves, near, expected : see `pass_halves`
     law : see `switch_at`
     """
-    low, high, length = 0.0, cut, cut
+    low, high, length = 0.0, part, part
     at_low = at_high = switch_at(vibration, sea, state, law)
     for turn in range(PASSES):
-        _, _, _, below, _ = pass_halves(
-            cable, knots, vibration, sea, state, length, halves, near, expected
-        )
+        if turn > 0 or part < cut:
+            _, _, _, below, _ = pass_halves(
+                cable, knots, vibration, sea, state, length, halves, near, expected
+            )
         here = switch_at(vibration, sea, below, law)
         if turn == 0:
             if not here * at_low < 0.0:
@@ -444,7 +448,7 @@ def until_switch(
             low, at_low, at_high = length, here, 0.5 * at_high
         else:
             high, at_high, at_low = length, here, 0.5 * at_low
-        if here == 0.0 or high - low <= NEAR_A_SWITCH * cut:
+        if here == 0.0 or high - low <= NEAR_A_SWITCH * part:
             break
         length = low + (high - low) * at_low / (at_low - at_high)
     return high

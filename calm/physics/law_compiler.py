@@ -7,6 +7,7 @@ what no law has are left out, what is assigned once needs no place in memory, an
 on by fewer numbers.
 """
 
+import copy
 import gc
 import hashlib
 from collections import defaultdict
@@ -36,18 +37,25 @@ COUNT, SIZE, DATA, SHAPE, STRIDES = range(2, 7)
 SELDOM = 100_000, 20, 100
 """When garbage is collected while laws are compiled: hardly one of millions of objects is."""
 
-_builtin = _numba.types.Function
-_resolve = _builtin.get_call_type
 _seen: dict[Any, Any] = {}
 
 
-def resolve_once(operation: Any, context: Any, given: Any, named: Any) -> Any:
-    """What an operation on some types is; numba itself tries all that it could be each time."""
-    if named:
-        return _resolve(operation, context, given, named)
-    if (operation, given) not in _seen:
-        _seen[operation, given] = _resolve(operation, context, given, named)
-    return _seen[operation, given]
+def resolving_once(typing: Any) -> Any:
+    """A typing context that remembers the signature of an operation on some types.
+
+    numba's own tries all candidates each time. Only the compiler of laws is given this one.
+    """
+    remembering = copy.copy(typing)
+
+    def resolve(operation: Any, given: Any, named: Any) -> Any:
+        if named or not isinstance(operation, _numba.types.Function):
+            return typing.resolve_function_type(operation, given, named)
+        if (operation, given) not in _seen:
+            _seen[operation, given] = typing.resolve_function_type(operation, given, named)
+        return _seen[operation, given]
+
+    remembering.resolve_function_type = resolve
+    return remembering
 
 
 def short_name(name: str, given: Any, **more: Any) -> str:
@@ -158,18 +166,16 @@ class LawCompiler(_Compiler):  # type: ignore[misc]
     """The compiler of laws."""
 
     def __init__(self, typing: Any, target: Any, *others: Any) -> None:
-        super().__init__(typing, target.subtarget(**OURS), *others)
+        super().__init__(resolving_once(typing), target.subtarget(**OURS), *others)
 
     def compile_extra(self, law: Any) -> Any:
         """Compile a law and all that it calls."""
-        collected, resolve = gc.get_threshold(), _builtin.get_call_type
+        collected = gc.get_threshold()
         gc.set_threshold(*SELDOM)
-        _builtin.get_call_type = resolve_once
         try:
             return super().compile_extra(law)
         finally:
             gc.set_threshold(*collected)
-            _builtin.get_call_type = resolve
 
     def define_pipelines(self) -> list[Any]:
         """Return numba's passes without those that are needless."""
