@@ -1,4 +1,4 @@
-"""Many current profiles of a net of legs, by the compiled search of `calm.solve.net_march`.
+"""Many current profiles of a net of legs, by the compiled search of `calm.solve.leg_marches`.
 
 Each is sought from where the net is in still water, or where it does not stand there in the current
 of its file. Where that leads to nothing that stands, or the seabed is a grid, the profile is solved
@@ -32,11 +32,12 @@ from calm.physics.line import BETTER, Floats, Water
 from calm.physics.profile import Sea
 from calm.physics.track import head_count
 from calm.records.grids import SeabedGrid
-from calm.solve import expect_many, net_closing, net_problem
+from calm.solve import expect_many, leg_closing, leg_numbers
+from calm.solve.leg_closing import AskedNet, ask_net, drifts, keep
+from calm.solve.leg_numbers import Marching, NetProblem, above_bed, place_of
 from calm.solve.net import NetSearch, NetSolution
-from calm.solve.net_closing import AskedNet, ask_net, drifts, keep
-from calm.solve.net_problem import Marching, NetProblem, above_bed, place_of
 from calm.solve.problem import CHOSEN, FINE
+from calm.solve.solution import FOUND
 
 ROUGHLY = 1e-6
 """What may be left of lengths and forces, in shares: a run leaves less, which takes longer."""
@@ -117,12 +118,12 @@ def solve_net_rows(
             keep(paper.slopes[k], net.slopes[k])
         keep(paper.scale, net.scale)
         how = Marching(sea, 4.0 * step, CHOSEN, False, FINE)
-        ending = ask(AskedNet(net_closing.CLOSE, net, paper.x, how, net_closing.NEAR, True), 0.0)
-        if ending == net_closing.CAME_OUT:
+        ending = ask(AskedNet(leg_closing.CLOSE, net, paper.x, how, leg_closing.NEAR, True), 0.0)
+        if ending == FOUND:
             how = Marching(sea, step, CHOSEN, False, FINE)
-            ending = ask(AskedNet(net_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
+            ending = ask(AskedNet(leg_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
         endings[case] = TO_SOLVE
-        if ending == net_closing.CAME_OUT and stands(net, paper):
+        if ending == FOUND and stands(net, paper):
             endings[case] = 0
             tell_net(net, paper, rows, case)
 
@@ -130,16 +131,16 @@ def solve_net_rows(
 def stands(net: NetProblem, paper: NetPaper) -> bool:
     """Return whether no leg is out of the water or in the seabed, no anchor is lifted, and
     something holds the net in its place."""
-    near = net.errors[net_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
+    near = net.errors[leg_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
     for i in range(len(net.legs)):
         leg, state, record = net.legs[i], net.state[i], net.lines.work.records[i][FINE]
-        count, first = int(state[net_problem.COUNT]), 0
-        if leg.kind == net_problem.STANDING and state[net_problem.SHARE] < 1.0:
-            if state[net_problem.SHARE] < 0.0:
+        count, first = int(state[leg_numbers.COUNT]), 0
+        if leg.kind == leg_numbers.STANDING and state[leg_numbers.SHARE] < 1.0:
+            if state[leg_numbers.SHARE] < 0.0:
                 return False
             first = net.last[i][net.lines.surfacing[i][0].piece] + 1
         for n in range(count):
-            if n < state[net_problem.HUNG] and above_bed(net, i, paper.x, record, n) < -near:
+            if n < state[leg_numbers.HUNG] and above_bed(net, i, paper.x, record, n) < -near:
                 return False
             if n >= first and record[2][n] > near + leg.highest:
                 return False
@@ -152,10 +153,10 @@ def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None
     """Write what is found of a profile to its row."""
     for i in range(len(net.legs)):
         leg, record = net.legs[i], net.lines.work.records[i][FINE]
-        count = int(net.state[i][net_problem.COUNT])
+        count = int(net.state[i][leg_numbers.COUNT])
         east, north, _ = place_of(net, i, net.better, 1)
         dx, dy = east - record[BETTER][count - 1], north - record[BETTER + 1][count - 1]
-        rows.shares[case, i] = net.state[i][net_problem.SHARE]
+        rows.shares[case, i] = net.state[i][leg_numbers.SHARE]
         own = 1 if leg.own > 1 else 0
         for p in range(own, leg.pieces):
             row = rows.pieces[case, paper.piece[i] + p - own]
@@ -225,7 +226,7 @@ class NetProfiles:
         search.put_in(self.net.water.still() if self.still else self.net.water)
         how = search.marching(step, CHOSEN, FINE, given=False)
         # unknowns closed already; near them the legs' own scales are taken and the slopes found
-        search.asked(net_closing.CLOSE, self.base.unknowns, how, np.inf)
+        search.asked(leg_closing.CLOSE, self.base.unknowns, how, np.inf)
         return np.array(search.net.slopes), np.array(search.net.scale)
 
     def search(self) -> NetSearch:
@@ -295,7 +296,7 @@ class NetProfiles:
         )
         step = float(search.settings.angle_step)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        ask = by_address(ask_net, AskedNet(net_closing.CLOSE, search.net, paper.x, how, 0.0, True))
+        ask = by_address(ask_net, AskedNet(leg_closing.CLOSE, search.net, paper.x, how, 0.0, True))
         given = (ask, search.net, step, paper, *current, rows, endings)
         outcome(solve_net_rows, True, *given)
 

@@ -32,8 +32,8 @@ from calm.records.grids import SeabedGrid
 from calm.solve import Settings, Solution, Status
 
 if TYPE_CHECKING:
+    from calm.solve.leg_layout import LegEnd, NetLeg
     from calm.solve.net import NetSolution
-    from calm.solve.net_leg import LegEnd, NetLeg
 
 _SKIN = 1e-3  # m above the surface, in which water turns into air
 
@@ -81,7 +81,7 @@ class Net(ReadFromFile):
     @cached_property
     def legs(self) -> tuple[NetLeg, ...]:
         """The legs as the solver takes them."""
-        from calm.solve.net_leg import NetLeg
+        from calm.solve.leg_layout import NetLeg
 
         nodes = nodes_of(self.file.legs)
         found = []
@@ -136,7 +136,7 @@ class Net(ReadFromFile):
         return self.equilibrium(self.water, vars(self).get("near"))
 
     def _end(self, end: EndKeys, nodes: Mapping[str, int], mooring: Mooring) -> LegEnd:
-        from calm.solve.net_leg import LegEnd
+        from calm.solve.leg_layout import LegEnd
 
         if end.join is not None:
             return LegEnd(node=nodes[end.join])

@@ -121,11 +121,12 @@ def next_pair(
 
 def within_piece(record: Record, node: int) -> bool:
     """Whether a node is between two segments of one piece."""
-    return (
+    inside: bool = (
         record[SEGMENT][node] != NO_SEGMENT
         and record[SEGMENT][node + 1] != NO_SEGMENT
         and record[6][node] == record[6][node + 1]
     )
+    return inside
 
 
 @within

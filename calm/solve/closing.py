@@ -36,8 +36,9 @@ OF_A_PART = 0.01
 """Miss of a part of a line, which is light and slack, as a share of that of the whole."""
 NEARLY_LINEAR = 5e-3
 """Miss, as a share of the span, below which a secant through a far larger one finds the root."""
-ABOUT = 2e-3
-"""Miss, as a share of the span, at which one of many is near enough to its root to be closed."""
+ABOUT, WELL_KNOWN = 2e-3, 1e-6
+"""Miss, as a share of the span, at which segments are kept: of one of many, and of a single line.
+One that is slack turns in other places where it is a thousandth off."""
 COARSEST_BRACKET = 1e-7
 NARROWEST_BRACKET = 1e-15
 """Width of the last bracket, as a share of the whole range: of a march that chooses its cuts, and
@@ -68,6 +69,7 @@ class Closed(NamedTuple):
     nodes, hanging : of the shape, and its elements above the touchdown, all where there is none
     landed : whether there is a touchdown
     grounded : unstretched length that lies below it [m]
+    segments : how many it has
     """
 
     ending: int
@@ -78,6 +80,7 @@ class Closed(NamedTuple):
     hanging: int
     landed: bool
     grounded: float
+    segments: int
 
 
 def whole_line(problem: LineProblem, lands: bool) -> Unknown:
@@ -239,16 +242,6 @@ def coarse_root(
     return Root(True, unknown, x, miss, slope)
 
 
-def coarser(search: Search, root: Root) -> Root:
-    """The coarse root near another one; that one where there is none."""
-    limits = search.problem.limits
-    small = 1e-4 * limits.span
-    found = near_root(
-        search, root, limits.coarse_step, CHOSEN, False, NOT_RECORDED, small, COARSEST_BRACKET
-    )
-    return found if found.found else root
-
-
 def planned(search: Search, root: Root, step: float) -> Root:
     """The root as the march sees it at a step, near a coarser one; the cuts it takes are chosen.
 
@@ -256,8 +249,7 @@ def planned(search: Search, root: Root, step: float) -> Root:
     the cuts it took last it is: the root is a last step away, which the caller marches.
     """
     limits = search.problem.limits
-    rough = limits.near > 0.0
-    small, record = (ABOUT, OTHER) if rough else (1e-6, NOT_RECORDED)
+    small, record = (ABOUT, OTHER) if limits.near > 0.0 else (WELL_KNOWN, NOT_RECORDED)
     small *= limits.span
     found = near_root(search, root, step, CHOSEN, False, record, small, COARSEST_BRACKET)
     if not found.found and not isnan(found.miss):
@@ -268,12 +260,12 @@ def planned(search: Search, root: Root, step: float) -> Root:
     return Root(True, found.unknown, x, found.miss, found.slope)
 
 
-def segments_of(problem: LineProblem) -> int:
-    """Number of halves of the chosen segments."""
+def segments_of(problem: LineProblem, cuts: int) -> int:
+    """Number of the segments that were chosen, or of their halves."""
     chosen = 0
     for k in range(len(problem.course.cables)):
         chosen += problem.work.counts[k]
-    return 2 * chosen
+    return 2 * chosen if cuts == HALVED else chosen
 
 
 def polish(search: Search, root: Root, cuts: int, record: int) -> Closed:
@@ -282,6 +274,8 @@ def polish(search: Search, root: Root, cuts: int, record: int) -> Closed:
     Floats at the surface above the one in question are first brought back to the surface.
     """
     unknown, shares = root.unknown, search.problem.work.shares
+    if isnan(root.miss):
+        return not_closed(MARCH_STOPPED, search.problem.work.left[FAILURE], root)
     for k in range(unknown.sought):
         part = down_to(search.problem, with_sought(unknown, k, False), k + 1)
         near = Root(True, part, shares[0][k], 0.0, shares[1][k])
@@ -312,12 +306,15 @@ def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
         ending = MISSES if found.unknown.sought == BELOW else SLACK_ON_DIGITS
         return not_closed(ending, abs(found.miss), found)
     nodes, hanging = int(left[NODES]), int(left[HANGING]) - 1
-    return Closed(FOUND, 0.0, -1, found, nodes, hanging, left[LANDED] >= 0.0, left[GROUNDED])
+    segments = segments_of(problem, cuts)
+    return Closed(
+        FOUND, 0.0, -1, found, nodes, hanging, left[LANDED] >= 0.0, left[GROUNDED], segments
+    )
 
 
 def not_closed(ending: int, value: float, root: Root) -> Closed:
     """Return how a line ended that does not close."""
-    return Closed(ending, value, -1, root, 0, 0, False, 0.0)
+    return Closed(ending, value, -1, root, 0, 0, False, 0.0, 0)
 
 
 def near_root(

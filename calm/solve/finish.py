@@ -8,11 +8,10 @@ from calm.errors import NoEquilibrium
 from calm.physics.line import FAILURES, Line, Trace, Water
 from calm.physics.track import Load
 from calm.solve import solution
-from calm.solve.accuracy import Errors
 from calm.solve.closing import Closed
+from calm.solve.line_shape import NO_OTHER, FoundShape
 from calm.solve.problem import BELOW, CHANGED, FINE, MARCHES, MOST_AFLOAT, LineProblem
-from calm.solve.refine import Refined
-from calm.solve.search import NO_OTHER, FoundShape, ending_of_audit
+from calm.solve.search import ending_of_audit
 from calm.solve.solution import Settings, Solution, Status, standing_lift, too_heavy
 
 STATUS_OF = {
@@ -61,29 +60,27 @@ def solution_of(
     line: Line,
     water: Water,
     settings: Settings,
-    refined: Refined,
-    errors: Errors,
+    found: FoundShape,
     frequency: float = 0.0,
 ) -> Solution:
-    """The solution in the record `FINE`, not audited.
+    """The solution in the record `FINE`.
 
     Parameters
     ----------
     problem : of the line, as it was left by the search
-    errors : as stated
     frequency : of the cables that strum [Hz]
     """
-    closed = refined.closed
+    closed, errors = found.closed, found.errors
     trace = Trace.of(problem.work.records[FINE], closed.nodes)
     trace.position[:, :2] -= trace.position[-1, :2]
     position, force = trace.better[:, :3].copy(), trace.better[:, 3:].copy()
     position[:, :2] -= position[-1, :2]
-    used, reserve = _buoyancy_in_use(problem, refined)
+    used, reserve = _buoyancy_in_use(problem, found)
     unknown = closed.root.unknown
     floats = problem.surfacing[: unknown.sought + 1]
     riding = None
     if unknown.sought != BELOW and unknown.rides and line.floating is not None:
-        riding = line.floating.riding(refined.share)
+        riding = line.floating.riding(found.share)
     return Solution(
         line=line,
         water=water,
@@ -95,7 +92,7 @@ def solution_of(
         element_clamp=trace.clamp,
         landed=bool(closed.landed),
         hanging=closed.hanging,
-        grounded_length=refined.grounded,
+        grounded_length=found.grounded,
         cut=trace.cut,
         strain=trace.strain,
         afloat=tuple(int(each[0]) for each in floats),
@@ -104,23 +101,26 @@ def solution_of(
         carried=carried_by(line, problem) if unknown.sought != BELOW else line,
         riding=riding,
         marches=int(problem.work.left[MARCHES]),
-        segments=refined.segments,
+        segments=closed.segments,
         miss=closed.root.miss,
         depth_error=errors.depth,
         tension_error=errors.tension,
         lift_error=errors.lift,
         pull_error=errors.pull,
         frequency=frequency,
+        closure=found.closure,
+        moment_residual=found.moment,
+        other=None if found.other == NO_OTHER else found.other,
     )
 
 
-def _buoyancy_in_use(problem: LineProblem, refined: Refined) -> tuple[float, float]:
+def _buoyancy_in_use(problem: LineProblem, found: FoundShape) -> tuple[float, float]:
     """Share in use of the buoyancy of the floats at the surface, and the rest of it [N]."""
-    sought = refined.closed.root.unknown.sought
+    sought = found.closed.root.unknown.sought
     if sought == BELOW:
         return 1.0, 0.0
     lifts = [float(each[6]) for each in problem.surfacing[: sought + 1]]
-    shares = [*problem.work.shares[0][:sought], refined.share]
+    shares = [*problem.work.shares[0][:sought], found.share]
     total, used = sum(lifts), sum(a * b for a, b in zip(shares, lifts, strict=True))
     return float(used / total), float(total - used)
 
@@ -148,15 +148,9 @@ def solution_found(
     NoEquilibrium
         There is none.
     """
-    if found.ending != solution.FOUND:
+    if found.closed.ending != solution.FOUND:
         raise refusal_of(found, line, water)
-    other = None if found.other == NO_OTHER else found.other
-    return replace(
-        solution_of(problem, line, water, settings, found.refined, found.errors),
-        closure=found.closure,
-        moment_residual=found.moment,
-        other=other,
-    )
+    return solution_of(problem, line, water, settings, found)
 
 
 def refuse_unbalanced(closure: float, moment: float) -> None:
@@ -202,14 +196,14 @@ def march_stopped(failure: float, piece: int | None = None) -> NoEquilibrium:
 
 def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
     """Return why a moored line has no shape."""
-    ending, value, piece = found.ending, found.value, found.piece
+    ending, value, piece = found.closed.ending, found.closed.value, found.closed.piece
     if ending in (
         solution.MARCH_STOPPED,
         solution.NO_SHAPE_NEAR,
         solution.MISSES,
         solution.SLACK_ON_DIGITS,
     ):
-        return closing_refusal(found.refined.closed)
+        return closing_refusal(found.closed)
     if ending == solution.UNSUPPORTED:
         return too_heavy(standing_lift(line, water))
     if ending == solution.SLACK_AT_REST:

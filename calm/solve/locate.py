@@ -10,7 +10,6 @@ from calm.physics.profile import Interval, Sea
 from calm.solve.closing import (
     COARSEST_BRACKET,
     Root,
-    coarse_about,
     coarse_miss,
     coarse_root,
     down_to,
@@ -23,7 +22,6 @@ from calm.solve.problem import (
     CHOSEN,
     MOST_AFLOAT,
     NOT_RECORDED,
-    About,
     LineProblem,
     Search,
     Unknown,
@@ -249,11 +247,8 @@ def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
         if square > fastest:
             greatest, fastest = k, square
     most = sea.intervals[greatest]
-    about = coarse_about(search, unknown)
     evenly = in_even_current(problem, most.u, most.v, most.w)
-    miss = search.miss(
-        About(evenly, unknown, about.step, about.cuts, about.given, about.record), depth
-    )
+    miss = coarse_miss(Search(search.miss, evenly), unknown, depth)
     return nan if isnan(miss) else max(miss, problem.limits.allowed)
 
 

@@ -8,7 +8,6 @@ root: two or three marches close it.
 
 from collections.abc import Callable, MutableSequence, Sequence
 from dataclasses import replace
-from math import isnan
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +20,7 @@ from calm.solve.accuracy import Errors, take_as_marched
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root, miss_at, not_closed, planned, polish, whole_line
 from calm.solve.finish import closing_refusal, solution_found
+from calm.solve.line_shape import FoundShape, not_audited
 from calm.solve.locate import locate
 from calm.solve.problem import (
     BELOW,
@@ -34,11 +34,9 @@ from calm.solve.problem import (
     Unknown,
     problem_of,
 )
-from calm.solve.refine import Refined
-from calm.solve.search import FoundShape, Referee, audited, find_shape
+from calm.solve.search import Referee, audited, find_shape
 from calm.solve.solution import (
     FOUND,
-    MARCH_STOPPED,
     SLACK_ON_DIGITS,
     OtherEquilibrium,
     Settings,
@@ -100,7 +98,7 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         if not lacks_room(problem):
             break
         room *= MORE_ROOM
-    slack_in_a_current = found.ending == SLACK_ON_DIGITS and water.moving
+    slack_in_a_current = found.closed.ending == SLACK_ON_DIGITS and water.moving
     if slack_in_a_current and (moving := stirred(water)):
         return solve_mooring(line, moving, settings)
     return solution_found(found, problem, line, water, settings)
@@ -162,7 +160,7 @@ def find_asked(asked: AskedSearch, first: float) -> float:
         return float(fill_starts(asked.search))
     found = find_shape(asked.search, asked.referee)
     tell(found, asked.search.problem.work.found)
-    return float(found.ending)
+    return float(found.closed.ending)
 
 
 def find_now(find: Callable[[AskedSearch, float], float], asked: AskedSearch) -> float:
@@ -179,20 +177,20 @@ from `FIRST_OTHER` on another equilibrium."""
 
 def tell(found: FoundShape, told: MutableSequence[float]) -> None:
     """Write down what was found."""
-    closed, errors = found.refined.closed, found.errors
+    closed, errors = found.closed, found.errors
     root = closed.root
     unknown = root.unknown
-    told[ENDING], told[VALUE], told[PIECE] = found.ending, found.value, found.piece
+    told[ENDING], told[VALUE], told[PIECE] = closed.ending, closed.value, closed.piece
     told[GOAL], told[SOUGHT] = unknown.goal, unknown.sought
     told[RIDES], told[LANDS], told[STAGES] = unknown.rides, unknown.lands, unknown.stages
     told[UNKNOWN_VALUE], told[MISS], told[SLOPE] = root.x, root.miss, root.slope
     told[NODES], told[HANGING] = closed.nodes, closed.hanging
     told[LANDED], told[GROUNDED] = closed.landed, closed.grounded
-    told[SEGMENTS] = found.refined.segments
+    told[SEGMENTS] = closed.segments
     told[FIRST_ERROR], told[FIRST_ERROR + 1] = errors.depth, errors.tension
     told[FIRST_ERROR + 2] = errors.relative
     told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
-    told[SHARE_IN_USE], told[LIES] = found.refined.share, found.refined.grounded
+    told[SHARE_IN_USE], told[LIES] = found.share, found.grounded
     told[CLOSURE], told[MOMENT] = found.closure, found.moment
     other = found.other
     told[FIRST_OTHER], told[FIRST_OTHER + 1] = other.depth, other.grounded_length
@@ -207,12 +205,13 @@ def as_told(told: Sequence[float]) -> FoundShape:
     unknown = Unknown(told[GOAL], sought, bool(rides), bool(lands), stages)
     root = Root(True, unknown, told[UNKNOWN_VALUE], told[MISS], told[SLOPE])
     value = float(told[VALUE])
-    closed = Closed(ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]))
+    closed = Closed(
+        ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]), segments
+    )
     errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
     other = OtherEquilibrium(*(float(figure) for figure in told[FIRST_OTHER : FIRST_OTHER + 5]))
-    refined = Refined(closed, segments, errors, float(told[SHARE_IN_USE]), float(told[LIES]))
-    audit = float(told[CLOSURE]), float(told[MOMENT])
-    return FoundShape(ending, value, piece, refined, errors, *audit, other)
+    share, lies = float(told[SHARE_IN_USE]), float(told[LIES])
+    return FoundShape(closed, errors, share, lies, float(told[CLOSURE]), float(told[MOMENT]), other)
 
 
 WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
@@ -297,11 +296,11 @@ class Nearby:
             raise Status.NOT_CONVERGED.because("It lies on the seabed, or hangs, unlike the other.")
         errors = Errors(base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error)
         referee = referee_of(line, water, 0.0, compiled)
-        refined = Refined(closed, len(self._cuts), errors, closed.root.x, closed.grounded)
+        found = not_audited(closed, errors, closed.root.x, closed.grounded)
         problem = search.problem
         record = problem.work.records[FINE]
         outcome(take_as_marched, compiled, record, closed.nodes)
-        found = outcome(audited, compiled, problem, referee, refined)
+        found = outcome(audited, compiled, problem, referee, found)
         return solution_found(found, problem, line, water, self._settings)
 
     def _closed(self, line: Line, water: Water, track: Track | None) -> tuple[Search, Closed]:
@@ -339,8 +338,6 @@ def close_coarsely(search: Search, lands: bool) -> Closed:
     if located.ending != FOUND:
         return not_closed(located.ending, located.value, located.root)
     root = planned(search, located.root, search.problem.limits.angle_step)
-    if isnan(root.miss):
-        return not_closed(MARCH_STOPPED, search.problem.work.left[FAILURE], root)
     return polish(search, root, CHOSEN, FINE)
 
 

@@ -3,7 +3,7 @@
 Every leg is passed by the march of a single line: from its free end, if it has one, else from its
 upper end with a pull on it that is unknown. Unknown are besides the depths of the free ends and the
 places of the nodes; asked is that every leg ends where it is held and that the pulls at every node
-balance: see `calm.solve.net_march`.
+balance: see `calm.solve.leg_marches`.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,15 +16,22 @@ from calm.errors import NoEquilibrium
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import FAILURES, GOES_ON, NO_ROOM, Floats, Line, Trace, Water
 from calm.physics.profile import Profile
-from calm.solve import net_closing, net_problem
+from calm.solve import leg_closing, leg_numbers
 from calm.solve.finish import refuse_unbalanced
+from calm.solve.leg_closing import AskedNet, ask_net, ask_now, keep
+from calm.solve.leg_layout import LaidLeg, NetLeg, lay_net, leg_found, refuse_misplaced, unsettled
+from calm.solve.leg_numbers import Marching
 from calm.solve.mooring import BREATH, stirred
-from calm.solve.net_closing import AskedNet, ask_net, ask_now, keep
-from calm.solve.net_leg import LaidLeg, NetLeg, lay_net, leg_found, refuse_misplaced, unsettled
-from calm.solve.net_problem import Marching
 from calm.solve.net_start import NetStart, start_of
 from calm.solve.problem import CHOSEN, FINE, ROOM
-from calm.solve.solution import Settings, Solution, Status, expect_many, runs_compiled
+from calm.solve.solution import (
+    FOUND,
+    Settings,
+    Solution,
+    Status,
+    expect_many,
+    runs_compiled,
+)
 
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
@@ -83,11 +90,11 @@ class NetSearch:
         x, first = np.zeros(len(self.net.found)), 0
         x[self.net.nodes_at :] = start.nodes.ravel()
         for i, each in enumerate(self.laid):
-            down, pull = each.kind == net_problem.HANGING_DOWN, start.pull[i]
+            down, pull = each.kind == leg_numbers.HANGING_DOWN, start.pull[i]
             x[first : first + each.unknowns] = -(start.lower if down else start.first)[i][2]
-            if each.kind == net_problem.PULLED:
+            if each.kind == leg_numbers.PULLED:
                 x[first : first + 3] = pull
-            elif each.kind == net_problem.ANCHORED:
+            elif each.kind == leg_numbers.ANCHORED:
                 x[first : first + 3] = start.held[i]
                 x[first + 3 : first + each.unknowns] = each.leg.lower.seabed
                 height = start.first[i][2] - each.leg.lower.seabed
@@ -107,8 +114,8 @@ class NetSearch:
             ending = outcome(ask_now, True, ask, asked)
         else:
             ending = ask_net(asked, 0.0)
-        closing = task in (net_closing.CLOSE, net_closing.SETTLE)
-        if ending == (net_closing.NEEDS_ROOM if closing else NO_ROOM):
+        closing = task in (leg_closing.CLOSE, leg_closing.SETTLE)
+        if ending == (leg_closing.NEEDS_ROOM if closing else NO_ROOM):
             raise LacksRoom
         return int(ending), np.array(own)
 
@@ -119,8 +126,8 @@ class NetSearch:
     def closed(self, x: Floats, step: float, enough: float) -> Floats | None:
         """Newton's method; None where it leads nowhere."""
         how = self.marching(step, CHOSEN, FINE, given=False)
-        ending, found = self.asked(net_closing.CLOSE, x, how, enough)
-        return found if ending == net_closing.CAME_OUT else None
+        ending, found = self.asked(leg_closing.CLOSE, x, how, enough)
+        return found if ending == FOUND else None
 
     def settled(self, x: Floats) -> Floats:
         """The unknowns closed to the last digits, on segments that are short enough.
@@ -128,9 +135,9 @@ class NetSearch:
         NoEquilibrium: they cannot be.
         """
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=False)
-        for enough in (net_closing.CLOSED, 100.0 * net_closing.CLOSED):  # slack ones; audited too
-            ending, found = self.asked(net_closing.SETTLE, x, how, enough)
-            if ending == net_closing.CAME_OUT:
+        for enough in (leg_closing.CLOSED, 100.0 * leg_closing.CLOSED):  # slack ones; audited too
+            ending, found = self.asked(leg_closing.SETTLE, x, how, enough)
+            if ending == FOUND:
                 return found
         raise unsettled("its legs do not come together to the last digits")
 
@@ -141,7 +148,7 @@ class NetSearch:
 
     def shape(self, i: int, x: Floats) -> Trace:
         """The shape of a leg as it was marched last, where it is."""
-        nodes = int(self.net.state[i][net_problem.COUNT])
+        nodes = int(self.net.state[i][leg_numbers.COUNT])
         trace = Trace.of(self.net.lines.work.records[i][FINE], nodes)
         trace.position[:, :2] += self.end(i, x)[:2] - trace.position[-1, :2]
         return trace
@@ -155,7 +162,7 @@ class NetSearch:
         water = self.water
         slow = float(np.hypot(water.u, water.v).max(initial=0.0)) <= BREATH
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=True)
-        if slow and self.asked(net_closing.DRIFTS, x, how)[0]:
+        if slow and self.asked(leg_closing.DRIFTS, x, how)[0]:
             raise Status.SLACK.because(
                 "Nothing holds the net sideways: every leg to an anchor lies on the seabed and is "
                 "slack, so that the net may be anywhere between its anchors.",
@@ -167,8 +174,8 @@ class NetSearch:
             raise unsettled(f"a leg misses its end by {miss:.2g} m")
         imbalance = np.linalg.norm(left[net.nodes_at :].reshape(-1, 3), axis=1)
         errors = (
-            float(net.errors[net_closing.DEPTH_ERROR]) + miss + 1e-9 * net.length,
-            float(net.errors[net_closing.TENSION_ERROR]) + 1e-8 * net.force,
+            float(net.errors[leg_closing.DEPTH_ERROR]) + miss + 1e-9 * net.length,
+            float(net.errors[leg_closing.TENSION_ERROR]) + 1e-8 * net.force,
         )
         for i, each in enumerate(self.laid):
             ends = self.end(i, x), self.end(i, better)
@@ -182,7 +189,7 @@ class NetSearch:
             refuse_unbalanced(leg.closure, leg.moment_residual)
         return NetSolution(
             tuple(legs), better[net.nodes_at :].reshape(-1, 3).copy(), imbalance, miss, *errors,
-            int(sum(state[net_problem.MARCHES] for state in net.state)), x,
+            int(sum(state[leg_numbers.MARCHES] for state in net.state)), x,
         )  # fmt: skip
 
 
@@ -250,24 +257,24 @@ def about(net: NetSearch, near: NetSolution | None) -> Floats:
     """
     water, step = net.water, 4.0 * net.settings.angle_step
     legs = tuple(each.leg for each in net.laid)
-    if near is not None:
-        if (x := net.closed(near.unknowns, step, net_closing.NEAR)) is not None:
-            return x
+    x = None if near is None else net.closed(near.unknowns, step, leg_closing.NEAR)
+    if x is not None:
+        return x
     still, way, stride = water.still(), 0.0, 1.0
     net.put_in(still)
-    x = net.closed(net.begin(start_of(legs, net.nodes, still)), step, net_closing.NEAR)
+    x = net.closed(net.begin(start_of(legs, net.nodes, still)), step, leg_closing.NEAR)
     why = "not even in still water do its legs come together"
     while x is not None and way < 1.0 and stride >= 0.01:
         following = min(way + stride, 1.0)
         moving = replace(water, u=following * water.u, v=following * water.v, w=following * water.w)
         net.put_in(moving if following < 1.0 else water)
-        closer = net.closed(x, step, net_closing.NEAR)
+        closer = net.closed(x, step, leg_closing.NEAR)
         stride = stride if closer is not None else 0.5 * stride
         x, way = (x, way) if closer is None else (closer, following)
         why = f"beyond {way:.0%} of the current its legs do not come together"
     if x is None or way < 1.0:
         net.put_in(water)
-        x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, net_closing.NEAR)
+        x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, leg_closing.NEAR)
     if x is None:
         raise unsettled(why)
     return x
@@ -294,11 +301,11 @@ class NearbyNet:
         step = settings.angle_step
         self._how = net.marching(step, CHOSEN, FINE, given=True)
         chosen = net.marching(step, CHOSEN, FINE, given=False)
-        _, x = net.asked(net_closing.MARCH, about(net, near), chosen)
-        ending, self._x = net.asked(net_closing.CLOSE, x, self._how, net_closing.CLOSED)
-        if ending != net_closing.CAME_OUT:
+        _, x = net.asked(leg_closing.MARCH, about(net, near), chosen)
+        ending, self._x = net.asked(leg_closing.CLOSE, x, self._how, leg_closing.CLOSED)
+        if ending != FOUND:
             raise unsettled("its legs do not come together to the last digits")
-        net.asked(net_closing.SLOPES, self._x, self._how)
+        net.asked(leg_closing.SLOPES, self._x, self._how)
         self._slopes = np.array(net.net.slopes)
 
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
@@ -306,7 +313,7 @@ class NearbyNet:
         each, trace = self._net.laid[leg], self._net.shape(leg, self._x)
         if clamp >= 0:
             return int(np.argmax(trace.clamp == clamp))
-        if each.kind == net_problem.HANGING_DOWN:  # listed from its lower end
+        if each.kind == leg_numbers.HANGING_DOWN:  # listed from its lower end
             own = len(each.leg.line.length) - 1 - piece
             return int(np.flatnonzero(trace.piece == own)[-1]) + 1
         return int(np.argmax(trace.piece == piece + int(each.below_a_point)))
@@ -329,10 +336,10 @@ class NearbyNet:
         for i in range(len(legs)):
             mine.chosen[i][:], mine.counts[i][:] = its.chosen[i], its.counts[i]
         for _ in range(2):
-            other.asked(net_closing.MARCH, x, self._how)
+            other.asked(leg_closing.MARCH, x, self._how)
             left = np.array(other.net.found)
             x = x - np.linalg.lstsq(self._slopes, left, rcond=1e-14)[0] * np.array(net.net.scale)
-        failure, _ = other.asked(net_closing.MARCH, x, self._how)
+        failure, _ = other.asked(leg_closing.MARCH, x, self._how)
         if failure != GOES_ON:
             raise unsettled(FAILURES[failure])
-        return other.shape(leg, x).position, float(other.net.state[leg][net_problem.SHARE])
+        return other.shape(leg, x).position, float(other.net.state[leg][leg_numbers.SHARE])

@@ -15,7 +15,7 @@ import numpy as np
 from calm.physics.line import Floats, Integers, Line, Water
 
 if TYPE_CHECKING:
-    from calm.solve.net_leg import NetLeg
+    from calm.solve.leg_layout import NetLeg
 
 MOST_LUMPS, SOFTEST = 14, 0.02
 """Springs of a leg at most, and how much one stretches under the weight of everything."""

@@ -137,7 +137,7 @@ class SearchArrays(NamedTuple):
 
     left: MutableSequence[float]
     chosen: MutableSequence[float]
-    counts: Sequence[MutableSequence[int]]
+    counts: MutableSequence[int]
     records: Any
     shares: Sequence[MutableSequence[float]]
     samples: Sequence[MutableSequence[float]]

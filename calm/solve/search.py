@@ -1,6 +1,6 @@
 """The whole search for a moored line: from a problem to a shape that has passed every check.
 
-What is found clear of the seabed, or lying on it, is refined, looked at for what is out of the
+What is found clear of the seabed, or lying on it, is settled, looked at for what is out of the
 water or in the seabed, and audited.
 """
 
@@ -22,24 +22,21 @@ from calm.physics.referee import (
 )
 from calm.physics.seabed import closure
 from calm.physics.track import Load
-from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, tension_at
-from calm.solve.closing import Closed, Root, coarse_miss, not_closed, place, planned, whole_line
+from calm.solve.accuracy import Errors, tension_at
+from calm.solve.closing import Closed, Root, coarse_miss, place, planned, whole_line
+from calm.solve.line_shape import NO_OTHER, FoundShape, lowest_node, refused, settle_line
 from calm.solve.locate import locate
 from calm.solve.problem import (
     BELOW,
     CHANGED,
-    CHOSEN,
     FINE,
     KEPT,
-    NOT_RECORDED,
     OTHER,
-    About,
     Limits,
     LineProblem,
     Search,
     Unknown,
 )
-from calm.solve.refine import Refined, lowest_node, refine, unrefined
 from calm.solve.solution import (
     ABOVE_SURFACE,
     BELOW_SEABED,
@@ -87,31 +84,6 @@ class Referee(NamedTuple):
     last: MutableSequence[int]
 
 
-class FoundShape(NamedTuple):
-    """A shape in the record `FINE`, or why there is none.
-
-    Attributes
-    ----------
-    ending, value, piece : see `calm.solve.solution`
-    refined : the closed line
-    errors : of the shape, with what no halving shows
-    closure, moment : what the audit found
-    other : another equilibrium that the search came upon
-    """
-
-    ending: int
-    value: float
-    piece: int
-    refined: Refined
-    errors: Errors
-    closure: float
-    moment: float
-    other: OtherEquilibrium
-
-
-NO_OTHER = OtherEquilibrium(-1.0, 0.0, 0.0, 0.0, 0.0)
-
-
 def find_shape(search: Search, referee: Referee) -> FoundShape:
     """Look for a line clear of the seabed or lying on it, the likelier first."""
     problem = search.problem
@@ -120,13 +92,13 @@ def find_shape(search: Search, referee: Referee) -> FoundShape:
     lands_first = may_land and limits.length > limits.depth
     if lands_first and limits.near > 0.0:
         at_once = rising(search, referee)
-        if at_once.ending == FOUND:
+        if at_once.closed.ending == FOUND:
             return at_once
     first = highest(search, referee, lands_first)
-    if first.ending == FOUND or first.ending == MARCH_STOPPED or not may_land:
+    if first.closed.ending == FOUND or first.closed.ending == MARCH_STOPPED or not may_land:
         return first
     second = highest(search, referee, not lands_first)
-    if second.ending == FOUND or second.ending == MARCH_STOPPED:
+    if second.closed.ending == FOUND or second.closed.ending == MARCH_STOPPED:
         return second
     if is_slack(first):
         return first
@@ -150,9 +122,9 @@ def rising(search: Search, referee: Referee) -> FoundShape:
     if isnan(miss) or problem.work.left[CAME_DOWN] >= 0.0:
         return found
     found = shape_near(search, referee, start, False)
-    if found.ending != FOUND or not is_highest(problem, found.refined.closed.root):
+    if found.closed.ending != FOUND or not is_highest(problem, found.closed.root):
         return refused(NO_SHAPE_NEAR, 0.0, -1, start)
-    last, heights = found.refined.closed.nodes - 1, problem.work.records[FINE][2]
+    last, heights = found.closed.nodes - 1, problem.work.records[FINE][2]
     if heights[last - 1] <= heights[last]:
         return refused(NO_SHAPE_NEAR, 0.0, -1, start)
     return found
@@ -160,31 +132,24 @@ def rising(search: Search, referee: Referee) -> FoundShape:
 
 def is_slack(found: FoundShape) -> bool:
     """Return whether a line is refused as slack."""
-    return found.ending == SLACK_AT_REST or found.ending == SLACK_ON_DIGITS
-
-
-def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
-    """Return why there is no shape."""
-    refined = unrefined(not_closed(ending, value, root))
-    return FoundShape(ending, value, piece, refined, UNKNOWN_ERRORS, 0.0, 0.0, NO_OTHER)
+    return found.closed.ending == SLACK_AT_REST or found.closed.ending == SLACK_ON_DIGITS
 
 
 def beside(found: FoundShape, other: OtherEquilibrium) -> FoundShape:
     """The shape, with another equilibrium."""
     return FoundShape(
-        found.ending, found.value, found.piece, found.refined, found.errors, found.closure,
-        found.moment, other,
-    )  # fmt: skip
+        found.closed, found.errors, found.share, found.grounded, found.closure, found.moment, other
+    )
 
 
 def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
     """The shape in the record `FINE` as another equilibrium."""
-    record, closed = problem.work.records[FINE], found.refined.closed
+    record, closed = problem.work.records[FINE], found.closed
     end = closed.nodes - 1
     x, y, z = record[BETTER + 3][end], record[BETTER + 4][end], record[BETTER + 5][end]
-    share = found.refined.share if closed.root.unknown.sought != BELOW else 1.0
+    share = found.share if closed.root.unknown.sought != BELOW else 1.0
     depth = 0.0 - record[BETTER + 2][0]
-    return OtherEquilibrium(depth, found.refined.grounded, share, z, sqrt(x * x + y * y))
+    return OtherEquilibrium(depth, found.grounded, share, z, sqrt(x * x + y * y))
 
 
 def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
@@ -198,13 +163,13 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
         start = planned(search, start, problem.limits.coarse_step)
     if start.found and not isnan(start.miss):
         found = shape_near(search, referee, start, lands)
-        if found.ending == FOUND and is_highest(problem, found.refined.closed.root):
+        if found.closed.ending == FOUND and is_highest(problem, found.closed.root):
             return found
     located = locate(search, lands)
     if located.ending != FOUND:
         return refused(located.ending, located.value, -1, located.root)
     found = shape_near(search, referee, located.root, lands)
-    if found.ending != FOUND or not located.other.found:
+    if found.closed.ending != FOUND or not located.other.found:
         return found
     if problem.limits.near > 0.0:  # of one of many its share is told, found roughly
         afloat = located.other.unknown.sought != BELOW
@@ -212,7 +177,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
         return beside(found, share) if afloat else found
     keep(problem, OTHER, FINE, found)
     second = shape_near(search, referee, located.other, lands)
-    other = other_of(problem, second) if second.ending == FOUND else NO_OTHER
+    other = other_of(problem, second) if second.closed.ending == FOUND else NO_OTHER
     keep(problem, FINE, OTHER, found)
     load_again(problem, found)
     first = other_of(problem, found)
@@ -221,26 +186,26 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
         other.depth - first.depth <= apart
         and abs(other.used_buoyancy - first.used_buoyancy) < DISTINCT
     )
-    return found if second.ending != FOUND or same else beside(found, other)
+    return found if second.closed.ending != FOUND or same else beside(found, other)
 
 
 def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
     """Copy a shape from one record to another, and the shares in use of the floats above it."""
     source, kept = problem.work.records[of], problem.work.records[to]
     shares = problem.work.shares
-    for k in range(found.refined.closed.root.unknown.sought):
+    for k in range(found.closed.root.unknown.sought):
         if of == FINE:
             shares[to][k] = shares[0][k]
         else:
             shares[0][k] = shares[of][k]
     for column in range(len(source)):
-        for n in range(found.refined.closed.nodes):
+        for n in range(found.closed.nodes):
             kept[column][n] = source[column][n]
 
 
 def load_again(problem: LineProblem, found: FoundShape) -> None:
     """Load what is at the surface as it is in a shape."""
-    root = found.refined.closed.root
+    root = found.closed.root
     place(problem, root.unknown, root.x)
 
 
@@ -248,36 +213,34 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
     """The audited shape near a coarse root."""
     problem, limits = search.problem, search.problem.limits
     if not lands:
-        return audited(problem, referee, refine(search, root, True))
+        return audited(problem, referee, settle_line(search, root, True))
     clear = hanging_clear(problem, root)
-    about = About(problem, root.unknown, limits.coarse_step, CHOSEN, False, NOT_RECORDED)
-    search.miss(about, root.x)
-    if problem.work.left[FAILURE] > 0.0:
+    if isnan(coarse_miss(search, root.unknown, root.x)):
         return refused(MARCH_STOPPED, problem.work.left[FAILURE], -1, root)
     if problem.work.left[CAME_DOWN] < 0.0:
-        return audited(problem, referee, refine(search, clear, False))
-    landed = audited(problem, referee, refine(search, root, False))
-    if landed.ending != FOUND:
+        return audited(problem, referee, settle_line(search, clear, False))
+    landed = audited(problem, referee, settle_line(search, root, False))
+    if landed.closed.ending != FOUND:
         return landed
-    closed = landed.refined.closed
+    closed = landed.closed
     if not closed.landed:
         return refused(NOT_LYING, 0.0, -1, root)
     if closed.grounded > PERHAPS_LANDED * limits.anchor_height:
         return landed
     keep(problem, KEPT, FINE, landed)
     lying = other_of(problem, landed)
-    hanging = audited(problem, referee, refine(search, clear, True))
-    if hanging.ending == MARCH_STOPPED:
+    hanging = audited(problem, referee, settle_line(search, clear, True))
+    if hanging.closed.ending == MARCH_STOPPED:
         return hanging
-    clear_of_it = other_of(problem, hanging) if hanging.ending == FOUND else NO_OTHER
-    if hanging.ending == FOUND:
+    clear_of_it = other_of(problem, hanging) if hanging.closed.ending == FOUND else NO_OTHER
+    if hanging.closed.ending == FOUND:
         barely = closed.grounded <= BARELY_LANDED * limits.anchor_height
         higher = lying.depth - hanging.errors.depth - landed.errors.depth
         if barely or clear_of_it.depth < higher:
             return beside(hanging, lying)
     keep(problem, FINE, KEPT, landed)
     load_again(problem, landed)
-    if hanging.ending != FOUND:
+    if hanging.closed.ending != FOUND:
         return landed
     return beside(landed, clear_of_it)
 
@@ -290,23 +253,22 @@ def hanging_clear(problem: LineProblem, root: Root) -> Root:
     return Root(root.found, unknown, root.x, root.miss, root.slope)
 
 
-def audited(problem: LineProblem, referee: Referee, refined: Refined) -> FoundShape:
-    """A refined shape, refused where a check fails."""
-    closed = refined.closed
+def audited(problem: LineProblem, referee: Referee, found: FoundShape) -> FoundShape:
+    """A shape with what no halving shows of its errors, refused where a check fails."""
+    closed, off, moment = found.closed, 0.0, 0.0
     if closed.ending != FOUND:
-        return refused(closed.ending, closed.value, closed.piece, closed.root)
-    errors = stated_errors(problem, refined)
-    piece, height = misplaced(problem, refined, errors.depth)
+        return found
+    errors = stated_errors(problem, found)
+    piece, height = misplaced(problem, closed, errors.depth)
     if piece >= 0:
         ending = ABOVE_SURFACE if height > 0.0 else BELOW_SEABED
         return refused(ending, abs(height), piece, closed.root)
-    if problem.limits.near > 0.0:
-        return FoundShape(FOUND, 0.0, -1, refined, errors, 0.0, 0.0, NO_OTHER)
-    off, moment = audit_shape(problem, referee, closed)
-    ending, value = ending_of_audit(off, moment)
-    if ending != FOUND:
-        return refused(ending, value, -1, closed.root)
-    return FoundShape(FOUND, 0.0, -1, refined, errors, off, moment, NO_OTHER)
+    if problem.limits.near == 0.0:
+        off, moment = audit_shape(problem, referee, closed)
+        ending, value = ending_of_audit(off, moment)
+        if ending != FOUND:
+            return refused(ending, value, -1, closed.root)
+    return FoundShape(closed, errors, found.share, found.grounded, off, moment, NO_OTHER)
 
 
 def audit_shape(problem: LineProblem, referee: Referee, closed: Closed) -> tuple[float, float]:
@@ -346,9 +308,9 @@ def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
     return FOUND, 0.0
 
 
-def stated_errors(problem: LineProblem, refined: Refined) -> Errors:
+def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
     """The errors of a shape, with what no halving shows."""
-    closed, span, errors = refined.closed, problem.limits.span, refined.errors
+    closed, span, errors = found.closed, problem.limits.span, found.errors
     unclosed = abs(closed.root.miss) / span + UNSEEN
     record, greatest = problem.work.records[FINE], 0.0
     for n in range(closed.nodes):
@@ -365,12 +327,12 @@ def stated_errors(problem: LineProblem, refined: Refined) -> Errors:
     )
 
 
-def misplaced(problem: LineProblem, refined: Refined, depth_error: float) -> tuple[int, float]:
+def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple[int, float]:
     """The piece that is out of the water, and by how much, or in the seabed, negative [m]; or -1.
 
     A float at the surface may stand out of it, however it is turned.
     """
-    closed, record = refined.closed, problem.work.records[FINE]
+    record = problem.work.records[FINE]
     margin = max(depth_error, 1e-6 * problem.limits.depth)
     standing, unknown = 0.0, closed.root.unknown
     for k in range(unknown.sought + 1):

@@ -9,9 +9,9 @@ from math import isnan, nan, sqrt
 
 from calm.physics.profile import Sea
 from calm.physics.track import CABLE, Course
-from calm.solve.closing import Root, coarse_about, whole_line, with_sought
+from calm.solve.closing import Root, coarse_miss, whole_line, with_sought
 from calm.solve.locate import growth_below, in_even_current, locate, turns_back
-from calm.solve.problem import BELOW, FASTEST, STARTS, About, LineProblem, Search
+from calm.solve.problem import BELOW, FASTEST, STARTS, LineProblem, Search
 from calm.solve.solution import FOUND
 
 NOWHERE_NEAR = 0.97
@@ -41,19 +41,16 @@ def fill_starts(search: Search) -> int:
         upright = max(-limits.standing - unknown.goal, 0.0)
         for k in range(STARTS):
             speed = FASTEST * max(k, 1e-3) / (STARTS - 1)
-            evenly = in_even_current(problem, speed, 0.0, 0.0)
-            about = coarse_about(search, unknown)
-            fall = search.miss(
-                About(evenly, unknown, about.step, about.cuts, about.given, about.record), upright
-            )
+            evenly = Search(search.miss, in_even_current(problem, speed, 0.0, 0.0))
+            fall = coarse_miss(evenly, unknown, upright)
             starts[3 * way + 2][k] = limits.depth if isnan(fall) else max(fall, limits.allowed)
             starts[3 * way][k] = starts[3 * way + 1][k] = nan
             starts[LEANS][k] = lean_of(
-                problem.course, evenly.sea, upright, limits.depth, upright > 0.0
+                problem.course, evenly.problem.sea, upright, limits.depth, upright > 0.0
             )
             if limits.lift <= 0.0 and not lands:
                 continue
-            located = locate(Search(search.miss, evenly), lands)
+            located = locate(evenly, lands)
             root = located.root
             if located.ending != FOUND or root.unknown.sought > 0:
                 continue

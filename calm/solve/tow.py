@@ -15,14 +15,21 @@ from calm.errors import NoEquilibrium
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import GOES_ON, Floats, Line, Trace, Water
 from calm.physics.passing import FAILURE
-from calm.solve import net_closing
+from calm.solve import leg_closing
 from calm.solve.finish import march_stopped
 from calm.solve.least_change import bracketed_root
+from calm.solve.leg_layout import LegEnd, NetLeg
+from calm.solve.leg_numbers import FREQUENCY, LACKING
 from calm.solve.net import NetSearch, NetSolution, with_room
-from calm.solve.net_leg import LegEnd, NetLeg
-from calm.solve.net_problem import FREQUENCY, LACKING
 from calm.solve.problem import CHOSEN, COARSE_STEP, FINE, HALVED
-from calm.solve.solution import OtherEquilibrium, Settings, Solution, Status, expect_many
+from calm.solve.solution import (
+    FOUND,
+    OtherEquilibrium,
+    Settings,
+    Solution,
+    Status,
+    expect_many,
+)
 
 SURFACE_BAND = 1e-7
 """Thickness of the band from water to air, as a share of the line out."""
@@ -169,7 +176,7 @@ class _Marches:
 
     def miss(self, _: None, depth: float) -> float:
         """Height of the upper end above the tow point [m]; NaN if the march stops."""
-        self.failure, _same = self.net.asked(net_closing.MARCH, np.array([depth]), self._how)
+        self.failure, _same = self.net.asked(leg_closing.MARCH, np.array([depth]), self._how)
         return float(self.net.net.found[0]) * self.span if self.failure == GOES_ON else nan
 
 
@@ -178,8 +185,8 @@ def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
     rough = _Marches(net, max(COARSE_STEP, 2.0 * net.settings.angle_step))
     start, other_depth = _locate(rough, towing)
     how = net.marching(net.settings.angle_step, CHOSEN, FINE, given=False)
-    ending, x = net.asked(net_closing.SETTLE, np.array([start]), how, net_closing.CLOSED)
-    if ending != net_closing.CAME_OUT or _lacking(net):
+    ending, x = net.asked(leg_closing.SETTLE, np.array([start]), how, leg_closing.CLOSED)
+    if ending != FOUND or _lacking(net):
         raise _why_not(rough, start, float(x[0]), towing)
     return net.told(x), other_depth
 

@@ -15,11 +15,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from calm.solve.net_leg import LegEnd, NetLeg
 
 from calm.physics.line import Line, Water
 from calm.solve import Solution
 from calm.solve.net import NetSolution
-from calm.solve.net_leg import LegEnd, NetLeg
 from tests.validation.afloat import depth_of_free_end, first_float, riding
 from tests.validation.agreement import Ends, integrated_ends
 from tests.validation.cables import NoContinuousSolution

@@ -18,8 +18,8 @@ from scipy.optimize import brentq
 import calm
 from calm.physics.line import Line, Water
 from calm.solve import Settings, solve_mooring
+from calm.solve.leg_layout import LegEnd, NetLeg
 from calm.solve.net import solve_net
-from calm.solve.net_leg import LegEnd, NetLeg
 from tests.property.strategies import mooring
 from tests.validation.closing import COARSE, FINE
 from tests.validation.continuous import March

@@ -13,7 +13,6 @@ import pytest
 from tests.validation.comparison import compared
 
 
-
 @pytest.mark.parametrize(
     "number",
     [5, 42, 83, *(pytest.param(n, marks=pytest.mark.thorough) for n in (26, 38, 55, 58, 66, 68))],

@@ -20,8 +20,8 @@ import pytest
 from calm.case.net import Net, load
 from calm.case.result import NetResult
 from calm.exchange.importing import import_file
+from calm.solve.leg_layout import LegEnd, NetLeg
 from calm.solve.net import solve_net
-from calm.solve.net_leg import LegEnd, NetLeg
 from tests.unit.solve.nets import Point, Wire, anchored, line_of, water_of
 
 DENSITY, GRAVITY = 1027.0, 9.81

@@ -13,7 +13,7 @@ from calm.batch.solving import lay_profile, levels_for, read_profile
 from calm.batch.statuses import STATUSES
 from calm.case.net import Net, load
 from calm.physics.line import Water
-from calm.solve.net_closing import find_way
+from calm.solve.leg_closing import find_way
 
 NET = """\
 name: Two anchors

@@ -13,8 +13,8 @@ from calm.batch.solving import solve_rows
 from calm.physics import compiled
 from calm.physics.drag import drag_share
 from calm.physics.passing import pass_line
+from calm.solve.leg_closing import ask_net
 from calm.solve.mooring import find_asked
-from calm.solve.net_closing import ask_net
 
 
 def test_a_folder_that_cannot_be_written_is_done_without(

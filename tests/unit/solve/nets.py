@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from calm.physics.line import Floats, Line, Water
-from calm.solve.net_leg import LegEnd, NetLeg
+from calm.solve.leg_layout import LegEnd, NetLeg
 
 RHO = 1025.0
 

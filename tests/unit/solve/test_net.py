@@ -14,15 +14,15 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+import calm.solve.leg_marches as leg_marches
+import calm.solve.leg_numbers as leg_numbers
 import calm.solve.net as net_module
-import calm.solve.net_march as net_march
-import calm.solve.net_problem as net_problem
 from calm.errors import NoEquilibrium
 from calm.physics.hull import Floating, spherical_hull
 from calm.physics.line import Floats
 from calm.solve import Settings, solve_mooring
+from calm.solve.leg_layout import LegEnd, NetLeg
 from calm.solve.net import NetSolution, solve_net
-from calm.solve.net_leg import LegEnd, NetLeg
 from tests.unit.solve.nets import Point, Wire, anchored, line_of, relaxed, water_of
 
 FREE = LegEnd()
@@ -353,14 +353,14 @@ def test_from_still_water_it_comes_to_the_same_rest(monkeypatch: pytest.MonkeyPa
 
 def test_the_audit_sees_a_moved_node(monkeypatch: pytest.MonkeyPatch) -> None:
     """A shape changed behind the march by a millimetre does not pass."""
-    marched = net_march.march_leg
+    marched = leg_marches.march_leg
 
     def spoilt(net: Any, i: int, x: Any, how: Any) -> int:
         ending = marched(net, i, x, how)
-        net.lines.work.records[i][how.record][0][int(net.state[i][net_problem.COUNT]) // 2] += 1e-3
+        net.lines.work.records[i][how.record][0][int(net.state[i][leg_numbers.COUNT]) // 2] += 1e-3
         return ending
 
-    monkeypatch.setattr(net_march, "march_leg", spoilt)
+    monkeypatch.setattr(leg_marches, "march_leg", spoilt)
     with pytest.raises(NoEquilibrium, match=r"balance|rotat|axis|element"):
         solve_net(y_net(), 1, water_of(300.0, *SHEAR), Settings(compiled=False))
 

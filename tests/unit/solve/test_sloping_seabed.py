@@ -8,8 +8,8 @@ import pytest
 
 from calm.errors import NoEquilibrium
 from calm.solve import Settings, solve_mooring
+from calm.solve.leg_layout import LegEnd, NetLeg
 from calm.solve.net import solve_net
-from calm.solve.net_leg import LegEnd, NetLeg
 from tests.unit.solve.simple import line, rigid, rope, water
 
 DEPTH, SPEED, WEIGHT, LENGTH = 200.0, 0.5, 60.0, 150.0

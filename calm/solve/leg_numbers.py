@@ -15,9 +15,9 @@ STANDING, HANGING_DOWN, PULLED, ANCHORED = range(4)
 """Legs marched from a free upper end, from a free lower end, from an upper end that is held or at a
 node, and from the seabed up to such an end."""
 STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG = range(6)
-"""State of a leg after its last march: the stage where it comes down on the seabed or -1, its length
-there [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and those of
-them that hang."""
+"""State of a leg after its last march: the stage where it comes down on the seabed or -1, its
+length there [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and
+those of them that hang."""
 EAST, NORTH, TO_EAST, TO_NORTH, LIES, SLACK = range(6, 12)
 """And of an anchored leg: the way from its touchdown to its upper end east and north [m], the pull
 at the touchdown to the east and north [N], how far the rest reaches along the seabed [m], and by
@@ -89,7 +89,7 @@ class NetProblem(NamedTuple):
     Attributes
     ----------
     lines : the legs in one: what is of them has a row for each, as long as the longest needs
-    up : the courses of anchored legs from below, see `calm.solve.net_touchdown`
+    up : the courses of anchored legs from below, see `calm.solve.leg_from_below`
     cuts : room for the segments of such a leg
     held : (·, 6) places of the ends of each leg that are held, where its march begins and ends [m]
     state : numbers of each leg: `STAGE` and those after it

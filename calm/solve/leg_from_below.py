@@ -30,7 +30,7 @@ from calm.physics.profile import interval_at
 from calm.physics.rod_axis import rod_axis
 from calm.physics.seabed import lay_line
 from calm.physics.track import CABLE, ROD, CableStretch, Course, Load, Stage
-from calm.solve.net_problem import (
+from calm.solve.leg_numbers import (
     COUNT,
     EAST,
     GROUNDED,
@@ -58,7 +58,8 @@ NO_PULL = 1e-9
 def course_from_below(course: Course) -> Course:
     """The course of a leg below a point that is pulled at, from its lower end up and with such a
     point there. Pieces keep their numbers."""
-    stages, loads, cables = [course.stages[0]], [course.loads[0]], []
+    stages, loads = [course.stages[0]], [course.loads[0]]
+    cables: list[CableStretch] = []
     for stage in reversed(course.stages[1:]):
         if stage.kind == CABLE:
             stages.append(stage._replace(first=len(cables)))

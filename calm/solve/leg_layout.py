@@ -17,13 +17,14 @@ from calm.physics.referee import RefereeShape
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
 from calm.physics.track import CableStretch, Course, Load, Stage
-from calm.solve import net_problem
+from calm.solve import leg_numbers
 from calm.solve.accuracy import Errors
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root
 from calm.solve.finish import carried_by, risen, solution_of, touching
-from calm.solve.net_problem import LegRow, NetProblem
-from calm.solve.net_touchdown import course_from_below, weight_of
+from calm.solve.leg_from_below import course_from_below, weight_of
+from calm.solve.leg_numbers import LegRow, NetProblem
+from calm.solve.line_shape import not_audited
 from calm.solve.problem import (
     BELOW,
     CHANGED,
@@ -36,7 +37,6 @@ from calm.solve.problem import (
     problem_of,
     work_for,
 )
-from calm.solve.refine import Refined
 from calm.solve.search import residuals
 from calm.solve.solution import FOUND, Settings, Solution, Status
 
@@ -92,19 +92,19 @@ class LaidLeg:
     def ends(self) -> tuple[LegEnd, LegEnd]:
         """Return where its march begins and ends."""
         upper, lower = self.leg.upper, self.leg.lower
-        return (lower, upper) if self.kind == net_problem.HANGING_DOWN else (upper, lower)
+        return (lower, upper) if self.kind == leg_numbers.HANGING_DOWN else (upper, lower)
 
     @property
     def unknowns(self) -> int:
         """Return how many unknowns it has of its own: on a slope also how high it comes down."""
-        if self.kind == net_problem.ANCHORED:
+        if self.kind == leg_numbers.ANCHORED:
             return 3 + any(self.bed[:2])
-        return 3 if self.kind == net_problem.PULLED else 1
+        return 3 if self.kind == leg_numbers.PULLED else 1
 
     @property
     def below_a_point(self) -> bool:
         """Return whether its line begins with a point that is pulled at."""
-        return self.kind in (net_problem.PULLED, net_problem.ANCHORED)
+        return self.kind in (leg_numbers.PULLED, leg_numbers.ANCHORED)
 
     @property
     def shedding(self) -> tuple[float, float, float, float]:
@@ -119,11 +119,11 @@ class LaidLeg:
         """Lay out a leg; `rough` as of `problem_of`."""
         line = leg.line
         if leg.upper.free:
-            kind = net_problem.STANDING
+            kind = leg_numbers.STANDING
         elif leg.lower.free:
-            kind, line = net_problem.HANGING_DOWN, replace(line.reversed(), towed=True)
+            kind, line = leg_numbers.HANGING_DOWN, replace(line.reversed(), towed=True)
         else:
-            kind = net_problem.ANCHORED if isfinite(leg.lower.seabed) else net_problem.PULLED
+            kind = leg_numbers.ANCHORED if isfinite(leg.lower.seabed) else leg_numbers.PULLED
             line = replace(line.below_a_point(), towed=True, floating=None)
         problem = problem_of(line, water, settings, compiled=False, rough=rough, room=1)
         return LaidLeg(leg, line, kind, problem)
@@ -152,8 +152,8 @@ class LaidLeg:
 
     @property
     def stands(self) -> float:
-        """Change of its unknown from a float that is immersed to one out of the water [m]: as great as
-        its length, so that a step towards either lands on the way."""
+        """Change of its unknown from a float that is immersed to one out of the water [m]: as great
+        as its length, so that a step towards either lands on the way."""
         return max(float(self.line.length.sum()), 0.5)
 
     @property
@@ -263,10 +263,11 @@ def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> N
     return NetProblem(
         listed(LegRow, [each.row(at, span) for at, each in zip(firsts, laid, strict=False)]), lines,
         up, zeros(2 * room), taken(np.array(places).reshape(-1, 6)),
-        zeros(count, net_problem.OF_LEG), zeros(count, net_problem.OUT),
+        zeros(count, leg_numbers.OF_LEG), zeros(count, leg_numbers.OUT),
         zeros(count, pieces, of=int), zeros(count, pieces, of=int),
         zeros(size), zeros(size), zeros(size, size), zeros(size), zeros(size),
-        zeros(size, size + 1), zeros(size, of=int), zeros(size), zeros(size), taken(scale), taken(rows), zeros(2),
+        zeros(size, size + 1), zeros(size, of=int), zeros(size), zeros(size), taken(scale),
+        taken(rows), zeros(2),
         firsts[-1], length, force, span,
     )  # fmt: skip
 
@@ -285,24 +286,23 @@ def leg_found(
     errors : of depths [m] and of tensions [N]
     """
     state, (deep, taut) = net.state[i], errors
-    frequency = float(state[net_problem.FREQUENCY])
+    frequency = float(state[leg_numbers.FREQUENCY])
     work = SearchArrays(*(column[i] for column in net.lines.work))
     course = laid.problem.course._replace(loads=net.lines.course.loads[i])
     problem = laid.problem._replace(course=course, work=work)
     first = int(laid.below_a_point)
     if first:
         work.left[CHANGED] = 1.0  # the pull
-    share, landed = float(state[net_problem.SHARE]), bool(state[net_problem.STAGE] >= 0.0)
+    share, landed = float(state[leg_numbers.SHARE]), bool(state[leg_numbers.STAGE] >= 0.0)
     sought = 0 if share < 1.0 and problem.surfacing else BELOW
     root = Root(True, Unknown(0.0, sought, problem.limits.rides, False, 0), share, 0.0, 0.0)
     closed = Closed(
-        FOUND, 0.0, -1, root, int(state[net_problem.COUNT]), int(state[net_problem.HUNG]) - 1, landed,
-        float(state[net_problem.GROUNDED]),
+        FOUND, 0.0, -1, root, int(state[leg_numbers.COUNT]), int(state[leg_numbers.HUNG]) - 1,
+        landed, float(state[leg_numbers.GROUNDED]), 2 * int(sum(work.counts)),
     )  # fmt: skip
     told = Errors(deep, taut, 0.0, taut, taut)
-    segments = 2 * int(sum(work.counts))
-    refined = Refined(closed, segments, told, share, closed.grounded)
-    found = solution_of(problem, laid.line, water, settings, refined, told, frequency)
+    before = not_audited(closed, told, share, closed.grounded)
+    found = solution_of(problem, laid.line, water, settings, before, frequency)
     referee = referee_of(carried_by(laid.line, problem), water, frequency, compiled)
     shape = RefereeShape(
         work.records[FINE], closed.nodes, closed.hanging, referee.first, referee.last
@@ -329,11 +329,11 @@ def leg_found(
         marched=replace(
             marched, position=marched.position[first:] + place, force=marched.force[first:]
         ),
-        marches=int(state[net_problem.MARCHES]),
+        marches=int(state[leg_numbers.MARCHES]),
         closure=closure,
         moment_residual=moment,
         pulled=bool(first),
-        slack=float(state[net_problem.SLACK]),
+        slack=float(state[leg_numbers.SLACK]),
     )
 
 
@@ -349,7 +349,7 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
 
     def piece(node: int) -> int:
         own = leg.piece_at(node)
-        return before + (pieces - 1 - own if laid.kind == net_problem.HANGING_DOWN else own)
+        return before + (pieces - 1 - own if laid.kind == leg_numbers.HANGING_DOWN else own)
 
     if above[worst] < -near:
         raise touching(piece(worst), -float(above[worst]))

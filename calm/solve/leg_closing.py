@@ -11,9 +11,10 @@ from typing import Any, NamedTuple
 from calm.physics.line import GOES_ON, NO_ROOM
 from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
-from calm.solve.accuracy import Extent, extrapolate, tension_at
-from calm.solve.net_march import left_over
-from calm.solve.net_problem import (
+from calm.solve.accuracy import Errors, Extent, extrapolate
+from calm.solve.fineness import MOST_ROUNDS, finer
+from calm.solve.leg_marches import left_over
+from calm.solve.leg_numbers import (
     ANCHORED,
     COARSE_COUNT,
     COARSE_HUNG,
@@ -27,29 +28,26 @@ from calm.solve.net_problem import (
     NetProblem,
 )
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
+from calm.solve.solution import FOUND, NO_SHAPE_NEAR
 
 MOST_STEPS, HALVINGS = 60, 9
 """Newton steps towards a shape, and how often one is halved that leads nowhere."""
 NEAR, CLOSED = 1e-4, 1e-10
 """What is left of lengths and forces, as shares of the longest leg and of a typical force: before
 segments are kept, and in a shape."""
-WORTH = 4e-5
-"""Errors, as shares of the span and of the greatest tension, above which segments are halved once
-more, `MOST_HALVINGS` times."""
-MOST_HALVINGS = 3
 BEFORE_CHOICE = 1e-7
-"""As `CLOSED`, of a shape in which segments are chosen that are to depend on nothing but the net."""
+"""As `CLOSED`, of a shape in which segments are chosen that are to depend on the net alone."""
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
-"""Slope of a single unknown, in shares, at which a secant is held, and how many steps it may take."""
+"""Slope of a single unknown, in shares, at which a secant is held; the most steps it may take."""
 SINGULAR = 1e-14
 """Slope, in shares, below which an unknown is left as it is."""
 NO_HOLD = 1e-5
-"""Pull at a touchdown, as a share of the weight of a leg, that holds nothing in place: more than the
-drag in a breath of current."""
-CAME_OUT, NOT_CLOSED, NEEDS_ROOM = range(3)
-"""How a net ends: closed; not; more segments than there is room for."""
+"""Pull at a touchdown, as a share of the weight of a leg, that holds nothing in place: more than
+the drag in a breath of current."""
+NEEDS_ROOM = -1
+"""How a net ends, besides FOUND and NO_SHAPE_NEAR: more segments than there is room for."""
 
 DEPTH_ERROR, TENSION_ERROR = range(2)
 
@@ -128,7 +126,7 @@ def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough:
     net.slopes[0][0] = slope
     if failure == NO_ROOM:
         return NEEDS_ROOM
-    return CAME_OUT if failure == GOES_ON and abs(net.found[0]) <= 100.0 * enough else NOT_CLOSED
+    return FOUND if failure == GOES_ON and abs(net.found[0]) <= 100.0 * enough else NO_SHAPE_NEAR
 
 
 def close_net(
@@ -146,7 +144,7 @@ def close_net(
         return close_one(net, x, how, enough)
     failure = left_over(net, x, how, not known)
     if failure != GOES_ON:
-        return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
+        return NEEDS_ROOM if failure == NO_ROOM else NO_SHAPE_NEAR
     return close_on(net, x, how, enough, known)
 
 
@@ -178,7 +176,7 @@ def close_on(
         plain = now < inf
         if not plain and fresh:
             if squares(left) > 1e4 * enough * enough:
-                return NOT_CLOSED
+                return NO_SHAPE_NEAR
             break
         if plain:
             keep(trial, x)
@@ -192,14 +190,14 @@ def close_on(
         if fresh and (not plain or squares(left) > enough * enough):
             failure = left_over(net, x, how, True)
             if failure != GOES_ON:
-                return NOT_CLOSED
+                return NO_SHAPE_NEAR
             keep(net.found, left)
             plain = False
     if squares(left) > 1e4 * enough * enough:
-        return NOT_CLOSED
+        return NO_SHAPE_NEAR
     if not plain:
         left_over(net, x, how, False)
-    return CAME_OUT
+    return FOUND
 
 
 def drifts(net: NetProblem) -> bool:
@@ -231,7 +229,7 @@ def close_coarsely(
     choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
     failure = left_over(net, x, choosing, False)
     if failure != GOES_ON:
-        return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
+        return NEEDS_ROOM if failure == NO_ROOM else NO_SHAPE_NEAR
     coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
     return close_on(net, x, coarse, enough, True)
 
@@ -241,30 +239,47 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
     # the root of a single unknown is known well; else segments are chosen anew where these lead
     if len(x) > 1 and net.lines.limits.near == 0.0:
         ending = close_coarsely(net, sea, x, step, max(enough, BEFORE_CHOICE))
-        if ending != CAME_OUT:
+        if ending != FOUND:
             return ending
-    for _ in range(MOST_HALVINGS):
-        ending = close_coarsely(net, sea, x, step, enough)
-        if ending != CAME_OUT:
+    asked = step
+    for _ in range(MOST_ROUNDS):
+        ending = close_both(net, sea, x, step, enough)
+        if ending != FOUND:
             return ending
-        keep(x, net.coarse)
-        for i in range(len(net.legs)):
-            state = net.state[i]
-            state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
-            state[COARSE_STAGE] = state[STAGE]
-        ending = close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
-        if ending != CAME_OUT:
-            return ending
-        if extrapolate_net(net, x) <= 1.0:
+        step = finer(extrapolate_legs(net, x), net.span, asked, step, segments_of(net))
+        if step == 0.0:
             break
-        step *= 0.5
-    return CAME_OUT
+    return FOUND
 
 
-def extrapolate_net(net: NetProblem, x: Sequence[float]) -> float:
-    """Extrapolate all legs and the places of nodes; how many times the errors are above the target."""
+def close_both(
+    net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
+) -> int:
+    """Close a net near its unknowns on the segments chosen at twice a step, and on their halves."""
+    ending = close_coarsely(net, sea, x, step, enough)
+    if ending != FOUND:
+        return ending
+    keep(x, net.coarse)
+    for i in range(len(net.legs)):
+        state = net.state[i]
+        state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
+        state[COARSE_STAGE] = state[STAGE]
+    return close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
+
+
+def segments_of(net: NetProblem) -> int:
+    """Number of the halves of all segments that were chosen."""
+    segments = 0
+    for i in range(len(net.legs)):
+        for k in range(net.legs[i].cables):
+            segments += 2 * net.lines.work.counts[i][k]
+    return segments
+
+
+def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
+    """Extrapolate all legs and the places of nodes; their errors."""
     records, near = net.lines.work.records, net.lines.limits.near
-    deep = taut = moved = greatest = 0.0
+    deep = taut = moved = relative = 0.0
     for k in range(len(x)):
         net.better[k] = x[k] + (x[k] - net.coarse[k]) / 3.0
     for k in range(net.nodes_at, len(x), 3):
@@ -278,15 +293,14 @@ def extrapolate_net(net: NetProblem, x: Sequence[float]) -> float:
         fine = Extent(nodes, hanging, state[STAGE] >= 0.0)
         errors = extrapolate(records[i][COARSE], coarse, record, fine, near)
         deep, taut = max(deep, errors.depth), max(taut, errors.tension)
-        for n in range(nodes):
-            greatest = max(greatest, tension_at(record, n))
+        relative = max(relative, errors.relative)
         pieces = net.legs[i].pieces
         first, last = net.first[i][:pieces], net.last[i][:pieces]
         find_ends(RefereeShape(record, nodes, nodes - 1, first, last))
         keep(first, net.first[i])
         keep(last, net.last[i])
     net.errors[DEPTH_ERROR], net.errors[TENSION_ERROR] = deep + moved, taut
-    return max((deep + moved) / (WORTH * net.span), taut / (WORTH * max(greatest, 1e-300)))
+    return Errors(deep + moved, taut, relative, taut, taut)
 
 
 class AskedNet(NamedTuple):

@@ -12,7 +12,8 @@ from calm.physics.line import GOES_ON
 from calm.physics.passing import FAILURE, HANGING, LANDED, NODES, How, Z, pass_line
 from calm.physics.passing import GROUNDED as LIES
 from calm.solve.closing import place
-from calm.solve.net_problem import (
+from calm.solve.leg_from_below import march_up, meet, pull_of
+from calm.solve.leg_numbers import (
     ANCHORED,
     COUNT,
     FREQUENCY,
@@ -34,7 +35,6 @@ from calm.solve.net_problem import (
     leg_of,
     place_of,
 )
-from calm.solve.net_touchdown import march_up, meet, pull_of
 from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, Unknown
 
 JUMP = 1e-6

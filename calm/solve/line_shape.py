@@ -1,17 +1,13 @@
-"""From the neighbourhood of a root to a shape of known error.
+"""A moored line closed on coarse and on halved segments, for `calm.solve.fineness`."""
 
-The march chooses its cuts at twice the angle step; on these the line is closed, and again with
-every segment halved. The march is of second order, so a third of the change is the error of the
-finer shape, see `calm.solve.accuracy`; if that is too much, all is done again with a smaller step.
-"""
-
-from math import degrees, inf, isnan, sqrt
+from math import inf, isnan
 from typing import NamedTuple
 
 from calm.physics.line import ENDS, SEGMENT, Record, off_bed
-from calm.physics.passing import FAILURE, NODES
+from calm.physics.passing import NODES
 from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, Extent, extrapolate
 from calm.solve.closing import Closed, Root, not_closed, planned, polish, segments_of
+from calm.solve.fineness import MOST_ROUNDS, finer
 from calm.solve.problem import (
     BELOW,
     CHOSEN,
@@ -24,14 +20,15 @@ from calm.solve.problem import (
     LineProblem,
     Search,
 )
-from calm.solve.solution import BELOW_SEABED, FOUND, MARCH_STOPPED, NO_SHAPE_NEAR
+from calm.solve.solution import (
+    BELOW_SEABED,
+    FOUND,
+    NO_SHAPE_NEAR,
+    OtherEquilibrium,
+)
 
-DEPTH_TARGET = 4e-5
-TENSION_TARGET = 1.6e-4
-"""Error estimates, relative to the span and to the tension, above which the step is taken
-smaller, at an angle step of 1°; they follow its square."""
-MOST_ROUNDS = 6
-MOST_SEGMENTS = 20_000
+MOST_BETWEEN = 6
+"""Marches that look for two shapes between which all is linear."""
 LINEAR = 4e-7
 """Product of the misses of two shapes, in spans squared, between which a third is linear."""
 FAR = 3e-4
@@ -40,82 +37,88 @@ FAR_BELOW = 0.01
 """How far below the seabed, in depths of the water, a line need not be cut finer to be refused."""
 
 
-class Refined(NamedTuple):
-    """A line closed on fine segments, and what is reported of it.
+class FoundShape(NamedTuple):
+    """A shape of a line, or why there is none.
 
     Attributes
     ----------
     closed : the shape in the record `FINE`, as it was marched; its columns from `BETTER` on are
         extrapolated
-    segments : how many it has
     errors : see `calm.solve.accuracy`
     share, grounded : extrapolated unknown, and length on the seabed [m]
+    closure, moment : what the audit found
+    other : another equilibrium that the search came upon
     """
 
     closed: Closed
-    segments: int
     errors: Errors
     share: float
     grounded: float
+    closure: float
+    moment: float
+    other: OtherEquilibrium
 
 
-def unrefined(closed: Closed) -> Refined:
-    """Why there is no refined shape."""
-    return Refined(closed, 0, UNKNOWN_ERRORS, closed.root.x, 0.0)
+NO_OTHER = OtherEquilibrium(-1.0, 0.0, 0.0, 0.0, 0.0)
 
 
-def refine(search: Search, root: Root, hangs: bool) -> Refined:
-    """Close the line finely enough, from a coarse root; in the record `FINE`.
+def not_audited(closed: Closed, errors: Errors, share: float, grounded: float) -> FoundShape:
+    """The shape before it is audited."""
+    return FoundShape(closed, errors, share, grounded, 0.0, 0.0, NO_OTHER)
+
+
+def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
+    """Return why there is no shape."""
+    closed = Closed(ending, value, piece, root, 0, 0, False, 0.0, 0)
+    return not_audited(closed, UNKNOWN_ERRORS, root.x, 0.0)
+
+
+def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
+    """Close the line finely enough, from a coarse root; in the record `FINE`, not audited.
 
     Parameters
     ----------
     hangs : whether it is to hang clear of the seabed: then one that comes far below is refused
     """
-    problem, step = search.problem, search.problem.limits.angle_step
-    records = problem.work.records
+    problem, limits = search.problem, search.problem.limits
     coarse = fine = not_closed(NO_SHAPE_NEAR, 0.0, root)
-    segments, errors = 0, UNKNOWN_ERRORS
+    errors, step, records = UNKNOWN_ERRORS, limits.angle_step, problem.work.records
     for _ in range(MOST_ROUNDS):
-        root = planned(search, root, 2.0 * step)
-        if isnan(root.miss):
-            return unrefined(not_closed(MARCH_STOPPED, problem.work.left[FAILURE], root))
-        segments = segments_of(problem)
-        coarse, fine = closed_between(search, root)
-        if fine.ending == FOUND:
-            fine = refused_far_below(problem, fine, FINE, hangs)
-        else:
-            coarse = polish_hanging(search, root, CHOSEN, COARSE, hangs)
-            if coarse.ending != FOUND:
-                return unrefined(coarse)
-            fine = polish_hanging(search, coarse.root, HALVED, FINE, hangs)
+        coarse, fine = close_both(search, fine.root, step, hangs)
         if fine.ending != FOUND:
-            return unrefined(fine)
+            return not_audited(fine, UNKNOWN_ERRORS, fine.root.x, 0.0)
         errors = extrapolate(
-            records[COARSE], extent_of(coarse), records[FINE], extent_of(fine), problem.limits.near
+            records[COARSE], extent_of(coarse), records[FINE], extent_of(fine), limits.near
         )
-        excess = excess_of(problem, errors)
-        if excess <= 1.0 or segments > MOST_SEGMENTS:
+        step = finer(errors, limits.span, limits.angle_step, step, fine.segments)
+        if step == 0.0:
             break
-        root, step = fine.root, step * max(0.8 / sqrt(excess), 0.2)
     share, grounded = fine.root.x, fine.grounded
     if coarse.root.unknown.sought == fine.root.unknown.sought:
         share += (share - coarse.root.x) / 3.0
     if coarse.landed and fine.landed:
         grounded += (grounded - coarse.grounded) / 3.0
-    return Refined(fine, segments, errors, share, grounded)
+    return not_audited(fine, errors, share, grounded)
+
+
+def close_both(search: Search, root: Root, step: float, hangs: bool) -> tuple[Closed, Closed]:
+    """Close a line near a root on the segments chosen at twice a step, and on their halves.
+
+    `hangs` as for `settle_line`.
+    """
+    root, problem = planned(search, root, 2.0 * step), search.problem
+    coarse, fine = closed_between(search, root)
+    if fine.ending == FOUND:
+        return coarse, refused_far_below(problem, fine, FINE, hangs)
+    coarse = polish_hanging(search, root, CHOSEN, COARSE, hangs)
+    if coarse.ending != FOUND:
+        return coarse, coarse
+    return coarse, polish_hanging(search, coarse.root, HALVED, FINE, hangs)
 
 
 def extent_of(closed: Closed) -> Extent:
     """Return the size of a closed shape."""
     return Extent(closed.nodes, closed.hanging, closed.landed)
-
-
-def excess_of(problem: LineProblem, errors: Errors) -> float:
-    """How many times the errors of a shape are above the target."""
-    target = degrees(problem.limits.angle_step)
-    target *= target
-    place, tension = DEPTH_TARGET * target, TENSION_TARGET * target
-    return max(errors.depth / (place * problem.limits.span), errors.relative / tension)
 
 
 def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bool) -> Closed:
@@ -130,7 +133,7 @@ def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: 
     lowest, above = lowest_node(problem, problem.work.records[record], closed.nodes)
     if above < -FAR_BELOW * problem.limits.depth:
         piece = int(problem.work.records[record][6][max(lowest, 1)])
-        return Closed(BELOW_SEABED, -above, piece, closed.root, 0, 0, False, 0.0)
+        return Closed(BELOW_SEABED, -above, piece, closed.root, 0, 0, False, 0.0, 0)
     return closed
 
 
@@ -154,13 +157,13 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
     problem, unknown = search.problem, root.unknown
     limits, work = problem.limits, problem.work
     none = not_closed(NO_SHAPE_NEAR, 0.0, root)
-    if limits.near == 0.0 or unknown.sought > 0 or unknown.lands:
+    if limits.near == 0.0 or isnan(root.miss) or unknown.sought > 0 or unknown.lands:
         return none, none
     high, near, halved = limits.span, 0.5, 1.0
     if unknown.sought != BELOW:  # a slack line swings far by little of its buoyancy
         high, near, halved = 1.0, 0.05, 0.1
     before, last, x = work.left[LAST], root.miss, root.x
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MOST_BETWEEN):
         if not 0.0 < x < high or x == before:
             return none, none
         about = About(problem, unknown, limits.angle_step, CHOSEN, True, COARSE)
@@ -185,8 +188,11 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
     coarse_root = Root(True, unknown, x + closing, 0.0, slope)
     fine_root = Root(True, unknown, x - off / slope, 0.0, slope)
     halves = move_shapes(problem, nodes, closing / change, -off / slope / change)
-    coarse = Closed(FOUND, 0.0, -1, coarse_root, nodes, nodes - 1, False, 0.0)
-    return coarse, Closed(FOUND, 0.0, -1, fine_root, halves, halves - 1, False, 0.0)
+    segments = segments_of(problem, CHOSEN)
+    return (
+        Closed(FOUND, 0.0, -1, coarse_root, nodes, nodes - 1, False, 0.0, segments),
+        Closed(FOUND, 0.0, -1, fine_root, halves, halves - 1, False, 0.0, 2 * segments),
+    )
 
 
 def move_shapes(problem: LineProblem, nodes: int, closing: float, halved: float) -> int:
