@@ -304,9 +304,9 @@ def pass_part(
     """
     passed = pass_halves(cable, knots, vibration, sea, state, cut, halves, near, expected)
     below = passed[3]
-    if cable.friction != CONSTANT and vibration.beat == 0.0:
-        if in_interval(sea, below[7], -state[2], -below[2]):
-            return passed
+    smooth = cable.friction != CONSTANT and vibration.beat == 0.0
+    if smooth and in_interval(sea, below[7], -state[2], -below[2]):
+        return passed
     part = split_length(
         cable, knots, vibration, sea, state, below, cut, halves, near, expected, share
     )
@@ -365,8 +365,8 @@ def until_level(
 ) -> float:
     """Length of the part of a segment down to a level of the profile [m].
 
-    It follows from the mean load of the segment, and for a shape to be closed to the last digits from
-    secants.
+    It follows from the mean load of the segment. If the shape is to be closed to the last digits,
+    secants follow.
 
     Parameters
     ----------

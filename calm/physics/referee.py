@@ -19,7 +19,7 @@ from calm.physics.strumming import Vibration, strummed
 ROUNDING = 32.0 * float_info.epsilon
 """Of a coordinate, or a force, as a share of the greatest."""
 SETTLED = 1e-10
-"""Share of its load to which the passes of a segment settle it: 4e-11 of one that stretches by 2 %."""
+"""Share of its load to which the passes settle a segment: 4e-11 of one that stretches by 2 %."""
 
 
 class RefereeBody(NamedTuple):
@@ -266,7 +266,8 @@ def worst_moment(
     The forces follow from the loads. Or, where that is larger, departure of a cable's strain from
     what these forces ask for. Both beyond the rounding of the coordinates; of what hangs. Towards a
     limp end the tension vanishes, and with it what sets the direction: there counts what the force
-    across the line is beyond the rounding of the greatest tension and what segments leave unsettled.
+    across the line is beyond the rounding of the greatest tension and the load that passes leave
+    unsettled.
     """
     rounding = ROUNDING * greatest_size(shape, 0)
     hanging = shape.hanging

@@ -15,7 +15,7 @@ from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.track import CABLE, CLAMP, CableStretch, Course
 
 NOTHING = 1e-9
-"""Pull at a touchdown, as a share of all loads, that the audit takes as none: it has no direction."""
+"""Pull at a touchdown, as a share of all loads, that has no direction for the audit."""
 
 
 def lay_line(

@@ -228,7 +228,7 @@ def test_the_anchor_holds_the_sum_of_all_loads(number) -> None:
 @some
 @given(draws)
 def test_quartering_the_angle_step_brings_the_error_down_sixteenfold(number) -> None:
-    """Of the march, judged by the change to a solution at 0.05°, which itself errs by a 25th of the finer one.
+    """Of the march, judged by the change to a solution at 0.05°, which errs by a 25th of the finer.
 
     Cuts at levels and clamps stir the ratio, by up to two; at 1° some are still on the way to
     second order and gain more. Moorings whose segments had to be finer than the angle step asks

@@ -1,7 +1,7 @@
 """How the error that a solution states compares with the error it has.
 
-That is the error of the figures reported, which are extrapolated, or of the shape as it was marched,
-whose error the stated one is an estimate of.
+That is the error of the figures reported, which are extrapolated, or that of the shape as it was
+marched, which the stated error estimates.
 
 The true error is the departure from the same case solved at a tenth of the angle step, closed to
 1e-10: a hundredth of the error, and itself held against the independent referee in the tests of

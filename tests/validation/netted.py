@@ -15,10 +15,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from calm.solve.net_leg import LegEnd, NetLeg
 
 from calm.physics.line import Line, Water
 from calm.solve import Solution
+from calm.solve.leg_layout import LegEnd, NetLeg
 from calm.solve.net import NetSolution
 from tests.validation.afloat import depth_of_free_end, first_float, riding
 from tests.validation.agreement import Ends, integrated_ends

@@ -79,8 +79,8 @@ class _Parts:
         share = self.random.uniform(0.2, 0.8)
         weight = self.random.uniform(20.0, 200.0)
         self.weight += weight
-        meter = self._used(f"kind: cylinder, length: 1.2 m, diameter: 0.2 m, buoyancy: {-weight!r} N,"
-                           " cn: 1.2, ct: 0.1")  # fmt: skip
+        body = f"kind: cylinder, length: 1.2 m, diameter: 0.2 m, buoyancy: {-weight!r} N"
+        meter = self._used(f"{body}, cn: 1.2, ct: 0.1")
         return [self._cable(share * length), meter, self._cable((1.0 - share) * length)]
 
     def _cable(self, length: float) -> str:

@@ -10,10 +10,10 @@ from __future__ import annotations
 from math import asinh, hypot
 
 import pytest
-from calm.solve.net_leg import LegEnd, NetLeg
 
 from calm.case.net import Net, load
 from calm.physics.line import Floats
+from calm.solve.leg_layout import LegEnd, NetLeg
 from calm.solve.net import NetSolution, solve_net
 from tests.unit.solve.nets import Wire, line_of, water_of
 from tests.validation import netted

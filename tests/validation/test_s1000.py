@@ -47,7 +47,7 @@ def test_calm_agrees(referee, degrees, near, close) -> None:
 
 
 def test_halving_the_angle_step_quarters_the_error(referee) -> None:
-    """The march is of second order: ratios of 4, met within a quarter while cuts at levels shift the segments."""
+    """The march is of second order: ratios of 4, met within a quarter, as cuts at levels shift."""
     errors = [
         difference(
             solve_mooring(LINE, S1000_SEA, Settings(radians(degrees), 1e-9)).as_marched, referee
