@@ -140,7 +140,8 @@ def surface_net(number: int) -> SurfaceNet:
         dense = between(300.0, 1200.0)  # of nylon to polyester: N/m in water per m² of the disc
         wire = Part(
             float(np.round((1.0 - share) * whole, 2)),
-            float(np.round(dense * size * 2.0 * size, 4)), size, float(np.round(rng.uniform(2e8, 1.5e9) * size**2, 0)),
+            float(np.round(dense * size * 2.0 * size, 4)), size,
+            float(np.round(rng.uniform(2e8, 1.5e9) * size**2, 0)),
         )  # fmt: skip
         diameter, heavy, stiffness = CHAINS[int(rng.integers(3))]
         chain = Part(float(np.round(share * whole, 2)), heavy, diameter, stiffness, True)
