@@ -52,7 +52,7 @@ LEFT = 10
 
 SHORT = 1e-6
 """Length of a segment, as a share of the longest, that says nothing of the load of the next."""
-EXACT, ROUGH = 1e-6, 1e-2
+EXACT, ROUGH = 1e-12, 1e-2
 """Change of the mean flow along a segment, as a share of the flow, from which the segment is split
 at a level: of a shape to be closed to the last digits, and of other marches."""
 ROUNDING = 1e-12

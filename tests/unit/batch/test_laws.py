@@ -74,7 +74,7 @@ def test_a_case_without_a_result_has_no_number(tmp_path: Path) -> None:
             assert np.isnan(values[failed]).all(), name
             if name.endswith("knockdown"):  # slack in still water, it has no shape there
                 assert np.isnan(values[:, 0]).all(), name
-            else:
+            elif name != "other_used_buoyancy":  # there is no other equilibrium
                 assert np.isfinite(values[~failed]).all(), name
     assert (found.used_buoyancy[~failed] < 1.0).any()  # it floats in some
 

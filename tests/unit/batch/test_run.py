@@ -53,7 +53,7 @@ def test_the_result_is_what_solve_profiles_gives(tmp_path, mooring, record, endi
         assert result["component_label"].values.tolist() == list(solved.component_label)
         assert result["clamp_label"].values.tolist() == ["Logger é"]
         told = [name for name in result.variables if name in vars(solved)]
-        assert len(told) == 20
+        assert len(told) == 21
         for name in set(told) - {"component_label", "clamp_label"}:
             given, wanted = result[name].values, getattr(solved, name)
             assert given.dtype == (np.int8 if name == "status" else np.float32)

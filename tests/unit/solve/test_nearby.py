@@ -43,7 +43,8 @@ def water(depth=300.0):
 
 
 def test_the_line_itself_comes_back():
-    nearby, solution = Nearby(line(), water(), SETTINGS), solve_mooring(line(), water(), SETTINGS)
+    nearby = Nearby(line(), water(), SETTINGS)
+    solution = solve_mooring(line(), water(), SETTINGS).as_marched
     position, used = nearby.shape(line())
     assert used == 1.0
     # the first has segments of half the length: some 1e-5 of the depth
