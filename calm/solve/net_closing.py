@@ -24,6 +24,7 @@ from calm.solve.net_problem import (
     leg_of,
     place_of,
 )
+from calm.solve.net_touchdown import record_down
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 
 MOST_STEPS, HALVINGS = 60, 9
@@ -37,6 +38,8 @@ halved once more, `MOST_HALVINGS` times; of one of many, whose segments are long
 MOST_HALVINGS = 3
 BEFORE_CHOICE = 1e-7
 """As `CLOSED`, of a shape in which segments are chosen that are to depend on nothing but the net."""
+MOST_LEFT = 10.0
+"""How many times `enough` may be left where no step leads on."""
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 SINGULAR = 1e-14
@@ -139,7 +142,7 @@ def close_on(
             now = inf
         plain = now < inf
         if not plain and fresh:
-            if squares(left) > 1e4 * enough * enough:
+            if squares(left) > MOST_LEFT * MOST_LEFT * enough * enough:
                 return NOT_CLOSED
             break
         if plain:
@@ -157,7 +160,7 @@ def close_on(
                 return NOT_CLOSED
             keep(net.found, left)
             plain = False
-    if squares(left) > 1e4 * enough * enough:
+    if squares(left) > MOST_LEFT * MOST_LEFT * enough * enough:
         return NOT_CLOSED
     if not plain:
         left_over(net, x, how, False)
@@ -184,6 +187,13 @@ def drifts(net: NetProblem) -> bool:
             return False
         anchored = True
     return anchored
+
+
+def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
+    """Turn the records of all legs that were marched up into those of legs marched down."""
+    for i in range(len(net.legs)):
+        if net.legs[i].kind == ANCHORED:
+            record_down(net, i, x, how)
 
 
 def moved_ends(net: NetProblem, x: Sequence[float], record: int) -> float:
@@ -219,11 +229,11 @@ def close_coarsely(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
     """Choose segments of twice a step [rad] and close a net that about is on them."""
-    choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
+    choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE, 0.0)
     failure = left_over(net, x, choosing, False)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NOT_CLOSED
-    coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
+    coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE, 0.0)
     return close_on(net, x, coarse, enough, True)
 
 
@@ -239,12 +249,15 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
         ending = close_coarsely(net, sea, x, step, enough)
         if ending != CAME_OUT:
             return ending
+        record_shapes(net, x, Marching(sea, 2.0 * step, CHOSEN, True, COARSE, 0.0))
         moved_ends(net, x, COARSE)
         for i in range(len(net.legs)):
             halve(leg_of(net, sea, i))
-        ending = close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
+        fine = Marching(sea, step, HALVED, True, FINE, 0.0)
+        ending = close_net(net, x, fine, enough, True)
         if ending != CAME_OUT:
             return ending
+        record_shapes(net, x, fine)
         tension = worth * moved_ends(net, x, FINE)
         if (
             net.errors[DEPTH_ERROR] <= worth * net.lines.limits.depth
@@ -284,7 +297,10 @@ def ask_net(asked: AskedNet, _: float) -> float:
         return float(settle(net, how.sea, x, how.step, asked.enough))
     if asked.task == CLOSE:
         return float(close_net(net, x, how, asked.enough, asked.known))
-    return float(left_over(net, x, how, asked.task == SLOPES))
+    failure = left_over(net, x, how, asked.task == SLOPES)
+    if asked.task == MARCH and failure == GOES_ON:
+        record_shapes(net, x, how)
+    return float(failure)
 
 
 def ask_now(ask: Callable[[AskedNet, float], float], asked: AskedNet) -> float:
