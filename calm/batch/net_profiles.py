@@ -117,10 +117,10 @@ def solve_net_rows(
         for k in range(len(paper.x)):
             keep(paper.slopes[k], net.slopes[k])
         keep(paper.scale, net.scale)
-        how = Marching(sea, 4.0 * step, CHOSEN, False, FINE)
+        how = Marching(sea, 4.0 * step, CHOSEN, False, FINE, 0.0)
         ending = ask(AskedNet(leg_closing.CLOSE, net, paper.x, how, leg_closing.NEAR, True), 0.0)
         if ending == FOUND:
-            how = Marching(sea, step, CHOSEN, False, FINE)
+            how = Marching(sea, step, CHOSEN, False, FINE, 0.0)
             ending = ask(AskedNet(leg_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
         endings[case] = TO_SOLVE
         if ending == FOUND and stands(net, paper):

@@ -13,6 +13,7 @@ from calm.physics.profile import Sea
 from calm.physics.referee import RefereeShape, find_ends
 from calm.solve.accuracy import Errors, Extent, extrapolate
 from calm.solve.fineness import MOST_ROUNDS, finer
+from calm.solve.leg_from_below import record_down
 from calm.solve.leg_marches import left_over
 from calm.solve.leg_numbers import (
     ANCHORED,
@@ -37,6 +38,8 @@ NEAR, CLOSED = 1e-4, 1e-10
 segments are kept, and in a shape."""
 BEFORE_CHOICE = 1e-7
 """As `CLOSED`, of a shape in which segments are chosen that are to depend on the net alone."""
+MOST_LEFT = 10.0
+"""How many times `enough` may be left where no step leads on."""
 LEADS_ON = 0.25
 """What a step leaves of the sum of squares, at most, for slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
@@ -175,7 +178,7 @@ def close_on(
             now = inf
         plain = now < inf
         if not plain and fresh:
-            if squares(left) > 1e4 * enough * enough:
+            if squares(left) > MOST_LEFT * MOST_LEFT * enough * enough:
                 return NO_SHAPE_NEAR
             break
         if plain:
@@ -193,7 +196,7 @@ def close_on(
                 return NO_SHAPE_NEAR
             keep(net.found, left)
             plain = False
-    if squares(left) > 1e4 * enough * enough:
+    if squares(left) > MOST_LEFT * MOST_LEFT * enough * enough:
         return NO_SHAPE_NEAR
     if not plain:
         left_over(net, x, how, False)
@@ -222,15 +225,22 @@ def drifts(net: NetProblem) -> bool:
     return anchored
 
 
+def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
+    """Turn the records of all legs that were marched up into those of legs marched down."""
+    for i in range(len(net.legs)):
+        if net.legs[i].kind == ANCHORED:
+            record_down(net, i, x, how)
+
+
 def close_coarsely(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
     """Choose segments of twice a step [rad] and close a net that about is on them."""
-    choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE)
+    choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE, 0.0)
     failure = left_over(net, x, choosing, False)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NO_SHAPE_NEAR
-    coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE)
+    coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE, 0.0)
     return close_on(net, x, coarse, enough, True)
 
 
@@ -259,12 +269,17 @@ def close_both(
     ending = close_coarsely(net, sea, x, step, enough)
     if ending != FOUND:
         return ending
+    record_shapes(net, x, Marching(sea, 2.0 * step, CHOSEN, True, COARSE, 0.0))
     keep(x, net.coarse)
     for i in range(len(net.legs)):
         state = net.state[i]
         state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
         state[COARSE_STAGE] = state[STAGE]
-    return close_net(net, x, Marching(sea, step, HALVED, True, FINE), enough, True)
+    fine = Marching(sea, step, HALVED, True, FINE, 0.0)
+    ending = close_net(net, x, fine, enough, True)
+    if ending == FOUND:
+        record_shapes(net, x, fine)
+    return ending
 
 
 def segments_of(net: NetProblem) -> int:
@@ -332,7 +347,10 @@ def ask_net(asked: AskedNet, _: float) -> float:
         return float(settle(net, how.sea, x, how.step, asked.enough))
     if asked.task == CLOSE:
         return float(close_net(net, x, how, asked.enough, asked.known))
-    return float(left_over(net, x, how, asked.task == SLOPES))
+    failure = left_over(net, x, how, asked.task == SLOPES)
+    if asked.task == MARCH and failure == GOES_ON:
+        record_shapes(net, x, how)
+    return float(failure)
 
 
 def ask_now(ask: Callable[[AskedNet, float], float], asked: AskedNet) -> float:

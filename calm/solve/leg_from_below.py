@@ -9,7 +9,7 @@ longer than the way to the anchor.
 from collections.abc import Sequence
 from math import degrees, inf, sqrt
 
-from calm.physics.compiled import set_row
+from calm.physics.compiled import set_row, within
 from calm.physics.line import (
     ENDS,
     GOES_ON,
@@ -26,7 +26,7 @@ from calm.physics.line import (
     write_element,
 )
 from calm.physics.passing import FAILURE, FX, FY, FZ, NODES, USED, How, Z, cut_evenly, pass_line
-from calm.physics.profile import interval_at
+from calm.physics.profile import Sea, interval_at
 from calm.physics.rod_axis import rod_axis
 from calm.physics.seabed import lay_line
 from calm.physics.track import CABLE, ROD, CableStretch, Course, Load, Stage
@@ -34,6 +34,7 @@ from calm.solve.leg_numbers import (
     COUNT,
     EAST,
     GROUNDED,
+    HANGS,
     HUNG,
     LIES,
     MARCHES,
@@ -42,6 +43,7 @@ from calm.solve.leg_numbers import (
     STAGE,
     TO_EAST,
     TO_NORTH,
+    TO_UP,
     Marching,
     NetProblem,
     bed_of,
@@ -49,7 +51,7 @@ from calm.solve.leg_numbers import (
     leg_of,
     place_of,
 )
-from calm.solve.problem import HALVED, OTHER, SearchArrays
+from calm.solve.problem import HALVED, SearchArrays
 
 NO_PULL = 1e-9
 """Pull at a touchdown, as a share of the scale of the leg's forces, that counts as none."""
@@ -84,6 +86,7 @@ def weight_of(course: Course, stage: Stage, excess: float) -> float:
     return weight
 
 
+@within
 def pull_of(up: float, east: float, north: float) -> Load:
     """A load without a body: a pull [N]."""
     return Load(0, -1, 0.0, 0.5, 0.0, up, 0.0, 0.0, 0.0, 0, 0.0, east, north, 0.0, 0.0)
@@ -101,8 +104,7 @@ def of_length(cable: CableStretch, length: float) -> CableStretch:
 def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
     """March an anchored leg from its touchdown, or its anchor, up; how that ended.
 
-    Its record goes down the leg as those of other legs: the pull at its upper end, what hangs, what
-    lies on the seabed.
+    Its record goes up the leg, see `record_down`.
     """
     leg, state, problem, bed = net.legs[i], net.state[i], leg_of(net, how.sea, i), bed_of(net, i)
     stages, loads, cables = net.up.stages[i], net.up.loads[i], net.up.cables[i][: leg.cables]
@@ -153,34 +155,54 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
     if failure != GOES_ON:
         return failure
     record, left_by, passed = work.records[how.record], work.left, net.passed[i]
-    nodes, recorded = int(left_by[NODES]), how.record != OTHER
+    nodes = int(left_by[NODES])
     state[EAST], state[NORTH] = record[0][nodes - 1], record[1][nodes - 1]
     state[STAGE], state[HUNG], state[COUNT], state[GROUNDED], state[LIES] = -1, nodes, nodes, 0, 0
     passed[2] = left_by[Z]
     passed[3], passed[4], passed[5] = left_by[FX], left_by[FY], left_by[FZ]
-    if recorded:
-        set_row(problem.course.loads, 0, pull_of(-passed[5], -passed[3], -passed[4]))
-        turn_round(record, nodes)
-    state[TO_EAST], state[TO_NORTH] = east, north
     if lies:
         east, north, up = along_bed(bed, east, north, up)
-        state[TO_EAST], state[TO_NORTH] = east, north
-        foot: State = (0.0, 0.0, height, -east, -north, -up, -1.0, level)
-        end, count, grounded = lay_line(
-            problem.course, bed, foot, leg.stages - stage, hanging, record, recorded, nodes
-        )
-        state[STAGE], state[COUNT], state[GROUNDED] = leg.stages - stage, count, grounded
+        state[STAGE], state[HANGS] = leg.stages - stage, hanging
+    state[TO_EAST], state[TO_NORTH], state[TO_UP] = east, north, up
+    if lies:
+        end, state[COUNT], state[GROUNDED] = lay(net, i, how.sea, height, how.record, False)
         down = end[2] - height
         state[LIES] = sqrt(end[0] * end[0] + end[1] * end[1] + down * down)
-        if recorded and hanging > 0.0:  # else it bears a part of what lies there
-            record[3][nodes - 1], record[4][nodes - 1] = -east, -north
-            record[5][nodes - 1] = -up
-    meet(net, i, x)
-    if recorded and state[SLACK] > 0.0:
-        lay_loosely(net, i, x, record)
+    meet(net, i, x, how.loose)
     return GOES_ON
 
 
+def lay(
+    net: NetProblem, i: int, sea: Sea, height: float, record: int, recording: bool
+) -> tuple[State, int, float]:
+    """`lay_line` of an anchored leg that was marched last, from its touchdown at a height [m]."""
+    state, course = net.state[i], leg_of(net, sea, i).course
+    east, north, up, level = state[TO_EAST], state[TO_NORTH], state[TO_UP], 0
+    foot: State = (0.0, 0.0, height, -east, -north, -up, -1.0, level)
+    return lay_line(
+        course, bed_of(net, i), foot, int(state[STAGE]), state[HANGS],
+        net.lines.work.records[i][record], recording, int(state[HUNG]),
+    )  # fmt: skip
+
+
+def record_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> None:
+    """Turn the record of an anchored leg that was marched last into one like those of other legs:
+    the pull at its upper end, what hangs, what lies on the seabed."""
+    state, record, out = net.state[i], net.lines.work.records[i][how.record], net.passed[i]
+    nodes, height = int(state[HUNG]), net.lines.work.records[i][how.record][2][0]
+    set_row(net.lines.course.loads[i], 0, pull_of(-out[5], -out[3], -out[4]))
+    turn_round(record, nodes)
+    if state[STAGE] < 0.0:
+        return
+    if state[HANGS] > 0.0:  # else the node bears a part of what lies there
+        record[3][nodes - 1], record[4][nodes - 1] = -state[TO_EAST], -state[TO_NORTH]
+        record[5][nodes - 1] = -state[TO_UP]
+    lay(net, i, how.sea, height, how.record, True)
+    if state[SLACK] > 0.0:
+        lay_loosely(net, i, x, record)
+
+
+@within
 def pass_hung(
     net: NetProblem, i: int, course: Course, how: Marching, work: SearchArrays, depth: float
 ) -> int:
@@ -210,9 +232,10 @@ def pass_hung(
             for m in range(read, read + counts[k]):
                 whole += of_step[m]
             length = course.cables[k].length
+            longer = length / whole if whole > 0.0 else 0.0
+            each = 0.0 if whole > 0.0 else length / max(counts[k], 1)
             for m in range(read, read + counts[k]):
-                share = of_step[m] / whole if whole > 0.0 else 1.0 / counts[k]
-                cuts[fill] = length * share
+                cuts[fill] = longer * of_step[m] + each
                 fill += 1
             read += counts[k]
     asked = How(
@@ -266,13 +289,16 @@ def turn_round(record: Record, nodes: int) -> None:
     write_element(record, 1, 0, -1, 0.0, 0.0)
 
 
-def meet(net: NetProblem, i: int, x: Sequence[float]) -> None:
+@within
+def meet(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
     """Write by how much a leg misses its anchor, east and north, and begins off the seabed.
 
     What lies on the seabed leads straight to the anchor where it is pulled; where it is not it may
     be longer than the way. Both at once: the way d from the touchdown to the anchor, at most as
     long as what lies reaches, r, has the direction of the pull h, or there is no pull. So d is the
     projection of d + ρh on the disc of radius r, whatever ρ (Alart and Curnier's form of contact).
+
+    `loose` is as in `Marching`.
     """
     leg, state, passed, bed = net.legs[i], net.state[i], net.passed[i], bed_of(net, i)
     at, reach = leg.first, state[LIES]
@@ -286,7 +312,9 @@ def meet(net: NetProblem, i: int, x: Sequence[float]) -> None:
         if way > 0.0:
             reach *= way / sqrt(way * way + rise * rise)
         per_force = net.length / net.scale[at]
-        e, n = e + per_force * state[TO_EAST], n + per_force * state[TO_NORTH]
+        trace = loose * net.scale[at] / reach
+        e += per_force * (state[TO_EAST] - trace * east)
+        n += per_force * (state[TO_NORTH] - trace * north)
         share = min(reach / max(sqrt(e * e + n * n), 1e-300), 1.0)
     passed[0], passed[1] = share * e - east, share * n - north
     state[SLACK] = reach - sqrt(east * east + north * north) if share == 1.0 else 0.0

@@ -190,7 +190,7 @@ def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes:
         if failure != GOES_ON:
             return failure
         if slopes:
-            take_scale(net, i, x)
+            take_scale(net, i, x, how.loose)
         out, at = net.passed[i], leg.first
         add_passed(net, i, out, 1.0, -1)
         start, end = place_of(net, i, x, 0), place_of(net, i, x, 1)
@@ -223,11 +223,11 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
             before = x[start + k]
             add_passed(net, i, passed, -1.0 / JUMP, start + k)
             x[start + k] = before + JUMP * net.scale[start + k]
-            meet(net, i, x)
+            meet(net, i, x, how.loose)
             add_passed(net, i, passed, 1.0 / JUMP, start + k)
             x[start + k] = before
-            meet(net, i, x)
-    moved = Marching(how.sea, how.step, how.cuts, True, OTHER)
+            meet(net, i, x, how.loose)
+    moved = Marching(how.sea, how.step, how.cuts, True, OTHER, how.loose)
     free = leg.own + (1 if leg.kind == PULLED and leg.start >= 0 else 0)
     for m in range(free):
         k = at + m if m < leg.own else start + 2
@@ -253,7 +253,7 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
     return GOES_ON
 
 
-def take_scale(net: NetProblem, i: int, x: Sequence[float]) -> None:
+def take_scale(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
     """Scale the unknown forces on a leg by its own pull, as it was marched last.
 
     A slack leg pulls with a thousandth of others: steps that suit these say nothing of its slopes.
@@ -270,4 +270,4 @@ def take_scale(net: NetProblem, i: int, x: Sequence[float]) -> None:
     for k in range(3):
         net.scale[leg.first + k] = min(max(pull, LEAST_PULL * leg.weight), net.force)
     if leg.kind == ANCHORED:
-        meet(net, i, x)
+        meet(net, i, x, loose)

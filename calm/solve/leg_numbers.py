@@ -4,6 +4,7 @@ from collections.abc import MutableSequence, Sequence
 from math import inf
 from typing import Any, NamedTuple
 
+from calm.physics.compiled import within
 from calm.physics.hull import SurfaceFloat
 from calm.physics.line import Bed, Record, off_bed
 from calm.physics.profile import Sea
@@ -18,16 +19,17 @@ STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG = range(6)
 """State of a leg after its last march: the stage where it comes down on the seabed or -1, its
 length there [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and
 those of them that hang."""
-EAST, NORTH, TO_EAST, TO_NORTH, LIES, SLACK = range(6, 12)
-"""And of an anchored leg: the way from its touchdown to its upper end east and north [m], the pull
-at the touchdown to the east and north [N], how far the rest reaches along the seabed [m], and by
-how much that is more than the way to its anchor [m]."""
-FREQUENCY, LACKING, YIELD = range(12, 15)
+EAST, NORTH, TO_EAST, TO_NORTH, TO_UP, HANGS, LIES, SLACK = range(6, 14)
+"""And of an anchored leg: the way from its touchdown to its upper end east and north [m]; the pull
+there, east, north and up [N]; how much of the stage hangs in which it comes down, as of
+`calm.physics.seabed`; how far the rest reaches along the seabed, and by how much that is more than
+the way to its anchor [m]."""
+FREQUENCY, LACKING, YIELD = range(14, 17)
 """And of a leg that strums: the frequency of its cables [Hz], what that lacks of the one that is
 shed [Hz], and the slope of this [-]."""
-COARSE_COUNT, COARSE_HUNG, COARSE_STAGE = range(15, 18)
+COARSE_COUNT, COARSE_HUNG, COARSE_STAGE = range(17, 20)
 """And on coarse segments: its nodes, those of them that hang, and the stage where it comes down."""
-OF_LEG = 18
+OF_LEG = 20
 OUT = 7
 """Results of a march: way east and north, height and force where it came out, or of an anchored leg
 by how much it misses its anchor; then by how much it begins off the seabed."""
@@ -136,6 +138,9 @@ class NetProblem(NamedTuple):
 class Marching(NamedTuple):
     """Tell how all legs are marched: in which water, at which angle step, on which cuts, given or
     chosen now, and where they are recorded.
+
+    `loose` is the pull that a slack leg has after all, towards its anchor, as a share of its scale:
+    for a start, from which it is found where a net with slack legs alone is carried.
     """
 
     sea: Sea
@@ -143,8 +148,10 @@ class Marching(NamedTuple):
     cuts: int
     given: bool
     record: int
+    loose: float
 
 
+@within
 def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
     """A leg as a line."""
     leg, lines, own = net.legs[i], net.lines, net.lines.afloat[i]
@@ -167,6 +174,7 @@ def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
     )  # fmt: skip
 
 
+@within
 def bed_of(net: NetProblem, i: int) -> Bed:
     """The seabed below a leg."""
     leg, bed = net.legs[i], net.lines.limits.bed
@@ -184,6 +192,7 @@ def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: in
     return off_bed(bed_of(net, i), east, north, record[2][n] - level)
 
 
+@within
 def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[float, float, float]:
     """Return where the record of a leg is to begin (0) or to end (1) [m]."""
     leg, held = net.legs[i], net.held[i]
@@ -194,6 +203,7 @@ def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[flo
     return held[3 * end], held[3 * end + 1], held[3 * end + 2]
 
 
+@within
 def end_height(leg: LegRow, lies: bool, pull: float) -> float:
     """Height of the lower end of an anchored leg [m], by the vertical pull there [N].
 

@@ -35,6 +35,8 @@ from calm.solve.solution import (
 
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
+LOOSE = 1e-3, 1e-5, 1e-7
+"""Pulls of slack legs, as shares of their scales, by which a net is sought that nothing else holds."""
 
 
 @dataclass(frozen=True)
@@ -119,13 +121,15 @@ class NetSearch:
             raise LacksRoom
         return int(ending), np.array(own)
 
-    def marching(self, step: float, cuts: int, record: int, *, given: bool) -> Marching:
+    def marching(
+        self, step: float, cuts: int, record: int, *, given: bool, loose: float = 0.0
+    ) -> Marching:
         """Return how all legs are to be marched."""
-        return Marching(self.sea, float(step), cuts, given, record)
+        return Marching(self.sea, float(step), cuts, given, record, loose)
 
-    def closed(self, x: Floats, step: float, enough: float) -> Floats | None:
-        """Newton's method; None where it leads nowhere."""
-        how = self.marching(step, CHOSEN, FINE, given=False)
+    def closed(self, x: Floats, step: float, enough: float, loose: float = 0.0) -> Floats | None:
+        """Newton's method; None where it leads nowhere. `loose` is as in `Marching`."""
+        how = self.marching(step, CHOSEN, FINE, given=False, loose=loose)
         ending, found = self.asked(leg_closing.CLOSE, x, how, enough)
         return found if ending == FOUND else None
 
@@ -218,7 +222,7 @@ def solve_net(
     expect_many(4.0 * len(legs))
 
     def solved(net: NetSearch) -> NetSolution:
-        found = net.told(net.settled(about(net, near)))
+        found = net.told(settled_from(net, near))
         before = 0
         for each, leg in zip(net.laid, found.legs, strict=True):
             refuse_misplaced(each, leg, found.depth_error, before)
@@ -247,9 +251,34 @@ def with_room(
             room *= MORE_ROOM
 
 
-def about(net: NetSearch, near: NetSolution | None) -> Floats:
+def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
+    """The unknowns of a net closed to the last digits.
+
+    Where nothing but slack legs holds it at first, in still water, nothing says which way leads on.
+    It is then sought with legs that pull a little after all, by less and less.
+
+    Raises
+    ------
+    NoEquilibrium
+    """
+    try:
+        return net.settled(about(net, near))
+    except NoEquilibrium as failure:
+        try:
+            x = about(net, None, LOOSE[0])
+            for loose in LOOSE[1:]:
+                closer = net.closed(x, 4.0 * net.settings.angle_step, leg_closing.NEAR, loose)
+                x = x if closer is None else closer
+            return net.settled(x)
+        except NoEquilibrium:
+            raise failure from None
+
+
+def about(net: NetSearch, near: NetSolution | None, loose: float = 0.0) -> Floats:
     """The unknowns of a net about closed: near another, else from still water on, which of several
     equilibria leads to the highest; where that leads nowhere, from where it comes to rest.
+
+    `loose` is as in `Marching`.
 
     Raises
     ------
@@ -257,24 +286,24 @@ def about(net: NetSearch, near: NetSolution | None) -> Floats:
     """
     water, step = net.water, 4.0 * net.settings.angle_step
     legs = tuple(each.leg for each in net.laid)
-    x = None if near is None else net.closed(near.unknowns, step, leg_closing.NEAR)
+    x = None if near is None else net.closed(near.unknowns, step, leg_closing.NEAR, loose)
     if x is not None:
         return x
     still, way, stride = water.still(), 0.0, 1.0
     net.put_in(still)
-    x = net.closed(net.begin(start_of(legs, net.nodes, still)), step, leg_closing.NEAR)
+    x = net.closed(net.begin(start_of(legs, net.nodes, still)), step, leg_closing.NEAR, loose)
     why = "not even in still water do its legs come together"
     while x is not None and way < 1.0 and stride >= 0.01:
         following = min(way + stride, 1.0)
         moving = replace(water, u=following * water.u, v=following * water.v, w=following * water.w)
         net.put_in(moving if following < 1.0 else water)
-        closer = net.closed(x, step, leg_closing.NEAR)
+        closer = net.closed(x, step, leg_closing.NEAR, loose)
         stride = stride if closer is not None else 0.5 * stride
         x, way = (x, way) if closer is None else (closer, following)
         why = f"beyond {way:.0%} of the current its legs do not come together"
     if x is None or way < 1.0:
         net.put_in(water)
-        x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, leg_closing.NEAR)
+        x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, leg_closing.NEAR, loose)
     if x is None:
         raise unsettled(why)
     return x
@@ -307,6 +336,7 @@ class NearbyNet:
             raise unsettled("its legs do not come together to the last digits")
         net.asked(leg_closing.SLOPES, self._x, self._how)
         self._slopes = np.array(net.net.slopes)
+        net.asked(leg_closing.MARCH, self._x, self._how)
 
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
         """The node at the top of a piece of a leg, or at a clamp, in every one of these shapes."""
