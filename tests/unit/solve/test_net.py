@@ -339,9 +339,9 @@ def test_from_still_water_it_comes_to_the_same_rest(monkeypatch: pytest.MonkeyPa
     straight = solve_net(y_net(), 1, water)
     closed, shares = net_module.NetSearch.closed, []
 
-    def lost(net: Any, x: Floats, step: float, enough: float) -> Floats | None:
+    def lost(net: Any, x: Floats, *how: float) -> Floats | None:
         shares.append(float(np.abs(net.water.u).max()) / 0.6)
-        return None if len(shares) == 2 else closed(net, x, step, enough)
+        return None if len(shares) == 2 else closed(net, x, *how)
 
     monkeypatch.setattr(net_module.NetSearch, "closed", lost)
     stepped = solve_net(y_net(), 1, water)
