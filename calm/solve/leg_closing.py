@@ -18,9 +18,11 @@ from calm.solve.leg_marches import left_over
 from calm.solve.leg_numbers import (
     ANCHORED,
     COARSE_COUNT,
+    COARSE_GROUNDED,
     COARSE_HUNG,
     COARSE_STAGE,
     COUNT,
+    GROUNDED,
     HANGING_DOWN,
     HUNG,
     STAGE,
@@ -274,7 +276,7 @@ def close_both(
     for i in range(len(net.legs)):
         state = net.state[i]
         state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
-        state[COARSE_STAGE] = state[STAGE]
+        state[COARSE_STAGE], state[COARSE_GROUNDED] = state[STAGE], state[GROUNDED]
     fine = Marching(sea, step, HALVED, True, FINE, 0.0)
     ending = close_net(net, x, fine, enough, True)
     if ending == FOUND:

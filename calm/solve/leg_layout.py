@@ -301,7 +301,10 @@ def leg_found(
         landed, float(state[leg_numbers.GROUNDED]), 2 * int(sum(work.counts)),
     )  # fmt: skip
     told = Errors(deep, taut, 0.0, taut, taut)
-    before = not_audited(closed, told, share, closed.grounded)
+    grounded = closed.grounded
+    if landed and state[leg_numbers.COARSE_STAGE] >= 0.0:
+        grounded += (grounded - float(state[leg_numbers.COARSE_GROUNDED])) / 3.0
+    before = not_audited(closed, told, share, grounded)
     found = solution_of(problem, laid.line, water, settings, before, frequency)
     referee = referee_of(carried_by(laid.line, problem), water, frequency, compiled)
     shape = RefereeShape(

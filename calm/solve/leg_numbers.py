@@ -27,9 +27,10 @@ the way to its anchor [m]."""
 FREQUENCY, LACKING, YIELD = range(14, 17)
 """And of a leg that strums: the frequency of its cables [Hz], what that lacks of the one that is
 shed [Hz], and the slope of this [-]."""
-COARSE_COUNT, COARSE_HUNG, COARSE_STAGE = range(17, 20)
-"""And on coarse segments: its nodes, those of them that hang, and the stage where it comes down."""
-OF_LEG = 20
+COARSE_COUNT, COARSE_HUNG, COARSE_STAGE, COARSE_GROUNDED = range(17, 21)
+"""And on coarse segments: its nodes, those that hang, the stage where it comes down, and its length
+on the seabed [m]."""
+OF_LEG = 21
 OUT = 7
 """Results of a march: way east and north, height and force where it came out, or of an anchored leg
 by how much it misses its anchor; then by how much it begins off the seabed."""

@@ -36,7 +36,7 @@ from calm.solve.solution import (
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
 LOOSE = 1e-3, 1e-5, 1e-7
-"""Pulls of slack legs, as shares of their scales, by which a net is sought that nothing else holds."""
+"""Pulls of slack legs, as shares of their scales, to find a net that nothing else holds."""
 
 
 @dataclass(frozen=True)

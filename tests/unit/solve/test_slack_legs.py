@@ -163,7 +163,7 @@ def test_lying_or_hanging_a_leg_is_one_curve(rise: float) -> None:
 
 
 def lee_net(turn: float = 0.0, mirror: bool = False, backwards: bool = False) -> list[NetLeg]:
-    """A float below the surface on three legs of wire and chain, of which a current slackens one."""
+    """A submerged float on three legs of wire and chain, one of which a current slackens."""
     head = line_of(Point(5000.0, 1.5, 0.8), Wire(10.0, 3.0, 0.012, 2e5))
     legs = [NetLeg(head, FREE, LegEnd(node=0))]
     for angle in (10.0, 130.0, 250.0):
