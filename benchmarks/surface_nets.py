@@ -49,19 +49,21 @@ def main(cases: str = "80", first: str = "0") -> None:
     numbers = range(int(first), int(first) + int(cases))
     found: dict[int, NetResult] = {}
     for water in ("still", "current"):
-        begun, solved, slack = process_time(), 0, 0
+        begun, solved, slack, drifting = process_time(), 0, 0, 0
         for number in numbers:
             net = surface_net(number)
             result = solve(net if water == "current" else net.still())
             if isinstance(result, NoEquilibrium):
-                print(f"{water}, net {number}: {result.status}: {result}"[:170])
+                drifting += result.status == "slack"
+                print(f"{water}, net {number}: {result}"[:170])
                 continue
             solved += 1
             slack += any(" is slack: " in said for said in result.warnings)
             if water == "current":
                 found[number] = result
         print(
-            f"{water}: {solved} of {len(numbers)} solved, {slack} with slack legs, "
+            f"{water}: {solved} of {len(numbers)} solved, {slack} with slack legs; "
+            f"{drifting} that nothing holds sideways; "
             f"{process_time() - begun:.1f} s",
             flush=True,
         )
@@ -77,7 +79,7 @@ def main(cases: str = "80", first: str = "0") -> None:
             other = solve(image)
             if isinstance(other, NoEquilibrium):
                 lost += 1
-                print(f"{name}, net {number}: {other.status}: {other}"[:170])
+                print(f"{name}, net {number}: {other}"[:170])
                 continue
             expected = node(result)
             expected[:2] = matrix @ expected[:2]
