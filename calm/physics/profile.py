@@ -13,6 +13,11 @@ SLIVER = 0.01
 """Part of a segment, as a share of it, at which no chosen segment ends."""
 
 
+NEAR_A_LEVEL = 1e-6
+"""Depth range beyond a level, as a share of that of the segment, that is never split off: in still
+water at the level any part counts."""
+
+
 class Interval(NamedTuple):
     """The water between two levels: its origin [m], values there and what they grow by per metre.
 
@@ -177,7 +182,7 @@ def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> 
     off : depth range of the segment on the far side of the level [m]
     length : depth range of the segment [m]
     """
-    return sea.bends[k] * off * off > share * length
+    return off > NEAR_A_LEVEL * length and sea.bends[k] * off * off > share * length
 
 
 def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
@@ -163,7 +162,7 @@ def test_what_no_release_frees_is_unknown() -> None:
 
 
 def test_a_net_that_does_not_stand_is_a_failure_with_its_reason() -> None:
-    text = re.sub(r"length: 130 m, label: east", "length: 10 m, label: east", Y)
+    text = Y.replace("length: 130 m", "length: 10 m")  # its anchors are 80 m apart
     found = judged(load(Path("y.yaml"), text=text))
     assert [each.rule for each in found.stands[0].findings] == ["equilibrium"]
     assert found.state is State.FAIL
