@@ -117,10 +117,10 @@ def solve_net_rows(
         for k in range(len(paper.x)):
             keep(paper.slopes[k], net.slopes[k])
         keep(paper.scale, net.scale)
-        how = Marching(sea, 4.0 * step, CHOSEN, False, FINE, 0.0)
+        how = Marching(sea, 4.0 * step, CHOSEN, False, False, FINE, 0.0)
         ending = ask(AskedNet(leg_closing.CLOSE, net, paper.x, how, leg_closing.NEAR, True), 0.0)
         if ending == FOUND:
-            how = Marching(sea, step, CHOSEN, False, FINE, 0.0)
+            how = Marching(sea, step, CHOSEN, False, False, FINE, 0.0)
             ending = ask(AskedNet(leg_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
         endings[case] = TO_SOLVE
         if ending == FOUND and stands(net, paper):
@@ -345,6 +345,10 @@ class NetProfiles:
         of_clamps, leans = of_clamps[:, order], leans[:, order]
         still = self.at_rest
         known = (still and (still.components.depth_top, still.clamps.depth)) or (np.nan, np.nan)
+        sunk, sunk_clamps = -place[..., 2] - known[0], -of_clamps[..., 2] - known[1]
+        anchors = [leg.end - 1 for leg in file.legs if leg.bottom.anchor is not None]
+        sunk[:, anchors] = 0.0
+        sunk_clamps[:, np.isin([n for n, _ in sorted(on)], anchors)] = 0.0
         return columns | {
             "depth_top": -place[..., 2],
             "x_top": place[..., 0],
@@ -352,13 +356,13 @@ class NetProfiles:
             "tension_top": above,
             "tension_bottom": below,
             "tilt": tilt,
-            "knockdown": -place[..., 2] - known[0],
+            "knockdown": sunk,
             "clamp_depth": -of_clamps[..., 2],
             "clamp_x": of_clamps[..., 0],
             "clamp_y": of_clamps[..., 1],
             "clamp_tension": of_clamps[..., 6],
             "clamp_tilt": leans,
-            "clamp_knockdown": -of_clamps[..., 2] - known[1],
+            "clamp_knockdown": sunk_clamps,
         }
 
     def _solve_alone(

@@ -109,8 +109,8 @@ def march(
         An element finds no balance or a cable would need more than 50 000 segments.
     """
     course, sea = (track.packed, profile.packed) if compiled else (track.course, profile.sea)
-    stages, level = len(course.stages), Bed(0.0, 0.0, 0.0, 0.0)
-    how = How(angle_step, reach, 0.0, stages, False, level, cuts is not None, False, record)
+    stages, level, known = len(course.stages), Bed(0.0, 0.0, 0.0, 0.0), cuts is not None
+    how = How(angle_step, reach, 0.0, stages, False, level, known, known, False, record)
     room = ROOM if cuts is None else len(cuts.lengths)
     while True:
         most = room + 3 * len(course.loads) + 2 * len(course.stages) + 1 if record else 1

@@ -52,7 +52,7 @@ LEFT = 10
 
 SHORT = 1e-6
 """Length of a segment, as a share of the longest, that says nothing of the load of the next."""
-EXACT, ROUGH = 1e-12, 1e-2
+EXACT, ROUGH = 1e-12, 1e-3
 """Change of the mean flow along a segment, as a share of the flow, from which the segment is split
 at a level: of a shape to be closed to the last digits, and of other marches."""
 ROUNDING = 1e-12
@@ -73,6 +73,7 @@ class How(NamedTuple):
         across that vanishes; the rest lies there
     bed : the seabed
     given : whether the segments are given, else chosen
+    exact : whether segments are split at every level, and not only where it counts
     halves : whether each segment, or part of one, is passed in two halves
     recording : whether every node and element is recorded
     """
@@ -84,6 +85,7 @@ class How(NamedTuple):
     lands: bool
     bed: Bed
     given: bool
+    exact: bool
     halves: bool
     recording: bool
 
@@ -186,7 +188,7 @@ def pass_cable(
         vibration = with_beat(vibration, vibration.beat * cable.diameter)
     first, done, hanging = used, 0.0, -1.0
     near, halves, expected = how.near, how.halves, (0.0, 0.0, 0.0)
-    share = EXACT if how.given and near == 0.0 else ROUGH
+    share = EXACT if how.exact else ROUGH
     others = 3 * len(course.loads) + 2 * len(course.stages) + 1
     whole = (1.0 - ROUNDING) * cable.length
     while used - first < counts[place] if how.given else done < whole or used == first:

@@ -119,6 +119,7 @@ def miss_at(about: About, x: float) -> float:
         unknown.lands,
         problem.limits.bed,
         about.given,
+        about.given and problem.limits.near == 0.0,
         about.cuts == HALVED,
         about.record != NOT_RECORDED,
     )

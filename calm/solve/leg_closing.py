@@ -238,11 +238,11 @@ def close_coarsely(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
     """Choose segments of twice a step [rad] and close a net that about is on them."""
-    choosing = Marching(sea, 2.0 * step, CHOSEN, False, COARSE, 0.0)
+    choosing = Marching(sea, 2.0 * step, CHOSEN, False, False, COARSE, 0.0)
     failure = left_over(net, x, choosing, False)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NO_SHAPE_NEAR
-    coarse = Marching(sea, 2.0 * step, CHOSEN, True, COARSE, 0.0)
+    coarse = Marching(sea, 2.0 * step, CHOSEN, True, True, COARSE, 0.0)
     return close_on(net, x, coarse, enough, True)
 
 
@@ -271,13 +271,13 @@ def close_both(
     ending = close_coarsely(net, sea, x, step, enough)
     if ending != FOUND:
         return ending
-    record_shapes(net, x, Marching(sea, 2.0 * step, CHOSEN, True, COARSE, 0.0))
+    record_shapes(net, x, Marching(sea, 2.0 * step, CHOSEN, True, True, COARSE, 0.0))
     keep(x, net.coarse)
     for i in range(len(net.legs)):
         state = net.state[i]
         state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
         state[COARSE_STAGE], state[COARSE_GROUNDED] = state[STAGE], state[GROUNDED]
-    fine = Marching(sea, step, HALVED, True, FINE, 0.0)
+    fine = Marching(sea, step, HALVED, True, True, FINE, 0.0)
     ending = close_net(net, x, fine, enough, True)
     if ending == FOUND:
         record_shapes(net, x, fine)

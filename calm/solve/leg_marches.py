@@ -115,7 +115,8 @@ def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
     reach = degrees(how.step) * leg.longest
     lands = leg.kind == STANDING and leg.seabed > -inf
     near, bed = problem.limits.near, bed_of(net, i)
-    asked = How(how.step, reach, near, leg.stages, lands, bed, how.given, how.cuts == HALVED, True)
+    exact, halves = how.exact and near == 0.0, how.cuts == HALVED
+    asked = How(how.step, reach, near, leg.stages, lands, bed, how.given, exact, halves, True)
     pass_line(course, how.sea, asked, depth, out, cuts, counts, record, left)
     state[MARCHES] += 1.0
     if left[FAILURE] != GOES_ON:
@@ -227,7 +228,7 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
             add_passed(net, i, passed, 1.0 / JUMP, start + k)
             x[start + k] = before
             meet(net, i, x, how.loose)
-    moved = Marching(how.sea, how.step, how.cuts, True, OTHER, how.loose)
+    moved = Marching(how.sea, how.step, how.cuts, True, how.exact, OTHER, how.loose)
     free = leg.own + (1 if leg.kind == PULLED and leg.start >= 0 else 0)
     for m in range(free):
         k = at + m if m < leg.own else start + 2

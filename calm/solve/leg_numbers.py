@@ -140,6 +140,9 @@ class Marching(NamedTuple):
     """Tell how all legs are marched: in which water, at which angle step, on which cuts, given or
     chosen now, and where they are recorded.
 
+    `exact` is whether segments are split at every level. Slopes are those of the march that they
+    belong to: marches that split otherwise differ by more than a jump of an unknown makes.
+
     `loose` is the pull that a slack leg has after all, towards its anchor, as a share of its scale:
     for a start, from which it is found where a net with slack legs alone is carried.
     """
@@ -148,6 +151,7 @@ class Marching(NamedTuple):
     step: float
     cuts: int
     given: bool
+    exact: bool
     record: int
     loose: float
 

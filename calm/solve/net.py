@@ -125,7 +125,7 @@ class NetSearch:
         self, step: float, cuts: int, record: int, *, given: bool, loose: float = 0.0
     ) -> Marching:
         """Return how all legs are to be marched."""
-        return Marching(self.sea, float(step), cuts, given, record, loose)
+        return Marching(self.sea, float(step), cuts, given, given, record, loose)
 
     def closed(self, x: Floats, step: float, enough: float, loose: float = 0.0) -> Floats | None:
         """Newton's method; None where it leads nowhere. `loose` is as in `Marching`."""
