@@ -93,7 +93,7 @@ def write_record(path: Path, count: int) -> None:
                 current[start : start + len(t)] = decay * (0.6 * eddies + tide)[:, None] + noise
 
 
-def solver_alone(mooring: calm.Mooring, path: Path, workers: int) -> float:
+def solver_alone(mooring: calm.Design, path: Path, workers: int) -> float:
     """Profiles a second of `solve_profiles`, arrays in and arrays out."""
     with open_record(path, Terms(5000.0)) as record:
         depth, u, v, _ = record.profiles(0, min(SAMPLE, record.count))
@@ -104,7 +104,7 @@ def solver_alone(mooring: calm.Mooring, path: Path, workers: int) -> float:
 
 
 def without_statistics(
-    mooring: calm.Mooring, path: Path, output: Path, workers: int
+    mooring: calm.Design, path: Path, output: Path, workers: int
 ) -> tuple[float, float]:
     """Profiles a second from record to result, in this process, and the bytes of each."""
     start = time.perf_counter()
@@ -118,7 +118,7 @@ def without_statistics(
     return rate, output.stat().st_size / count
 
 
-def without_solving(mooring: calm.Mooring, path: Path, output: Path) -> float:
+def without_solving(mooring: calm.Design, path: Path, output: Path) -> float:
     """Profiles a second that are read, hashed, packed and written: those of one block, again."""
     with open_record(path, Terms(5000.0)) as record:
         depth, u, v, _ = record.profiles(0, min(BLOCK, record.count))
@@ -167,7 +167,6 @@ def main() -> None:
         file = folder / "mooring.yaml"
         file.write_text(MOORING)
         mooring = calm.load(file)
-        assert isinstance(mooring, calm.Mooring)
         for count in counts:
             path = folder / f"{count}.nc"
             write_record(path, count)

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from calm.batch.profiles import Profiles
 from calm.batch.statuses import STATUSES
-from calm.case import Mooring
-from calm.case.net import Net
+from calm.case import Design
 from calm.dataset import netcdf
 from calm.dataset.netcdf import CLAMPS, OF_CLAMP, ResultLayout, Variable, labels, numbers, station
 from calm.files import Clamp
@@ -59,7 +58,7 @@ def laid_out(
     }
 
 
-def layout_of(mooring: Mooring | Net, record: Record, shape: ShapeNodes | None) -> ResultLayout:
+def layout_of(mooring: Design, record: Record, shape: ShapeNodes | None) -> ResultLayout:
     """Lay out the result of a mooring in the profiles of a record."""
     pieces = mooring.file.pieces
     clamps = [clamp.label for clamp in clamps_down(pieces)]
@@ -127,7 +126,7 @@ def _nodes(shape: ShapeNodes) -> list[Variable]:
     ]
 
 
-def _station(mooring: Mooring | Net, record: Record) -> tuple[list[Variable], str]:
+def _station(mooring: Design, record: Record) -> tuple[list[Variable], str]:
     """The mooring as a station: at the place of the currents where its file has no position."""
     name, position = mooring.file.name or "mooring", mooring.file.position
     if position is not None:
@@ -167,7 +166,7 @@ class ShapeNodes:
     distance : (s,) unstretched, from the top of the line [m]
     """
 
-    mooring: Mooring
+    mooring: Design
     component: NDArray[np.int32]
     distance: Floats
     clamps: tuple[int, ...]
@@ -184,7 +183,7 @@ class ShapeNodes:
         }
 
 
-def nodes_of(mooring: Mooring) -> ShapeNodes:
+def nodes_of(mooring: Design) -> ShapeNodes:
     """Lay the nodes along the line of a mooring.
 
     NoEquilibrium: where a piece is to be cut to fit, and no length does.
@@ -211,7 +210,7 @@ def nodes_of(mooring: Mooring) -> ShapeNodes:
     order = np.lexsort((distance, component))
     own = np.array([clamp.use == "" for clamp in clamps_down(pieces)], bool)
     return ShapeNodes(
-        mooring=Mooring(replace(mooring.file, pieces=tuple(pieces))),
+        mooring=Design(replace(mooring.file, pieces=tuple(pieces))),
         component=np.array(component, np.int32)[order],
         distance=np.array(distance)[order],
         clamps=tuple(np.flatnonzero(~own).tolist()),

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from calm.batch import solving
 from calm.batch.solving import sea_of  # by name: what a compiled law calls
 from calm.batch.statuses import OF_PROFILES, STATUSES
+from calm.case.design import Design, Result, result_together
 from calm.case.measure import leaning_of
-from calm.case.net import Net, net_result
-from calm.case.result import NetResult
+from calm.case.net import net_legs
 from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
@@ -185,7 +185,7 @@ def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None
 class NetProfiles:
     """A net made ready for many profiles."""
 
-    net: Net
+    net: Design
 
     def water(self, depth: Column, u: Column, v: Column, w: Column) -> Water:
         """Its water with another current."""
@@ -197,16 +197,16 @@ class NetProfiles:
         """The net in still water; None where it does not stand there."""
         expect_many(inf)
         try:
-            return self.net.equilibrium(self.net.water.still())
+            return self.net.together(self.net.water.still())
         except NoEquilibrium:
             return None
 
     @cached_property
-    def at_rest(self) -> NetResult | None:
+    def at_rest(self) -> Result | None:
         """Return what is measured of it there; None where a check of it fails."""
         with suppress(NoEquilibrium):
             if self.still is not None:
-                return net_result(self.net, self.still, self.still.legs)
+                return result_together(self.net, self.still, self.still.legs)
         return None
 
     @cached_property
@@ -234,7 +234,7 @@ class NetProfiles:
         settings = replace(self.net.settings, compiled=True)
         nodes = len(nodes_of(self.net.file.legs))
         water = self.water(*[(0.0,)] * 4)
-        return NetSearch(self.net.legs, nodes, water, settings, rough=True)
+        return NetSearch(net_legs(self.net.legs), nodes, water, settings, rough=True)
 
     def solve(
         self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
@@ -278,10 +278,7 @@ class NetProfiles:
         assert self.base is not None
         assert self.slopes is not None
         of_legs = self.net.file.legs
-        weights = [
-            line.anchor_weight if leg.bottom.anchor else inf
-            for line, leg in zip(self.net.lines, of_legs, strict=True)
-        ]
+        weights = [leg.anchor_weight if leg.anchored else inf for leg in self.net.legs]
         clamped = [len(piece.clamps) for piece in self.net.file.pieces]
         paper = NetPaper(
             on=solving.levels_for(current[0].shape[1], water),
@@ -308,7 +305,7 @@ class NetProfiles:
         above, below = np.zeros((count, pieces)), np.zeros((count, pieces))
         columns = {name: np.full((count, legs), np.nan) for name in OF_ENDS}
         of_clamps, leans, held = rows.clamps, np.zeros((count, clamps)), 0
-        for i, (leg, line) in enumerate(zip(file.legs, self.net.legs, strict=True)):
+        for i, (leg, line) in enumerate(zip(file.legs, net_legs(self.net.legs), strict=True)):
             own = slice(leg.first, leg.first + len(line.line.length))
             upper, lower = rows.pieces[:, own, :6], rows.pieces[:, own, 6:]
             hangs = line.lower.free and not line.upper.free
@@ -380,9 +377,9 @@ class NetProfiles:
             return
         water = self.water(*(tuple(column) for column in read[:count].T.tolist()))
         try:
-            solution = self.net.equilibrium(water, self.base)
+            solution = self.net.together(water, self.base)
             before: Any = [None] * len(solution.legs) if still is None else still.legs
-            result = net_result(self.net, solution, before)
+            result = result_together(self.net, solution, before)
         except NoEquilibrium as failure:
             status[case] = STATUSES.index(failure.status)
             return

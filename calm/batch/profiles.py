@@ -17,9 +17,9 @@ from calm.batch import solving
 from calm.batch.net_profiles import NetProfiles
 from calm.batch.solving import LACKS_ROOM, OF_CLAMP, OF_ENDS, OF_PIECE, ProfileArrays, Results
 from calm.batch.statuses import STATUSES, implausible, status_of
-from calm.case import Mooring
+from calm.case import Design
+from calm.case.leg import Leg
 from calm.case.measure import clamps_of, components_of
-from calm.case.net import Net
 from calm.dataset import netcdf
 from calm.files import CurrentTable
 from calm.files.mooring_file import clamps_down
@@ -131,7 +131,7 @@ class Profiles:
 
 
 def solve_profiles(
-    mooring: Mooring | Net,
+    mooring: Design,
     u: ArrayLike,
     v: ArrayLike,
     depth: ArrayLike,
@@ -155,8 +155,10 @@ def solve_profiles(
 
     Raises
     ------
+    UsageError
+        It is a tow.
     TypeError
-        The mooring is none, such as a tow, or the current is no numbers.
+        The current is no numbers.
     ValueError
         Arrays whose shapes do not fit together; less than one worker.
     NoEquilibrium
@@ -169,7 +171,7 @@ def solve_profiles(
 class Batch:
     """A mooring or a net made ready for many profiles, which may come in several goes."""
 
-    mooring: Mooring | Net
+    mooring: Design
     _starts: Floats | None = field(default=None, init=False, repr=False, compare=False)
 
     @cached_property
@@ -179,7 +181,6 @@ class Batch:
 
     @cached_property
     def _net(self) -> NetProfiles:
-        assert isinstance(self.mooring, Net)
         return NetProfiles(self.mooring)
 
     def solve(
@@ -192,30 +193,26 @@ class Batch:
         workers: int | None = None,
     ) -> Profiles:
         """As `solve_profiles`."""
-        if not isinstance(self.mooring, Mooring | Net):
-            kind = type(self.mooring).__name__
-            raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
         if workers is not None and workers < 1:
             raise ValueError(f"{workers} workers: at least one is needed")
         shape, current = _checked(u, v, depth, w)
-        if isinstance(self.mooring, Net):
-            measured = self._solve_net(self.mooring, current, workers)
+        if self.mooring.several:
+            measured = self._solve_together(current, workers)
         else:
-            measured = self._solve_lines(self.mooring, current, workers)
+            measured = self._solve_alone(self.mooring.moored, current, workers)
         return measured if shape == measured.status.shape else _shaped(measured, shape)
 
-    def _solve_net(self, net: Net, current: tuple[Floats, ...], workers: int | None) -> Profiles:
+    def _solve_together(self, current: tuple[Floats, ...], workers: int | None) -> Profiles:
         status = np.zeros(len(current[1]), np.int8)
         status[self._implausible(current)] = _IMPLAUSIBLE
         columns: dict[str, Any] = self._net.solve(current, status, workers or processors())
-        pieces, clamps = net.file.pieces, clamps_down(net.file.pieces)
+        pieces = self.mooring.file.pieces
+        clamps = clamps_down(pieces)
         labels = tuple(piece.label for piece in pieces), tuple(clamp.label for clamp in clamps)
         return Profiles(labels[0], labels[1], status=status, **columns)
 
-    def _solve_lines(
-        self, mooring: Mooring, current: tuple[Floats, ...], workers: int | None
-    ) -> Profiles:
-        line, count = mooring.line, len(current[1])
+    def _solve_alone(self, leg: Leg, current: tuple[Floats, ...], workers: int | None) -> Profiles:
+        line, count = leg.line, len(current[1])
         rows = Results(
             np.full((count, len(OF_PIECE), len(line.length)), np.nan),
             np.full((count, len(OF_CLAMP), len(line.clamp_piece)), np.nan),
@@ -228,13 +225,13 @@ class Batch:
             levels = depth if len(depth) == 1 else depth[block]
             mine = levels, *(array[block] for array in others)
             columns = Results(*(array[block] for array in rows))
-            self._solve_block(mooring, mine, columns, status[block])
+            self._solve_block(leg, mine, columns, status[block])
 
         solve(slice(0, 0))  # compiles where need be
         with ThreadPoolExecutor(workers or processors()) as pool:
             for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
                 pass
-        return _measured(mooring, rows, status)
+        return _measured(leg, rows, status)
 
     def _implausible(self, current: tuple[Floats, ...]) -> NDArray[np.bool_]:
         """(n,) profiles with a level that is faster than any current, or deeper than any sea."""
@@ -243,7 +240,7 @@ class Batch:
         return np.asarray(implausible(depth, u, v, w, greatest).any(axis=1))
 
     def _solve_block(
-        self, mooring: Mooring, current: tuple[Floats, ...], rows: Results, status: NDArray[np.int8]
+        self, leg: Leg, current: tuple[Floats, ...], rows: Results, status: NDArray[np.int8]
     ) -> None:
         # always copies: what is read-only is of another type
         depth, u, v, w = (np.array(array, np.float64, order="C") for array in current)
@@ -251,10 +248,10 @@ class Batch:
         if false.any():
             u[false] = np.nan
         endings = np.zeros(len(status), np.int64)
-        self._solve_rows(mooring, (depth, u, v, w), rows, endings, MANY_ROOM)
+        self._solve_rows(leg, (depth, u, v, w), rows, endings, MANY_ROOM)
         for ending in np.unique(endings).tolist():
-            status[endings == ending] = status_of(mooring, ending)
-        lifts = (endings == FOUND) & (rows.ends[:, 1] > mooring.anchor_weight)
+            status[endings == ending] = status_of(leg, ending)
+        lifts = (endings == FOUND) & (rows.ends[:, 1] > leg.anchor_weight)
         status[lifts] = _ANCHOR_LIFTS
         status[false] = _IMPLAUSIBLE
         for array in rows:
@@ -262,18 +259,18 @@ class Batch:
 
     def _solve_rows(
         self,
-        mooring: Mooring,
+        leg: Leg,
         current: tuple[Floats, ...],
         rows: Results,
         endings: Integers,
         room: int,
     ) -> None:
         """Solve profiles, with room for so many segments; with more where that is too little."""
-        line, water = mooring.line, self.water
+        line, water = leg.line, self.water
         depth, *parts = current
         on = solving.levels_for(depth.shape[1], water)
         problem = problem_of(
-            line, water, mooring.settings, compiled=True, rough=True, room=room,
+            line, water, leg.settings, compiled=True, rough=True, room=room,
             intervals=len(on.intervals),
         )  # fmt: skip
         # a profile without current is told apart from the others
@@ -283,7 +280,7 @@ class Batch:
         if not first:
             known: Any = problem.starts
             known[:] = self._starts
-        pieces = mooring.file.pieces[:-1]
+        pieces = leg.file.pieces[:-1]
         paper = ProfileArrays(
             on=on,
             may_lie=np.array([one.component.kind == "chain" for one in pieces], np.int64),
@@ -298,7 +295,7 @@ class Batch:
             mine = depth if len(depth) == 1 else depth[again]
             found, ends = Results(*(array[again] for array in rows)), endings[again]
             few = (mine, *(np.ascontiguousarray(part[again]) for part in parts))
-            self._solve_rows(mooring, few, found, ends, MORE_ROOM * room)
+            self._solve_rows(leg, few, found, ends, MORE_ROOM * room)
             endings[again] = ends
             for array, solved in zip(rows, found, strict=True):
                 array[again] = solved
@@ -352,13 +349,13 @@ def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
     return replace(profiles, **columns)
 
 
-def _measured(mooring: Mooring, rows: Results, status: NDArray[np.int8]) -> Profiles:
+def _measured(leg: Leg, rows: Results, status: NDArray[np.int8]) -> Profiles:
     """The results with the anchor, and with the knockdown from the shape in still water."""
     pieces, clamps, ends = rows
-    above = mooring.file.pieces[:-1]
+    above = leg.file.pieces[:-1]
     depth_top = np.full(pieces.shape[-1], np.nan)
     clamp_depth = np.full(clamps.shape[-1], np.nan)
-    still = mooring.at_rest
+    still = leg.at_rest
     if still is not None:
         depth_top = components_of(above, still).depth_top
         clamp_depth = clamps_of(above, still).depth
@@ -373,7 +370,7 @@ def _measured(mooring: Mooring, rows: Results, status: NDArray[np.int8]) -> Prof
         name: np.hstack([pieces[:, i], ends_at.get(name, nothing)])
         for i, name in enumerate(OF_PIECE)
     }
-    on_anchor = clamps_down(mooring.file.pieces[-1:])
+    on_anchor = clamps_down(leg.file.pieces[-1:])
     ends_at |= {
         "depth": ends_at["depth_top"] + [clamp.at for clamp in on_anchor],
         "tension": np.repeat(pull, len(on_anchor), axis=1),
@@ -385,8 +382,8 @@ def _measured(mooring: Mooring, rows: Results, status: NDArray[np.int8]) -> Prof
     }
     columns |= {name: ends[:, i] for i, name in enumerate(OF_ENDS) if name != "end_depth"}
     return Profiles(
-        component_label=tuple(piece.label for piece in mooring.file.pieces),
-        clamp_label=tuple(clamp.label for clamp in clamps_down(mooring.file.pieces)),
+        component_label=tuple(piece.label for piece in leg.file.pieces),
+        clamp_label=tuple(clamp.label for clamp in clamps_down(leg.file.pieces)),
         knockdown=np.hstack([columns["depth_top"][:, :-1] - depth_top, nothing]),
         clamp_knockdown=np.hstack([clamps[:, OF_CLAMP.index("depth")] - clamp_depth, standing]),
         status=status,

@@ -14,8 +14,7 @@ from calm.batch.profiles import Batch, processors
 from calm.batch.statuses import Ending, endings
 from calm.batch.work import BatchWork, Progress, compile_solver
 from calm.batch.work_store import Stopped, go_on, identity_of, open_store, to_text
-from calm.case import Mooring
-from calm.case.net import Net
+from calm.case import Design
 from calm.errors import UsageError
 from calm.records.record import Record
 
@@ -55,7 +54,7 @@ class BatchOutcome:
 
 
 def run_batch(
-    mooring: Mooring | Net,
+    mooring: Design,
     record: Record,
     output: Path,
     *,
@@ -95,9 +94,7 @@ def run_batch(
     if record.count == 0:
         raise UsageError("the record has no profile in the period asked for")
     say, stop = tell or (lambda _: None), stop or Event()
-    if shape and isinstance(mooring, Net):
-        raise UsageError("--shape is for single lines; of a net the ends of all pieces are stored")
-    nodes = nodes_of(mooring) if shape and isinstance(mooring, Mooring) else None
+    nodes = nodes_of(mooring) if shape else None
     batch = Batch(nodes.mooring if nodes else mooring)
     if block is None:
         block = _block_for(record.count)

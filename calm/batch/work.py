@@ -21,8 +21,7 @@ from calm.batch.dataset import ShapeNodes, arrays_of
 from calm.batch.profiles import Batch, Profiles
 from calm.batch.statuses import STATUSES, Ending, endings
 from calm.batch.work_store import Arrays, Store
-from calm.case import Mooring
-from calm.case.net import Net
+from calm.case import Design
 from calm.errors import UsageError
 from calm.physics.compiled import cache_folder
 from calm.records.record import Levels, Record
@@ -265,7 +264,7 @@ ASKED_ANEW = 1.0
 
 def solved_on(
     address: str,
-    mooring: Mooring | Net,
+    mooring: Design,
     blocks: Iterator[tuple[int, Levels]],
     tell: Callable[[str], None],
     stop: Event,
@@ -371,14 +370,14 @@ class _Workers:
             pass
 
 
-def solve_there(mooring: Mooring | Net, levels: Levels) -> Profiles:
+def solve_there(mooring: Design, levels: Levels) -> Profiles:
     """Solve a block: the work of one worker."""
     depth, u, v, w = levels
     return _ready(mooring).solve(u, v, depth, w, workers=1)
 
 
 @lru_cache(maxsize=2)
-def _ready(mooring: Mooring | Net) -> Batch:
+def _ready(mooring: Design) -> Batch:
     """Return the same for every block: the mooring comes anew with each, and is long in making."""
     from distributed import get_worker
 

@@ -26,8 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
-from calm.case import Mooring
-from calm.case.net import Net
+from calm.case import Design
 from calm.dataset.netcdf import LEVEL, Chunk, ResultLayout, chunk_shape
 from calm.errors import UsageError
 from calm.records.record import Record
@@ -271,7 +270,7 @@ _NO_MATTER = frozenset(
 
 
 def identity_of(
-    mooring: Mooring | Net, record: Record, options: Mapping[str, Any], stop: Event
+    mooring: Design, record: Record, options: Mapping[str, Any], stop: Event
 ) -> dict[str, Any]:
     """All that the figures of a result follow from, as JSON has it.
 

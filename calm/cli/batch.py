@@ -17,7 +17,7 @@ from calm.errors import UsageError
 
 if TYPE_CHECKING:
     from calm.batch.run import BatchOutcome
-    from calm.case import Mooring, net
+    from calm.case import Design
     from calm.records.record import Record
 
 
@@ -78,8 +78,8 @@ def batch(
     """
     options.from_one(every=every, workers=workers)
     from calm.batch.run import run_batch
-    from calm.case import Tow
-    from calm.case.net import load
+    from calm.case import load
+    from calm.files.legs import refuse_tow
     from calm.records.current_file import open_record
     from calm.records.current_terms import Terms
     from calm.records.record import RULES, parse_period, parse_place
@@ -87,8 +87,7 @@ def batch(
     period = None if time is None else parse_period(time)
     check_output(output, file, currents)
     mooring = load(file, environment, catalog or [])
-    if isinstance(mooring, Tow):
-        raise UsageError(f"{file} is a tow; calm batch is for moorings")
+    refuse_tow(mooring.file)
     options.show_units(units, [mooring.file])
     position = mooring.file.position
     own = None if position is None else (position.latitude, position.longitude)
@@ -119,7 +118,7 @@ def batch(
     return code
 
 
-def _summarized(output: Path, mooring: Mooring | net.Net, stop: Event) -> bool:
+def _summarized(output: Path, mooring: Design, stop: Event) -> bool:
     """Show what the result says, and write it beside the result; whether that was possible.
 
     UsageError: the result cannot be read.
@@ -141,7 +140,7 @@ def _summarized(output: Path, mooring: Mooring | net.Net, stop: Event) -> bool:
     return False
 
 
-def _implausible(outcome: BatchOutcome, mooring: Mooring | net.Net, record: Record) -> str:
+def _implausible(outcome: BatchOutcome, mooring: Design, record: Record) -> str:
     """Return how many profiles have a current that cannot be true, and the first of them."""
     from calm.batch.statuses import first_implausible
 

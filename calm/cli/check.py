@@ -16,8 +16,7 @@ from calm.cli.reading import DesignFile, read_designs
 from calm.errors import InputError, Problem, UsageError, internal_failure
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, uncertain
-    from calm.case.net import Net
+    from calm.case import Design, uncertain
     from calm.checks.assessment import Assessment, MooringInEnvironment
     from calm.report.blocks import Section
 
@@ -88,7 +87,7 @@ def check(
     designs, tows, earlier = _read(files, environment, catalog or [], workers, against, ready)
     if tows:
         narrate(f"not checked, because they are tows: {', '.join(map(str, tows))}")
-    nets = [design.path for design in designs if design.moorings[0].file.legs]
+    nets = [design.path for design in designs if design.moorings[0].several]
     if nets and uncertainty:
         from calm.files.legs import NET_SURE
 
@@ -119,16 +118,17 @@ def _read(
     workers: int | None,
     against: Path | None,
     ready: Callable[[], None],
-) -> tuple[list[DesignFile], list[Path], Mooring | Net | None]:
+) -> tuple[list[DesignFile], list[Path], Design | None]:
     """Return what is judged, the tows among the files, and the earlier design; or all their
     mistakes.
 
     `ready` is called while other processes read.
     """
-    from calm.case import Tow, net
+    from calm.case import load
+    from calm.files.legs import refuse_tow
 
     problems: list[Problem] = []
-    earlier: Mooring | Tow | Net | None = None
+    earlier: Design | None = None
     designs: list[DesignFile] = []
     tows: list[Path] = []
     try:
@@ -137,13 +137,13 @@ def _read(
         problems += error.problems
     try:
         first = environments[0] if environments else None
-        earlier = None if against is None else net.load(against, first, catalogs)
+        earlier = None if against is None else load(against, first, catalogs)
     except InputError as error:
         problems += error.problems
     if problems:
         raise InputError(list(dict.fromkeys(problems)))
-    if isinstance(earlier, Tow):
-        raise UsageError(f"{against} is a tow; calm check is for moorings")
+    if earlier is not None:
+        refuse_tow(earlier.file)
     return designs, tows, earlier
 
 
@@ -255,13 +255,10 @@ def _concluded(
     `draws` are samples and seed of the probabilities, where they are asked for; `shared` has blocks
     of them solved.
     """
-    from calm.checks import assess, net_check
+    from calm.checks import assess, design_check
     from calm.report.check_report import mooring_section
 
-    if stands[0].mooring.file.legs:
-        assessment = net_check.assessment_of_net(name, stands, day)
-    else:
-        assessment = assess.assessment_of(name, stands, day)
+    assessment = design_check.assessment_of(name, stands, day)
     if draws is not None:
         assessment = assess.with_probabilities(assessment, *draws, shared)
     return CheckedMooring(
@@ -269,24 +266,19 @@ def _concluded(
     )
 
 
-def _stands(task: tuple[str, Mooring | Net, date]) -> list[MooringInEnvironment]:
+def _stands(task: tuple[str, Design, date]) -> list[MooringInEnvironment]:
     """A mooring in an environment, or each leg of a net; CALM's own failure there does not stop
     the others.
     """
-    from calm.case.net import Net
-    from calm.checks.assess import failed_stand, stand_of
-    from calm.checks.net_check import stands_of_net
+    from calm.checks.design_check import failed_stand, stands_of
 
     name, mooring, day = task
     try:
-        if isinstance(mooring, Net):
-            return stands_of_net(mooring, name, day)
-        return [stand_of(mooring, name, day)]
+        return stands_of(mooring, name, day)
     except Exception as error:
         if os.environ.get("CALM_DEBUG") == "1":
             raise
-        of = mooring.lines[0] if isinstance(mooring, Net) else mooring
-        return [failed_stand(of, name, internal_failure(error))]
+        return [failed_stand(mooring, name, internal_failure(error))]
 
 
 def _answer(

@@ -13,8 +13,7 @@ from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Tow
-    from calm.case.net import Net
+    from calm.case import Design
     from calm.checks.comparison import Comparison
     from calm.records.sea_states import SeaState
 
@@ -58,7 +57,7 @@ def diff(
     """
     files = (before,) if after is None else (before, after)
     outputs = Outputs(files, json)
-    from calm.case.net import load
+    from calm.case import load
 
     lines = reading.read_all(load, files, environment, catalog or [])
     for file, line in zip(files, lines, strict=True):
@@ -71,29 +70,25 @@ def diff(
     return ExitCode.DONE
 
 
-def compared(files: tuple[Path, ...], lines: list[Mooring | Tow | Net]) -> Comparison:
+def compared(files: tuple[Path, ...], lines: list[Design]) -> Comparison:
     """Two designs, or one with what was deployed of it.
 
     UsageError: a mooring and a tow; a single tow, or a file that says nothing of a deployment.
     """
-    from calm.case import Mooring, Tow, net
+    from calm.case import Design
     from calm.checks.comparison import comparison_of
-    from calm.checks.situations import as_deployed, deployed_file
+    from calm.checks.situations import as_deployed
 
     first, last = lines[0], lines[-1]
-    if isinstance(first, Tow) != isinstance(last, Tow):
+    if first.towed != last.towed:
         raise UsageError(f"{files[0]} and {files[1]}: a mooring is not compared with a tow")
     if len(lines) == 2:
         return comparison_of((str(files[0]), str(files[1])), first, last)
-    if isinstance(first, Tow):
+    if first.towed:
         raise UsageError(f"{files[0]} is a tow; give the file to compare it with")
-    if isinstance(first, net.Net):
-        laid = replace(deployed_file(first.file), deployed=None)
-        planned = replace(first.file, deployed=None)
-        return comparison_of(("design", "deployed"), net.Net(planned), net.Net(laid))
     try:
         deployed = as_deployed(first)
-        design, there = (Mooring(replace(one.file, deployed=None)) for one in (first, deployed))
+        design, there = (Design(replace(one.file, deployed=None)) for one in (first, deployed))
         return comparison_of(("design", "deployed"), design, there)
     except NoEquilibrium as failure:
         raise UsageError(f"{files[0]}: what is cut to fit has no length: {failure}") from failure
@@ -147,14 +142,13 @@ def size(
     LABEL.buoyancy, LABEL.length, LABEL.count.
     """
     outputs = Outputs((file,), json)
-    from calm.case import Tow
-    from calm.case.net import load
+    from calm.case import load
     from calm.case.size import size as sized
+    from calm.files.legs import refuse_tow
     from calm.report.explanation import refusal, sizing_part
 
     mooring = load(file, environment, catalog or [])
-    if isinstance(mooring, Tow):
-        raise UsageError(f"{file} is a tow; calm size is for moorings")
+    refuse_tow(mooring.file)
     options.show_units(units, [mooring.file])
     sizing = sized(mooring, target, change, between)
     if sizing.after is not None:
@@ -228,8 +222,7 @@ def waves(
       calm waves buoy.yaml --spectrum measured.csv
     """
     outputs = Outputs((file,), json)
-    from calm.case import Tow
-    from calm.case.net import load_line
+    from calm.case import load
     from calm.cli.progress import progress
     from calm.records.sea_states import OF_HEIGHT
     from calm.report import folder, sea_response
@@ -241,9 +234,8 @@ def waves(
         {"hs": hs, "tp": tp, "swell": swell, "swell_tp": swell_tp},
         spectrum, gamma, toward, scatter, duration,
     )  # fmt: skip
-    mooring = load_line(file, environment, catalog or [])
-    if isinstance(mooring, Tow):
-        raise UsageError(f"{file} is a tow; calm waves is for moorings")
+    mooring = load(file, environment, catalog or [])
+    leg = mooring.moored
     given, seas = mooring.file.environment.waves, asked or mooring.file.environment.seas
     if not seas:
         missing = "--hs: missing" if spectrum in OF_HEIGHT else "--hs, --tp: missing"
@@ -252,7 +244,7 @@ def waves(
         way = 90.0 if given is None else given.toward
     options.show_units(units, [mooring.file])
     try:
-        analysis = analyse(mooring, seas, way, length, lambda each: progress(each, "seas"))
+        analysis = analyse(leg, seas, way, length, lambda each: progress(each, "seas"))
     except NoEquilibrium as failure:
         answer = {"name": mooring.file.name, **failure.to_dict()}
         outputs.write_answer(lambda: answer, None)

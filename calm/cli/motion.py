@@ -121,8 +121,8 @@ def motion(
     """
 
     from calm.batch import finished, profiles, work
-    from calm.case import Tow
-    from calm.case.net import load_line
+    from calm.case import load
+    from calm.files.legs import refuse_all_but_moorings
     from calm.motion.instrument_file import read_instruments
     from calm.motion.matching import places_of
     from calm.motion.motion_estimate import RecoveredMooring
@@ -151,9 +151,8 @@ def motion(
         check_output(output, file, *files)
     elif replace_depth:
         raise UsageError("--replace needs --onto")
-    mooring = load_line(file, environment, catalog or [])
-    if isinstance(mooring, Tow):
-        raise UsageError(f"{file} is a tow; calm motion is for moorings")
+    mooring = load(file, environment, catalog or [])
+    refuse_all_but_moorings(mooring.file)
     for notice in mooring.file.notices:
         narrate(f"{file}: {notice}")
     turned = options.quantities(declination=(declination, "angle")).get("declination")

@@ -21,8 +21,8 @@ from calm.errors import NoEquilibrium, UsageError
 from calm.version import __version__
 
 if TYPE_CHECKING:
+    from calm.case import Result
     from calm.case.explain import Explanation
-    from calm.case.result import AnyResult
     from calm.case.uncertain import Uncertain
     from calm.cli.tow import TabulatedTow
     from calm.drawing.schematic.in_terminal import TerminalSchematic
@@ -150,7 +150,7 @@ class FileOutcome:
 
     file: Path
     name: str
-    result: AnyResult | None = None
+    result: Result | None = None
     failure: NoEquilibrium | None = None
     explanation: Explanation | None = None
     schematic: tuple[TerminalSchematic, ...] = ()

@@ -16,10 +16,8 @@ from calm.cli.outputs import ExitCode, FileOutcome, OutputPath, Outputs, gravest
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Result, Tow
+    from calm.case import Design, Result
     from calm.case.explain import Explanation
-    from calm.case.net import Net
-    from calm.case.result import AnyResult, NetResult
     from calm.case.uncertain import Uncertain
     from calm.drawing.schematic.in_terminal import TerminalSchematic
 
@@ -95,14 +93,16 @@ def run(
     """
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     draws = draws_of(uncertainty, samples, seed)
-    from calm.case import Tow, net
+    from calm.case import load
     from calm.files.legs import NET_SURE
 
-    lines = reading.read_all(net.load, files, environment, catalog or [])
+    lines = reading.read_all(load, files, environment, catalog or [])
     options.show_units(units, [line.file for line in lines])
     drawn = {"--uncertainty": uncertainty}
-    _refuse({"--explain": explain} | drawn, "moorings; these are tows", Tow, files, lines)
-    _refuse(drawn, NET_SURE, net.Net, files, lines)
+    towed = [str(line.file.path) for line in lines if line.towed]
+    several = [str(line.file.path) for line in lines if line.several]
+    _refuse({"--explain": explain} | drawn, "moorings; these are tows", towed)
+    _refuse(drawn, NET_SURE, several)
     return solve_and_show(
         lines, outputs, explain=explain, schematic=schematic, draws=draws, verbose=verbose
     )
@@ -128,7 +128,7 @@ def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | No
 
 
 def solve_and_show(
-    lines: Sequence[Mooring | Tow | Net],
+    lines: Sequence[Design],
     outputs: Outputs,
     *,
     explain: bool = False,
@@ -144,20 +144,15 @@ def solve_and_show(
     draws : samples and seed by which to say how sure the figures are
     verbose : say how each solution was reached
     """
-    from calm.case import Result
-    from calm.case.result import NetResult
-
     drawn_often = None if draws is None else _to_draw_often(*draws)
     outcomes = []
     for file, line in zip(outputs.files, lines, strict=True):
         result, failure = _solved(file, line)
-        mooring = result if isinstance(result, Result) else None
-        moored = result if isinstance(result, Result | NetResult) else None
         outcomes.append(FileOutcome(
             file, line.file.name, result, failure, verbose=verbose,
-            explanation=_explained(moored) if moored and explain else None,
+            explanation=_explained(result) if result and explain else None,
             schematic=_schematic(line, result) if schematic else (),
-            uncertain=drawn_often(mooring) if mooring and drawn_often else None,
+            uncertain=drawn_often(result) if result and drawn_often else None,
         ))  # fmt: skip
 
     def to_csv() -> str:
@@ -169,7 +164,7 @@ def solve_and_show(
     return gravest(outcome.code for outcome in outcomes)
 
 
-def _solved(file: Path, line: Mooring | Tow | Net) -> tuple[AnyResult | None, NoEquilibrium | None]:
+def _solved(file: Path, line: Design) -> tuple[Result | None, NoEquilibrium | None]:
     """Return the result, or why there is none."""
     try:
         return line.solve(), None
@@ -180,21 +175,14 @@ def _solved(file: Path, line: Mooring | Tow | Net) -> tuple[AnyResult | None, No
         return None, failure
 
 
-def _refuse(
-    options: Mapping[str, object],
-    what: str,
-    kind: type,
-    files: Sequence[Path],
-    lines: Sequence[Mooring | Tow | Net],
-) -> None:
-    """Refuse the first option that is asked for, where a file is of a kind it is not for."""
+def _refuse(options: Mapping[str, object], what: str, files: Sequence[str]) -> None:
+    """Refuse the first option that is asked for, where there are files that it is not for."""
     asked = [option for option, value in options.items() if value]
-    those = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, kind)]
-    if asked and those:
-        raise UsageError(f"{asked[0]} is for {what}: {', '.join(those)}")
+    if asked and files:
+        raise UsageError(f"{asked[0]} is for {what}: {', '.join(files)}")
 
 
-def _explained(result: Result | NetResult) -> Explanation:
+def _explained(result: Result) -> Explanation:
     from calm.case.explain import explain
 
     return explain(result)
@@ -214,16 +202,10 @@ def _to_draw_often(samples: int, seed: int) -> Callable[[Result], Uncertain]:
     return lambda result: uncertain(result, samples, seed, solved, normals)
 
 
-def _schematic(
-    line: Mooring | Tow | Net, result: AnyResult | None
-) -> tuple[TerminalSchematic, ...]:
+def _schematic(line: Design, result: Result | None) -> tuple[TerminalSchematic, ...]:
     """Draw a line, or its legs, in the signs that the standard output can carry."""
-    from calm.case.net import Net
-    from calm.case.result import NetResult
     from calm.drawing.schematic.in_terminal import TerminalSchematic, can_carry
 
     plain = not can_carry(getattr(sys.stdout, "encoding", None))
-    results = result.legs if isinstance(result, NetResult) else [result]
-    lines = line.lines if isinstance(line, Net) else [line]
-    pairs = zip_longest(lines, results)
+    pairs = zip_longest(line.legs, [] if result is None else result.legs)
     return tuple(TerminalSchematic(of.file, one, plain) for of, one in pairs)

@@ -16,7 +16,7 @@ from calm.cli.progress import progress
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Tow
+    from calm.case import Design
     from calm.case.strumming import BareCable
     from calm.cli.outputs import Shows
     from calm.report.tabulation import Tabulation
@@ -116,19 +116,19 @@ class TabulatedTow:
         return image(draw_sweep(self.tabulation), suffix)
 
 
-def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path]) -> list[Tow]:
-    from calm.case import Tow, net
+def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path]) -> list[Design]:
+    from calm.case import load
 
-    read = reading.read_all(net.load_line, files, environment, catalogs)
-    moorings = [file for file, line in zip(files, read, strict=True) if not isinstance(line, Tow)]
+    read = reading.read_all(load, files, environment, catalogs)
+    moorings = [file for file, line in zip(files, read, strict=True) if not line.towed]
     if moorings:
         raise UsageError(
             "; ".join(f"{file} is a mooring, not a tow: calm run {file}" for file in moorings)
         )
-    return [line for line in read if isinstance(line, Tow)]
+    return [line for line in read if line.towed]
 
 
-def _sweep(file: Path, each: Tow, speeds: list[float]) -> TabulatedTow:
+def _sweep(file: Path, each: Design, speeds: list[float]) -> TabulatedTow:
     from calm.case.tow import SOLVES, sweep
     from calm.report.tabulation import by_speed
     from calm.solve import expect_many
@@ -149,7 +149,7 @@ def _sweep(file: Path, each: Tow, speeds: list[float]) -> TabulatedTow:
     return TabulatedTow(file, by_speed(each, speeds, outcomes))
 
 
-def _vary(file: Path, each: Tow) -> TabulatedTow:
+def _vary(file: Path, each: Design) -> TabulatedTow:
     from calm.case.tow import sensitivity
     from calm.report.tabulation import by_coefficient
 
@@ -157,7 +157,7 @@ def _vary(file: Path, each: Tow) -> TabulatedTow:
 
 
 def _tabulate(
-    tows: Sequence[Tow], outputs: Outputs, tabulate: Callable[[Path, Tow], TabulatedTow]
+    tows: Sequence[Design], outputs: Outputs, tabulate: Callable[[Path, Design], TabulatedTow]
 ) -> ExitCode:
     """Solve each tow many times, and write the outputs."""
     shown: list[TabulatedTow | FileOutcome] = []

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.case import TowResult
-from calm.case.result import AnyResult
+from calm.case.design import AnyResult
 from calm.case.uncertain import Uncertain
 from calm.drawing import line_picture
 from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, along, current_between
@@ -84,7 +83,7 @@ def draw(result: AnyResult, uncertain: Uncertain | None = None) -> Figure:
 
 
 def _leaves_plane(result: AnyResult, behind: Floats) -> bool:
-    (shape,) = (line.shape for line in line_picture.lines_of(result))
+    (shape,) = (leg.shape for leg in result.legs)
     across = along(shape.x, shape.y, np.array([behind[1], -behind[0]]))
     distance = np.hypot(shape.x, shape.y).max()
     return bool(np.abs(across).max() > _PLANE_WITHIN * distance)
@@ -136,14 +135,14 @@ def draw_plan(axes: Axes, above: LinePicture) -> None:
 def _draw_flow_of(axes: Axes, result: AnyResult, side: LinePicture, plane: Floats) -> None:
     """Draw the current, of a tow the water past the line, over the depths of the elevation."""
     speed = QUANTITIES["speed"]
-    if not isinstance(result, TowResult):
-        water = result.mooring.water
+    water, tow = result.water, result.file.tow
+    if tow is None:
         draw_flow(axes, *current_between(water, 0.0, water.depth), plane)
         axes.set_xlabel(f"current {speed.label}")
         return
     top = 0.0 if side.surface else side.top
-    depth, u, v = current_between(result.tow.water, top, side.bottom)
-    draw_flow(axes, depth, u + result.speed * plane[0], v + result.speed * plane[1], plane)
+    depth, u, v = current_between(water, top, side.bottom)
+    draw_flow(axes, depth, u + tow.speed * plane[0], v + tow.speed * plane[1], plane)
     axes.set_xlabel(f"{speed.heading} past the line [{speed.usual_unit}]")
 
 

@@ -3,15 +3,13 @@
 Anchors have the weights that hold its line.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from itertools import groupby
 from pathlib import Path
 from textwrap import wrap
 
-from calm.case import Tow
-from calm.case.net import Net, load
-from calm.case.result import AnchorLoad, EndLoad
+from calm.case import load
 from calm.errors import CalmError, one_line
 from calm.exchange import model
 from calm.files import Catalogue
@@ -287,10 +285,7 @@ def _pulls(
         anchor.figures["weight"] = _HOLDS
     try:
         read = load(output, text=mooring_text(design, "")[0])
-        assert not isinstance(read, Tow)
-        loads: Sequence[AnchorLoad | EndLoad] = (
-            read.solve().anchors if isinstance(read, Net) else (read.solve().anchor,)
-        )
+        loads = read.solve().anchors
     except CalmError:
         return [(anchor, None, 0.0) for anchor in anchors]
     finally:

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.case import Mooring, Result, Tow, TowResult
-from calm.case.net import Net, load
+from calm.case import load
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.exchange.cable_writer import cbl_file
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow, Levels
@@ -57,39 +58,39 @@ def export_file(
             unknown(f"--to: `{to}` is not a program that CALM writes for", to, WRITERS)
         )
     read = load(path, environment, list(catalogs))
-    if isinstance(read, Net):
+    if read.several:
         if to != "moordyn":
             raise UsageError(f"{path} is a net of legs; `--to moordyn` takes it, {to} single lines")
         designs = []
-        for keys, line, leg in zip(read.file.legs, read.lines, read.solve().legs, strict=True):
-            design = _exported_line(line, partial(_known, leg))
-            designs.append(replace(design, ends=keys.ends))
+        for found in read.solve().legs:
+            design = _exported_line(found.leg, partial(_known, found))
+            designs.append(replace(design, ends=(found.leg.top, found.leg.bottom)))
         deepest = max(designs, key=lambda design: design.depth)
         designs[0] = replace(designs[0], name=read.file.name, depth=deepest.depth)
         content, lost = moordyn_file(*designs)
         design = deepest
     else:
-        design = _exported_line(read, read.solve)
+        design = _exported_line(read.leg, lambda: read.solve().leg)
         content, lost = WRITERS[to](design)
     beside = {CURRENTS: current_profile(design)} if to == "moordyn" else {}
     return Exported(content, lost, beside)
 
 
-def _known(leg: Result) -> Result:
+def _known(leg: LegResult) -> LegResult:
     return leg
 
 
-Solve = Callable[[], Result | TowResult]
+Solve = Callable[[], LegResult]
 
 
-def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
+def _exported_line(leg: Leg, solve: Solve) -> ExportedLine:
     """Return the parts of a mooring or a tow, of which `solve` finds the equilibrium."""
-    file, water, line = mooring.file, mooring.water, mooring.line
+    file, water, line = leg.file, leg.water, leg.line
     if file.environment.fluid == "air":
         raise UsageError(f"{file.path} is towed in air; the other programs know only water")
-    secant = _secants(mooring, solve)
+    secant = _secants(leg, solve)
     depths = np.cumsum(line.length) - line.length / 2.0  # of the middles, hanging down
-    if not isinstance(mooring, Tow):  # standing upright
+    if not leg.towed:  # standing upright
         depths += float(water.depth) - line.anchor_height - float(line.length.sum())
     depths = np.maximum(depths, 0.0)
     parts = []
@@ -123,12 +124,11 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
             )
         )  # fmt: skip
     wind, anchor, tow = file.environment.wind, None, None
-    if isinstance(mooring, Tow):
-        keys = mooring.keys
+    if (keys := file.tow) is not None:
         tow = ExportedTow(*components(keys.speed, keys.toward), keys.height)
     else:
-        anchor = file.anchor, mooring.anchor_weight
-    afloat, riding, windage = _at_the_surface(mooring, solve)
+        anchor = file.anchor, leg.anchor_weight
+    afloat, riding, windage = _at_the_surface(leg, solve)
     return ExportedLine(
         name=file.name,
         parts=tuple(parts),
@@ -142,25 +142,24 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
         has_draft=line.floating is not None and line.floating.hull is not None,
         riding=riding,
         windage=windage,
-        omitted=_omitted(mooring),
+        omitted=_omitted(leg),
         solve=solve,
     )
 
 
 def _at_the_surface(
-    mooring: Mooring | Tow, solve: Solve
+    leg: Leg, solve: Solve
 ) -> tuple[bool, tuple[float, float], tuple[float, float]]:
     """Return `afloat`, `riding` and `windage` of `ExportedLine`; by length without equilibrium."""
-    below, line = (False, (1.0, 1.0), (0.0, 1.0)), mooring.line
-    if isinstance(mooring, Tow):
+    below, line = (False, (1.0, 1.0), (0.0, 1.0)), leg.line
+    if leg.towed:
         return below
     try:
         result = solve()
-        assert isinstance(result, Result)
         afloat, used = result.type == "surface", result.top.used_buoyancy
     except NoEquilibrium:
         whole = line.anchor_height + float(line.length.sum())
-        afloat, used = whole >= float(mooring.water.depth), 1.0
+        afloat, used = whole >= float(leg.water.depth), 1.0
     if not afloat:
         return below
     floating = line.floating
@@ -173,9 +172,9 @@ def _at_the_surface(
     return True, (used, seen), (area, floating.wind_cd)
 
 
-def _secants(mooring: Mooring | Tow, solve: Solve) -> dict[int, float]:
+def _secants(leg: Leg, solve: Solve) -> dict[int, float]:
     """Stiffness of the pieces that stretch by a table, as it is at their tension here [N]."""
-    curves = mooring.line.elongation
+    curves = leg.line.elongation
     if not any(curves):
         return {}
     rows = solve().components
@@ -201,9 +200,9 @@ def _levels(water: Water, deepest: float) -> Levels:
     return tuple(rows)
 
 
-def _omitted(mooring: Mooring | Tow) -> tuple[str, ...]:
+def _omitted(leg: Leg) -> tuple[str, ...]:
     """Return what a mooring file says that other programs do not know."""
-    file = mooring.file
+    file = leg.file
     omitted = ["limits of the design check, strengths, ratings and tilts of components"]
     if file.solver.strumming is not None:
         omitted.append("strumming: cables have their drag at rest")
@@ -214,9 +213,9 @@ def _omitted(mooring: Mooring | Tow) -> tuple[str, ...]:
         omitted.append("`drag: reynolds`: the constant coefficients are written")
     if file.solver.friction != "berteaux":
         omitted.append(f"`friction: {file.solver.friction}`")
-    if any(mooring.line.elongation):
+    if any(leg.line.elongation):
         omitted.append("elongation tables: the stiffness at the tension found here is written")
-    if any(mooring.line.lift) or any(mooring.line.clamp_lift):
+    if any(leg.line.lift) or any(leg.line.clamp_lift):
         omitted.append("lift of towed bodies")
     return tuple(omitted)
 

@@ -157,7 +157,7 @@ def _format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportF
 def _check(path: Path, output: Path, text: str) -> None:
     """Read the mooring file as `calm run` will; a mistake in it is one of its source."""
     try:
-        read_mooring(output, text=text, net=True)
+        read_mooring(output, text=text)
     except InputError as error:
         lines = ["", *text.splitlines()]
         blamed = [lines[each.line] if each.line < len(lines) else "" for each in error.problems]

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo
 
-from calm.errors import unknown
+from calm.errors import UsageError, unknown
 from calm.files.components import Anchor
 from calm.files.definition import Model, QuantityField, Text, described, optional
 from calm.files.environment import Position
@@ -22,7 +22,7 @@ from calm.positions import HEMISPHERES, Frame
 from calm.units import QuantityError
 
 MOST_LEGS = 40
-NET_REFUSED = (
+ONE_LEG_ONLY = (
     "this is a net of legs, for `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`; "
     "this takes a single line: one free end, one anchor. `calm batch` gives the depths of a net's "
     "instruments in a record of currents; waves and a launch take a line of its most loaded leg"
@@ -352,6 +352,37 @@ def _check_held(legs: Sequence[Leg], section: SourceMapping) -> None:
         if leg.name not in held:
             message = f"nothing holds leg `{leg.name}`: no anchor, no held end"
             section.refuse((leg.name,), message, key=True)
+
+
+def refuse_several(file: MooringFile) -> None:
+    """Refuse a file of legs where only a single line is known to go."""
+    if file.legs:
+        raise UsageError(f"{file.path}: {ONE_LEG_ONLY}")
+
+
+def refuse_tow(file: MooringFile) -> None:
+    """Refuse what stands on no anchor where only moorings are known to go."""
+    if file.tow is not None:
+        raise UsageError(f"{file.path} is a tow; this is for moorings")
+
+
+def refuse_all_but_moorings(file: MooringFile) -> None:
+    """Refuse tows and files of legs, where only a line that stands on an anchor is known to go."""
+    refuse_several(file)
+    refuse_tow(file)
+
+
+def ends_of(file: MooringFile) -> tuple[EndKeys, EndKeys]:
+    """Return what holds the upper and the lower end of a single line, or of the first leg.
+
+    A tow is held at the ship, a mooring stands on its anchor.
+    """
+    if file.legs:
+        return file.legs[0].ends
+    if file.tow is not None:
+        ship = HeldKeys.model_construct(depth=-file.tow.height, at=(0.0, 0.0))
+        return EndKeys(held=ship), _FREE
+    return _FREE, EndKeys(anchor=AnchoredKeys())
 
 
 def leg_numbers(file: MooringFile) -> list[int]:

@@ -18,7 +18,7 @@ from calm.files.check_limits import Accept, Checks, LimitKey, read_accepts
 from calm.files.components import Anchor, Flexible
 from calm.files.definition import Model, Text, described, optional
 from calm.files.environment import Position, Seabed, read_environment
-from calm.files.legs import NET_REFUSED, Leg, LegKeys, check_held_depths, read_legs, stand_in_anchor
+from calm.files.legs import Leg, LegKeys, check_held_depths, read_legs, stand_in_anchor
 from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, OutputUnits, ReleaseKeys, check_deployed
 from calm.files.mooring_file import MooringFile, Piece, Solver, TowKeys, numbered
@@ -97,13 +97,12 @@ def read_mooring(
     catalogs: Sequence[str | Path] = (),
     text: str | None = None,
     stand_in: bool = False,
-    net: bool = False,
 ) -> MooringFile:
     """Read a mooring file and all it refers to in one environment, by a `MooringReader`.
 
     InputError: with every mistake found, each at its place.
     """
-    reader = MooringReader(path, catalogs=catalogs, text=text, stand_in=stand_in, net=net)
+    reader = MooringReader(path, catalogs=catalogs, text=text, stand_in=stand_in)
     return reader.in_environment(environment)
 
 
@@ -130,7 +129,6 @@ class MooringReader:
         looked for beside it
     stand_in : let a line that has no anchor yet stand on one that holds anything, of the id
         `STAND_IN`
-    net : let the file have legs
     """
 
     def __init__(
@@ -140,7 +138,6 @@ class MooringReader:
         catalogs: Sequence[str | Path] = (),
         text: str | None = None,
         stand_in: bool = False,
-        net: bool = False,
     ) -> None:
         self._path, self._stand_in = str(path), stand_in
         self._problems: list[Problem] = []
@@ -149,8 +146,6 @@ class MooringReader:
         document = read_document(Path(path)) if text is None else compose(str(path), text)
         self._top = top = SourceMapping.of(document, self._problems)
         self._towed, self._legged = "tow" in top.data, "legs" in top.data
-        if self._legged and not net:
-            top.refuse(("legs",), NET_REFUSED, key=True)
         given = top
         if self._legged:  # one with legs has no line, and its legs are read one by one
             ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}

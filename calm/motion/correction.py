@@ -18,7 +18,7 @@ from calm.batch.profiles import Batch, Profiles, processors
 from calm.batch.statuses import STATUSES
 from calm.batch.work import BatchWork, Progress
 from calm.batch.work_store import Store
-from calm.case import Mooring
+from calm.case import Design
 from calm.dataset.discovery import coverage, with_flags, written
 from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers
 from calm.files.mooring_file import clamps_down
@@ -141,7 +141,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     return ResultLayout(sizes, with_flags(variables, FLAGGED), attributes)
 
 
-def about(mooring: Mooring) -> Attributes:
+def about(mooring: Design) -> Attributes:
     """Return what `document:` and `deployed:` of a mooring file say, as archives call it."""
     file = mooring.file
     said: Attributes = {}
@@ -202,7 +202,7 @@ BLOCK = 512
 class Task:
     """Hold what is to be estimated: `measured` has the sensors that are used."""
 
-    mooring: Mooring
+    mooring: Design
     measured: MooringMeasurements
     common: Common
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.profiles import Batch, Profiles
-from calm.case import Mooring
+from calm.case import Design
 from calm.files.mooring_file import clamps_down
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
@@ -204,9 +204,9 @@ class Forward:
     first, then the components in the order of the file.
     """
 
-    def __init__(self, mooring: Mooring, factors: Mapping[str, float]) -> None:
+    def __init__(self, mooring: Design, factors: Mapping[str, float]) -> None:
         line = with_factors(mooring.line, factors)
-        self.mooring = Mooring(mooring.file, line=line, water=mooring.water)
+        self.mooring = Design(mooring.file, lines=(line,), given_water=mooring.water)
         self._batch = Batch(self.mooring)
 
     @cached_property
@@ -236,7 +236,7 @@ class Forward:
         return points(self.solve(depth, u, v))
 
 
-def forwards_of(mooring: Mooring, common: Common) -> tuple[Forward, dict[str, Forward]]:
+def forwards_of(mooring: Design, common: Common) -> tuple[Forward, dict[str, Forward]]:
     """Return the mooring at the common factors, and a step from each."""
     shifted = {
         name: Forward(mooring, {**common.factors, name: value * float(np.exp(STEP))})
@@ -250,13 +250,13 @@ def points(profiles: Profiles) -> Floats:
     return np.hstack([profiles.clamp_depth, profiles.depth_top])
 
 
-def labels_of(mooring: Mooring) -> tuple[str, ...]:
+def labels_of(mooring: Design) -> tuple[str, ...]:
     """Return the labels of all points, see `Forward`."""
     pieces = mooring.file.pieces
     return (*(clamp.label for clamp in clamps_down(pieces)), *(piece.label for piece in pieces))
 
 
-def instruments_of(mooring: Mooring) -> list[int]:
+def instruments_of(mooring: Design) -> list[int]:
     """Return the points that may be instruments: all clamps, and the pieces whose role it is."""
     pieces = mooring.file.pieces
     clamps = len(clamps_down(pieces))

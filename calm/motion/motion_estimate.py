@@ -16,9 +16,10 @@ from calm.batch.profiles import processors
 from calm.batch.run import BatchOutcome, run_kept
 from calm.batch.work import Progress
 from calm.batch.work_store import identity_of, open_store, to_text
-from calm.case import Mooring
+from calm.case import Design
 from calm.dataset.discovery import hashed
 from calm.errors import UsageError, not_among, unknown
+from calm.files.legs import refuse_all_but_moorings
 from calm.motion import matching, sensors
 from calm.motion.common_unknowns import MISPLACED, SPIKE
 from calm.motion.correction import BLOCK, MeasuredRecord, MotionWork, Task, motion_layout
@@ -85,7 +86,7 @@ class RecoveredMooring:
         cannot be done.
     """
 
-    mooring: Mooring
+    mooring: Design
     pressures: Sequence[str]
     currents: Sequence[str] = ()
     match: str = "label"
@@ -327,7 +328,7 @@ def fit_of(task: Task, measured: MooringMeasurements, label: str) -> SensorFit:
 
 
 def estimate_motion(
-    mooring: Mooring,
+    mooring: Design,
     pressures: Sequence[str | Path],
     currents: Sequence[str | Path] = (),
     *,
@@ -371,9 +372,7 @@ def estimate_motion(
     InputError, UsageError
         A file cannot be read or does not belong to the mooring; too few sensors are left.
     """
-    if not isinstance(mooring, Mooring):
-        kind = type(mooring).__name__
-        raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
+    refuse_all_but_moorings(mooring.file)
     recovery = RecoveredMooring(
         mooring,
         [str(path) for path in pressures],

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.case import Mooring
+from calm.case import Design
 from calm.errors import UsageError, unknown
 from calm.motion.correction import Task, estimate_in_memory
 from calm.motion.line_response import Forward, instruments_of, labels_of
@@ -126,7 +126,7 @@ class MotionEstimate:
 
 
 def prepare(
-    mooring: Mooring,
+    mooring: Design,
     measured: MooringMeasurements,
     names: Sequence[str],
     hidden: Sequence[str],
@@ -280,7 +280,7 @@ def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
 
 
 def cross_validated(
-    mooring: Mooring,
+    mooring: Design,
     measured: MooringMeasurements,
     names: Sequence[str],
     hidden: Sequence[str],

@@ -14,7 +14,7 @@ from itertools import combinations
 
 import numpy as np
 
-from calm.case import Mooring
+from calm.case import Design
 from calm.files.mooring_file import clamps_down
 from calm.motion import line_response
 from calm.motion.correction import Task
@@ -196,7 +196,7 @@ STRETCHED, AMISS = 1.25, 20.0
 """How many times as long as it was cut a line is at most; how far off pressures may be [m]."""
 
 
-def distances_of(mooring: Mooring) -> Floats:
+def distances_of(mooring: Design) -> Floats:
     """Return how far each clamp and piece is from the top along the line as cut (p,) [m]."""
     pieces = mooring.file.pieces
     tops = np.cumsum([0.0, *mooring.line.length.tolist()])[: len(pieces)]

@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.case import Mooring
+from calm.case import Design
 from calm.errors import UsageError
 from calm.motion import line_response
 from calm.motion.common_unknowns import Common
@@ -85,7 +85,7 @@ class SpeedLaw:
         return ReadCurrents(level, u, np.zeros_like(u), np.tile(self.covariance, (len(u), 1, 1)))
 
 
-def with_knots(measured: MooringMeasurements, mooring: Mooring) -> MooringMeasurements:
+def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasurements:
     """Return what was measured with the knots as its levels, whose currents are not known.
 
     The uppermost is where the top of the line is in strong currents, by the uppermost sensor: above
@@ -160,7 +160,7 @@ def shaped_law(
 
 
 def learn_currents(
-    mooring: Mooring,
+    mooring: Design,
     measured: MooringMeasurements,
     names: Sequence[str],
     tell: Callable[[str], None] = lambda _: None,

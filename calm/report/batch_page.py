@@ -14,8 +14,7 @@ from calm.batch.statistics import summary as statistics
 from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
 from calm.batch.statistics.limits import Exceedance
 from calm.batch.statistics.summary import PERCENTILES, Distribution, Response, Summary
-from calm.case import Mooring
-from calm.case.net import Net
+from calm.case import Design
 from calm.checks.finding import State
 from calm.drawing import graph
 from calm.drawing.graph import COLOURS, Graph, LegendEntry, Scale, Stroke, covering, seconds
@@ -185,7 +184,7 @@ def _fitted(fit: Fit) -> str:
 
 
 def write_summary(
-    result: Path, mooring: Mooring | Net, check: Callable[[], None] = lambda: None
+    result: Path, mooring: Design, check: Callable[[], None] = lambda: None
 ) -> Summary:
     """Gather what a finished result says, and write it beside it, as JSON and as a page.
 

@@ -7,7 +7,6 @@ from io import BytesIO
 from operator import attrgetter
 from typing import Any
 
-from calm.case.result import NetResult
 from calm.deck import Deck
 from calm.drawing.picture import figure_svg
 from calm.drawing.plot import draw
@@ -159,7 +158,7 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     parts: list[ReportPart] = [*provenance.document_part(deck.file)]
     if told := warned((*deck.notes, *notes)):
         parts.append(ReportPart("Warnings", told))
-    if isinstance(deck.result, NetResult):
+    if deck.result.several:
         shape = Figure("The net from the side, the current, and from above", net_svg(deck))
         parts.append(ReportPart("The net", (shape, *net_part(deck.result).blocks[1:-1])))
     parts += [

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.case import Result, TowResult
-from calm.case.result import AnyResult, NetResult
+from calm.case.design import Result
 from calm.case.result_tables import ClampRow, ComponentRow, Components, rows_down
 from calm.dataset import netcdf
 from calm.dataset.netcdf import CLAMPS, OF_CLAMP, OF_COMPONENT, OF_ENDS, Attributes, labels, numbers
@@ -27,7 +26,7 @@ HEADER = (*_WORDS, *(QUANTITIES[name].header for name in _NUMBERS))
 """The first row: names, with the unit in brackets where there is one."""
 
 
-def to_csv(results: Sequence[AnyResult]) -> str:
+def to_csv(results: Sequence[Result]) -> str:
     """The components of one mooring or tow, or of several, as CSV text (UTF-8, comma, point, LF).
 
     `part` is ``component`` or ``clamp``; the rows of clamped instruments follow the piece they sit
@@ -40,7 +39,7 @@ def to_csv(results: Sequence[AnyResult]) -> str:
     return table_csv(header, ([*row, *[""] * (wide - len(row))] for row in rows))
 
 
-def _rows(result: AnyResult) -> Iterator[list[object]]:
+def _rows(result: Result) -> Iterator[list[object]]:
     legs, own = result.file.legs, leg_numbers(result.file)
     for component, clamps in rows_down(result):
         leg = [legs[own[component.index]].name] if legs else []
@@ -53,7 +52,7 @@ def _rows(result: AnyResult) -> Iterator[list[object]]:
             yield [*_words(result, "clamp", clamp), *numbers, *leg]
 
 
-def _words(result: AnyResult, part: str, row: ComponentRow | ClampRow) -> list[object]:
+def _words(result: Result, part: str, row: ComponentRow | ClampRow) -> list[object]:
     return [result.name, part, row.index, row.use, row.label]
 
 
@@ -81,7 +80,7 @@ _OF_TOW: dict[str, tuple[str, str, Attributes]] = {
 }
 
 
-def result_netcdf(result: AnyResult) -> bytes:
+def result_netcdf(result: Result) -> bytes:
     """The file of one mooring, tow or net, figures of 64 bits; what is unknown is NaN.
 
     A net has its ends leg by leg, and the nodes of its shape one leg after the other.
@@ -90,7 +89,7 @@ def result_netcdf(result: AnyResult) -> bytes:
     ends = _ends(result)
     place = () if file.position is None else (file.position.latitude, file.position.longitude)
     of_station, where = netcdf.station(result.name or "mooring", place, "the anchor")
-    lines = result.legs if isinstance(result, NetResult) else (result,)
+    lines = result.legs
     of_node = {
         f"shape_{name}": np.concatenate([getattr(line.shape, name) for line in lines])
         for name in vars(lines[0].shape)
@@ -110,9 +109,9 @@ def result_netcdf(result: AnyResult) -> bytes:
         ("node",), {**netcdf.OF_NODE, **_TILT}, f"shape_depth{where}", _floats(of_node)
     )
     accuracy = {f"accuracy_{name}": getattr(result.accuracy, name) for name in ("depth", "tension")}
-    of_ends = _OF_TOW if isinstance(result, TowResult) else OF_ENDS
+    of_ends = _OF_TOW if result.towed else OF_ENDS
     along: tuple[str, ...] = ()
-    if isinstance(result, NetResult):
+    if result.several:
         sizes["leg"], along = len(lines), ("leg",)
         own = leg_numbers(file)
         variables = netcdf.of_net(
@@ -132,24 +131,20 @@ def result_netcdf(result: AnyResult) -> bytes:
     return netcdf.netcdf_of(netcdf.ResultLayout(sizes, tuple(variables), known))
 
 
-def _ends(result: AnyResult) -> Mapping[str, object]:
+def _ends(result: Result) -> Mapping[str, object]:
     """Return what is known of the line as a whole, or of each leg."""
-    if isinstance(result, NetResult):
-        return result.ends
-    if isinstance(result, Result):
+    if result.towed:
+        (leg,), keys = result.legs, result.file.tow
+        assert keys is not None and leg.body is not None and leg.tow_point is not None
         return {
-            "top_depth": result.top.depth,
-            "anchor_vertical": result.anchor.vertical,
-            "anchor_horizontal": result.anchor.horizontal,
-            "used_buoyancy": result.top.used_buoyancy,
-            "other_used_buoyancy": result.other_used_buoyancy,
+            "speed": keys.speed,
+            "body_depth": leg.body.depth,
+            "layback": leg.body.layback,
+            "tow_tension": leg.tow_point.tension,
         }
-    return {
-        "speed": result.speed,
-        "body_depth": result.body.depth,
-        "layback": result.body.layback,
-        "tow_tension": result.tow_point.tension,
-    }
+    if result.several:
+        return result.ends
+    return {name: column[0] for name, column in result.ends.items()}
 
 
 def _floats(columns: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:

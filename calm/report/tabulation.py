@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from calm.case import Tow, TowResult
+    from calm.case import Design, Result
     from calm.case.strumming import BareCable
     from calm.case.tow import Variation
 
@@ -47,10 +47,10 @@ class TabulationRow:
 
     chosen: Mapping[str, float | str]
     shown: tuple[str, ...]
-    outcome: TowResult | NoEquilibrium
+    outcome: Result | NoEquilibrium
 
     @property
-    def result(self) -> TowResult | None:
+    def result(self) -> Result | None:
         """The equilibrium, where there is one."""
         return None if isinstance(self.outcome, NoEquilibrium) else self.outcome
 
@@ -103,7 +103,7 @@ class Tabulation:
 
 
 def by_speed(
-    tow: Tow, speeds: Sequence[float], outcomes: Sequence[TowResult | NoEquilibrium]
+    tow: Design, speeds: Sequence[float], outcomes: Sequence[Result | NoEquilibrium]
 ) -> Tabulation:
     """Return a row for each speed.
 
@@ -123,7 +123,7 @@ def by_speed(
     return Tabulation(name, "speeds", title, headings, tuple(rows))
 
 
-def by_coefficient(tow: Tow, variations: Sequence[Variation]) -> Tabulation:
+def by_coefficient(tow: Design, variations: Sequence[Variation]) -> Tabulation:
     """A row for each coefficient and change, after one for the tow as it is."""
     rows = []
     for one in variations:

@@ -8,12 +8,13 @@ brackets.
 """
 _SECTIONS = {
     "Read, solve, check": ["calm.load", "calm.check"],
-    "Moorings": ["calm.Mooring", "calm.Result"],
-    "Tows": ["calm.Tow", "calm.TowResult"],
+    "Designs": ["calm.Design", "calm.Result", "calm.case.leg.Leg", "calm.LegResult"],
     "Parts of a result": [
         "calm.case.result_tables.Components", "calm.case.result_tables.Clamps",
         "calm.case.result_tables.Shape",
-        "calm.case.result.Top", "calm.case.result.AnchorLoad", "calm.case.result.Accuracy",
+        "calm.case.ends.Top", "calm.case.ends.AnchorLoad", "calm.case.ends.TowPoint",
+        "calm.case.ends.TowedBody", "calm.case.ends.EndLoad", "calm.case.ends.NodePlace",
+        "calm.case.ends.Accuracy",
         "calm.case.strumming.Strumming", "calm.case.strumming.StrummingBand",
     ],
     "Many profiles": ["calm.solve_profiles", "calm.Profiles"],

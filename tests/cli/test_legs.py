@@ -14,9 +14,9 @@ import pytest
 import xarray
 from scipy.optimize import fsolve
 
+from calm.case import load
 from calm.case.adjustment import parse_change
 from calm.case.explain import explain
-from calm.case.net import load
 from calm.checks.criterion import READINGS, pieces_of
 from calm.cli.main import main
 from calm.drawing.line_picture import LineKind, elevation_of, plan_of
@@ -283,7 +283,7 @@ legs:
   one:{leg}  two:{leg}    bottom: {{anchor: {{at: [200 m, 0 m]}}}}
 """
     one, two = load(tmp_path / "two.yaml", text=text).solve().legs
-    part = pieces_of(one.mooring)[0]
+    part = pieces_of(one.design)[0]
     offset = READINGS["offset"](one, part)
     assert offset == pytest.approx(one.top.x, rel=1e-12)
     assert READINGS["offset"](two, part) == pytest.approx(offset, rel=1e-9)

@@ -10,7 +10,7 @@ import numpy as np
 from calm.batch.profiles import Batch, Profiles
 from calm.batch.solving import OF_CLAMP, OF_ENDS, OF_PIECE, Results
 from calm.batch.statuses import STATUSES, status_of
-from calm.case.net import Net
+from calm.case import Design
 from calm.physics.line import Integers, Line, Water
 from calm.solve import Settings
 from calm.solve.problem import MANY_ROOM
@@ -55,7 +55,7 @@ def in_company(line: Line, water: Water, settings: Settings) -> tuple[str, Ends]
     return STATUSES[status_of(batch.mooring, int(ending))], (places, tensions)
 
 
-def net_in_company(net: Net) -> tuple[str, Ends]:
+def net_in_company(net: Design) -> tuple[str, Ends]:
     """The same of a net: places (p, 3) at the tops of all pieces and tensions (2p).
 
     Raises
@@ -80,7 +80,7 @@ def net_in_company(net: Net) -> tuple[str, Ends]:
     return STATUSES[together.status[own]], ends
 
 
-def net_run(net: Net) -> Ends:
+def net_run(net: Design) -> Ends:
     """Those ends by a run."""
     return _net_ends(net.solve().components, ...)
 

@@ -8,7 +8,6 @@ import pytest
 
 import calm
 from calm.assemble import with_axial_clamps
-from calm.case.tow import Tow
 from calm.drop import drop_plan, plan
 from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Ship, fall, settle, towed
@@ -156,10 +155,10 @@ def test_the_drag_of_the_anchor_is_what_matters(loaded):
 @pytest.mark.thorough
 def test_every_shipped_line_comes_to_rest_in_its_equilibrium(path):
     mooring = calm.load(path)
-    if isinstance(mooring, Tow):
+    if mooring.towed:
         pytest.skip("a tow has no anchor")
     _, drop, rest = dropped(mooring)
-    assert rest_difference(mooring.solve(), rest) < 1e-3 * mooring.water.depth
+    assert rest_difference(mooring.solve().leg, rest) < 1e-3 * mooring.water.depth
     assert drop.states[-1].time > 0.0
 
 
@@ -198,12 +197,12 @@ components:
 def test_the_design_check_and_the_plan_tell_of_one_fall(name):
     """A line that lands before it is plumb, and one whose float is at the surface."""
     mooring = calm.load(shipped_folder("lines") / f"{name}.yaml")
-    launch, told = launch_of(mooring), drop_plan(mooring, fineness=IN_SHORT)
+    launch, told = launch_of(mooring.leg), drop_plan(mooring, fineness=IN_SHORT)
     assert told.touchdown_speed == pytest.approx(launch.fall_speed, rel=1e-12)
     pulls = [pull.tension for pull in told.pulls]
     given = np.maximum(launch.tension_top, launch.tension_bottom)
     assert pulls == pytest.approx(given, rel=5e-3)  # the greatest may be between the ends
-    finer = launch_of(mooring, plan.FINE)
+    finer = launch_of(mooring.leg, plan.FINE)
     assert launch.fall_speed == pytest.approx(finer.fall_speed, rel=0.02)
     assert launch.greatest_tension == pytest.approx(finer.greatest_tension, rel=0.02)
 
@@ -369,7 +368,7 @@ def test_a_line_held_upright_leans_as_in_its_equilibrium(loaded, text):
         line, water, FallingAnchor(mooring.anchor_weight, 100.0), upright, Fineness(50, 20)
     )
     # bars of 2.4 m lie along chords: some 2e-6 of the depth here
-    assert rest_difference(mooring.solve(), rest) < 1e-5 * water.depth
+    assert rest_difference(mooring.solve().leg, rest) < 1e-5 * water.depth
 
 
 def test_a_line_towed_below_the_surface_is_that_of_the_tow(loaded):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import calm
-from calm.case import Mooring
+from calm.case import Design
 from calm.physics.drag import Friction
 from calm.physics.line import Line
 from calm.shipped import shipped_folder
@@ -43,17 +43,15 @@ SHEARED = (
 MOORINGS = (*SHEARED, "braconnot-buoy", "receiver-line")
 
 
-def moored(name: str) -> Mooring:
+def moored(name: str) -> Design:
     """A shipped mooring."""
-    mooring = calm.load(shipped_folder("lines") / f"{name}.yaml")
-    assert isinstance(mooring, Mooring)
-    return mooring
+    return calm.load(shipped_folder("lines") / f"{name}.yaml")
 
 
-def anchor_of(mooring: Mooring) -> FallingAnchor:
+def anchor_of(mooring: Design) -> FallingAnchor:
     """Its anchor; twice as heavy where it would not fall, buoy and all."""
     net = float(mooring.line.total_buoyancy.sum())
-    return FallingAnchor(max(mooring.anchor_weight, 2.0 * net), mooring.file.anchor.kt or 0.0)
+    return FallingAnchor(max(mooring.leg.anchor_weight, 2.0 * net), mooring.file.anchor.kt or 0.0)
 
 
 def strongest(line: Line, force: Vector) -> int:

@@ -15,9 +15,8 @@ from calm.batch.statistics import limits
 from calm.batch.statistics.extremes import Fit, LevelsRefused, median_step, return_levels, years_of
 from calm.batch.statistics.series import Column, LegSeats, ResultColumns, Seat, Times
 from calm.batch.statuses import Ending, endings
-from calm.case import Mooring
-from calm.case.mooring import profilers_in
-from calm.case.net import Net
+from calm.case import Design
+from calm.case.profilers import profilers_in
 from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface
 from calm.files import Profiler
@@ -148,7 +147,7 @@ class Summary:
 
 def summarize(
     dataset: Dataset,
-    mooring: Mooring | Net,
+    mooring: Design,
     folder: Path | None = None,
     check: Callable[[], None] = lambda: None,
     source: Path = Path("the result"),
@@ -198,11 +197,11 @@ def summarize(
             limits_used=tuple(
                 dict.fromkeys(
                     key
-                    for line in (mooring.meant if isinstance(mooring, Net) else (mooring,))
-                    for key in limits_used(line.file, reaches_the_surface(line))
+                    for leg in mooring.meant
+                    for key in limits_used(leg.file, reaches_the_surface(leg))
                 )
             ),
-            stops=tuple(_stops(series, mooring)) if isinstance(mooring, Mooring) else (),
+            stops=tuple(_stops(series, mooring)),
         )
 
 
@@ -220,11 +219,11 @@ def _parts(series: ResultColumns) -> Iterator[PartDistributions]:
         )
 
 
-def _stops(series: ResultColumns, mooring: Mooring) -> Iterator[StopDepths]:
+def _stops(series: ResultColumns, mooring: Design) -> Iterator[StopDepths]:
     seats = {series.label(seat): seat for seat in series.seats}
     position = mooring.file.environment.position or mooring.file.position
     latitude = MID_LATITUDE if position is None else position.latitude
-    for profiler in profilers_in(mooring):
+    for profiler in (one for leg in mooring.legs for one in profilers_in(leg)):
         assert isinstance(profiler.component, Profiler)
         for stop, label in zip(("upper", "lower"), profiler.component.between or (), strict=True):
             seat = seats[label]
@@ -260,9 +259,9 @@ _LegColumns = Mapping[str, Sequence[ResultColumns]]
 """The columns that each response is the greatest of: of a line, or of the legs of a net."""
 
 
-def _columns_of(series: ResultColumns, mooring: Mooring | Net) -> _LegColumns:
+def _columns_of(series: ResultColumns, mooring: Design) -> _LegColumns:
     """Of a net the free ends count, and the anchors; an offset is that from the leg's own."""
-    if isinstance(mooring, Mooring):
+    if not mooring.several:
         return dict.fromkeys(RESPONSES, (series,))
     keys, seats = mooring.file.legs, LegSeats.of_file(mooring.file)
     legs = [series.of_leg(each) for each in seats]

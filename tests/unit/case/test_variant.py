@@ -86,8 +86,8 @@ def test_a_tow_is_changed_as_a_mooring_is(tmp_path):
     )
     towed = calm.load(tmp_path / "t.yaml")
     faster = towed.with_(tow={"speed": "3 m/s"}).solve()
-    assert (faster.speed, faster.body.layback) > (3.0 - 1e-9, towed.solve().body.layback)
-    assert towed.solve(environment="ebb").tow.file.environment.name == "ebb"
+    assert (faster.file.tow.speed, faster.body.layback) > (3.0 - 1e-9, towed.solve().body.layback)
+    assert towed.solve(environment="ebb").file.environment.name == "ebb"
 
 
 def test_the_same_serial_number_twice_is_said(mooring):

@@ -12,7 +12,7 @@ from rich.console import Console
 
 import calm
 from calm.batch.statistics.summary import RANKED, RESPONSES, summarize
-from calm.case import Mooring
+from calm.case import Design
 from calm.report import folder
 from calm.report.batch_page import summary_html, summary_part, summary_paths, write_summary
 from calm.report.batch_summary import percent, summary_document
@@ -187,7 +187,7 @@ def test_nothing_solved_can_be_shown(nothing):
 def test_a_label_is_shown_as_it_is_written(mooring):
     first, *others = mooring.file.pieces
     pieces = (replace(first, label="[red]top[/red]"), *others)
-    marked = Mooring(replace(mooring.file, pieces=pieces))
+    marked = Design(replace(mooring.file, pieces=pieces))
     assert "[red]top[/red]" in table(summarize(stormy(marked, 5), marked))
 
 

@@ -32,7 +32,7 @@ def test_names_do_not_overlap(result):
 @pytest.mark.thorough
 def test_many_names_at_one_depth_do_not_overlap(make_result):
     result = make_result()
-    wire = result.mooring.file.pieces[2]
+    wire = result.design.file.pieces[2]
     for number in range(60):
         clamp = type(wire)(**vars(result.clamps[0]))
         clamp.label, clamp.depth = f"{number} °C", 120.0 + 0.01 * number

@@ -1,0 +1,698 @@
+"""A design as read from its file, ready to be solved, and its result.
+
+A mooring is one leg, free above and anchored below; a tow is one leg held at the ship; a net has
+several legs, which join at nodes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
+from itertools import combinations
+from math import dist, nan
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+
+import numpy as np
+
+from calm.assemble import assemble_water
+from calm.case.ends import (
+    Accuracy,
+    AnchorLoad,
+    EndLoad,
+    NodePlace,
+    Top,
+    TowedBody,
+    TowPoint,
+)
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult, leg_result_of
+from calm.case.memory import Forgetful, Memory
+from calm.case.parts import Origin, OtherEnvironment
+from calm.case.profilers import ProfilerTravel, profilers_of
+from calm.case.result_tables import Clamps, Components, Shape
+from calm.case.strumming import Strumming, StrummingBand
+from calm.case.warnings import warnings_of
+from calm.errors import InputError, NoEquilibrium, Problem, UsageError
+from calm.files import Clamp, MooringFile, Piece
+from calm.files.environment import Environment
+from calm.files.legs import Leg as LegKeys
+from calm.files.legs import leg_numbers, nodes_of, refuse_all_but_moorings, refuse_several
+from calm.files.mooring_file import STAND_IN
+from calm.files.reader import MooringReader
+from calm.physics.hull import AIR_DENSITY
+from calm.physics.line import Floats, Line, Water
+from calm.quantities import say
+from calm.records.grids import SeabedGrid
+from calm.solve import Settings, Solution, Status
+
+if TYPE_CHECKING:
+    from calm.solve.net import NetSolution
+
+_SKIN = 1e-3  # m above the surface, in which water turns into air
+
+
+@dataclass(frozen=True)
+class Design:
+    """A mooring, a tow or a net of legs.
+
+    Attributes
+    ----------
+    file : as read
+    for_surface : of a single leg, as of `Leg`
+    memory : keeps what was solved of a single leg for other states of the same file, and in other
+        environments
+    lines, given_water : in place of those that follow from the file
+    near : an equilibrium of several legs, near which theirs is sought first
+    origin : what it was read from
+    """
+
+    file: MooringFile
+    for_surface: bool | None = None
+    memory: Memory = field(default_factory=Forgetful, repr=False, compare=False)
+    lines: tuple[Line, ...] | None = field(default=None, repr=False, compare=False)
+    given_water: Water | None = field(default=None, repr=False, compare=False)
+    near: NetSolution | None = field(default=None, repr=False, compare=False)
+    origin: Origin | None = field(default=None, repr=False, compare=False)
+
+    def __reduce__(self) -> tuple[type[Design], tuple[object, ...]]:
+        """Return what another process needs: all else follows from these."""
+        legs = vars(self).get("legs", ())
+        known = tuple(leg.line for leg in legs if "line" in vars(leg))
+        lines = known if known and len(known) == len(legs) else self.lines
+        water = vars(self).get("water", self.given_water)
+        return Design, (self.file, self.for_surface, self.memory, lines, water, self.near)
+
+    @cached_property
+    def legs(self) -> tuple[Leg, ...]:
+        """Its legs, in the order of the file."""
+        lines = self.lines or (None,) * max(len(self.file.legs), 1)
+        if not self.several:
+            return (Leg(self.file, self.for_surface, self.memory, lines[0], self.given_water),)
+        pairs = zip(self.file.legs, lines, strict=True)
+        return tuple(Leg(leg.line_of(self.file), given_line=line) for leg, line in pairs)
+
+    @property
+    def several(self) -> bool:
+        """Return whether its legs are named and solved together, be they only one."""
+        return bool(self.file.legs)
+
+    @property
+    def leg(self) -> Leg:
+        """The leg of a design that has a single one; UsageError: it has several."""
+        refuse_several(self.file)
+        return self.legs[0]
+
+    @property
+    def moored(self) -> Leg:
+        """The leg of a mooring, free above and anchored below.
+
+        UsageError: it is towed, or has several legs.
+        """
+        refuse_all_but_moorings(self.file)
+        return self.legs[0]
+
+    @property
+    def line(self) -> Line:
+        """The pieces of a single leg as the solver takes them."""
+        return self.leg.line
+
+    @property
+    def anchored(self) -> bool:
+        """Return whether an anchor holds any of it."""
+        return any(leg.anchored for leg in self.legs)
+
+    @property
+    def towed(self) -> bool:
+        """Return whether it is drawn through the water."""
+        return any(leg.towed for leg in self.legs)
+
+    @property
+    def environment(self) -> Environment:
+        """The water, current and wind that it stands in, as the file gives them."""
+        return self.file.environment
+
+    @property
+    def settings(self) -> Settings:
+        """Return how the legs are solved."""
+        return self.legs[0].settings
+
+    @cached_property
+    def water(self) -> Water:
+        """Depth, current and density by level."""
+        if self.given_water is not None:
+            return self.given_water
+        return self.water_of(self.environment) if self.several else self.legs[0].water
+
+    def water_of(self, environment: Environment) -> Water:
+        """The water of an environment, with still air above it where a leg is held there."""
+        if not self.several:
+            return assemble_water(environment)
+        if isinstance(environment.seabed, SeabedGrid):  # its plane is that of one place
+            environment = replace(environment, seabed=None)
+        water, ends = assemble_water(environment), [e for leg in self.file.legs for e in leg.ends]
+        if all(end.held is None or end.held.depth >= 0.0 for end in ends):
+            return water
+        below, surface = water.level > 0.0, np.zeros(())
+        level = np.array([-_SKIN, 0.0, *water.level[below]])
+        u, v, w = (
+            np.array([0.0, speed, *column[below]])
+            for speed, column in zip(
+                water.current_at(surface), (water.u, water.v, water.w), strict=True
+            )
+        )
+        density = np.array([AIR_DENSITY, water.density_at(surface), *water.density[below]])
+        return replace(water, level=level, u=u, v=v, w=w, density=density)
+
+    # with something changed
+
+    def with_(
+        self, label: str | None = None, /, environment: OtherEnvironment | None = None, **keys: Any
+    ) -> Design:
+        """Return the same with some values of its file changed, as `Origin.changed`.
+
+        Parameters
+        ----------
+        label : of the piece or clamp that has the keys; the keys are the file's where it is not
+            given: ``design.with_("wire 1", length="480 m")``,
+            ``design.with_(tow={"speed": "4 kn"})``
+        environment : name of one of its `environments`, an environment file, or keys of its own
+
+        Raises
+        ------
+        InputError
+            With the mistakes that the values make.
+        UsageError
+            No piece has the label, or it was not loaded from a file.
+        """
+        if self.origin is None:
+            raise UsageError("what was not loaded from a file has no values to change")
+        origin = self.origin.changed(self.file, label, environment, keys)
+        file = origin.read()
+        if (file.tow is None) != (self.file.tow is None):
+            raise UsageError("a mooring does not become a tow, nor a tow a mooring")
+        return Design(file, origin=origin)
+
+    def with_lines(self, lines: Sequence[Line], water: Water | None = None) -> Design:
+        """Return the same with lines for its legs that are not its file's, and other water."""
+        near = self.standing if self.several else None
+        return Design(self.file, lines=tuple(lines), given_water=water or self.water, near=near)
+
+    def with_length(self, index: int, length: float) -> Design:
+        """Return the same with another unstretched length [m] of a piece of the file."""
+        number, lines = leg_numbers(self.file)[index], [leg.line for leg in self.legs]
+        first = self.file.legs[number].first if self.several else 0
+        lines[number] = lines[number].with_length(index - first, length)
+        return self.with_lines(lines)
+
+    def with_pieces(self, pieces: Sequence[Sequence[Piece]]) -> Design:
+        """Return the same with other pieces in its legs, stand-ins for anchors among them."""
+        if not self.several:
+            return Design(
+                replace(self.file, pieces=tuple(pieces[0])), self.for_surface, self.memory
+            )
+        legs: list[LegKeys] = []
+        listed: list[Piece] = []
+        for leg, own in zip(self.file.legs, pieces, strict=True):
+            first = len(listed)
+            listed += [piece for piece in own if piece.use != STAND_IN]
+            legs.append(replace(leg, first=first, end=len(listed)))
+        numbered = tuple(replace(piece, index=index) for index, piece in enumerate(listed))
+        return Design(replace(self.file, pieces=numbered, legs=tuple(legs)))
+
+    # solved
+
+    @cached_property
+    def standing(self) -> NetSolution:
+        """Several legs in their own water; NoEquilibrium where they do not stand."""
+        return self.together(self.water, self.near)
+
+    def together(self, water: Water, near: NetSolution | None = None) -> NetSolution:
+        """Several legs solved in some water, sought first near another solution of them.
+
+        Raises
+        ------
+        NoEquilibrium
+        """
+        from calm.case.net import solve_together
+
+        return solve_together(self.legs, water, self.settings, near)
+
+    @property
+    def solutions(self) -> tuple[Solution, ...]:
+        """The legs in their own water as the solver leaves them, whatever holds their anchors.
+
+        NoEquilibrium: they do not stand.
+        """
+        if self.several:
+            return self.standing.legs
+        return (self.leg.equilibrium(self.water),)
+
+    @cached_property
+    def meant(self) -> tuple[Leg, ...]:
+        """The legs, each of several known to be meant for the surface where still water has it
+        there.
+        """
+        if not self.several:
+            return self.legs
+        try:
+            afloat = [bool(leg.afloat) for leg in self.together(self.water.still()).legs]
+        except NoEquilibrium:
+            afloat = [False] * len(self.legs)
+        pairs = zip(self.legs, afloat, strict=True)
+        return tuple(replace(leg, for_surface=surface) for leg, surface in pairs)
+
+    def solve(self, environment: OtherEnvironment | None = None) -> Result:
+        """Find the static equilibrium, in another of its environments where one is given.
+
+        NoEquilibrium: with status, message and advice, where there is none that passes every check.
+        """
+        if environment is not None:
+            return self.with_(environment=environment).solve()
+        if not self.several:
+            return self._alone()
+        found = self.standing
+        still: Sequence[Solution | None] = found.legs
+        if self.water.moving:
+            try:
+                still = self.together(self.water.still()).legs
+            except NoEquilibrium:
+                still = [None] * len(found.legs)
+        return result_together(self, found, still)
+
+    def _alone(self) -> Result:
+        found = solved_alone(self.leg)
+        return Result(
+            design=self,
+            status=Status.CONVERGED.label,
+            iterations=found.iterations,
+            segments=found.segments,
+            miss=found.miss,
+            closure=found.closure,
+            accuracy=found.accuracy,
+            legs=(found,),
+            warnings=found.warnings,
+        )
+
+
+def solved_alone(leg: Leg) -> LegResult:
+    """The result of a leg by itself, with its profilers on their way.
+
+    NoEquilibrium: as `Design.solve`.
+    """
+    solution = leg.equilibrium()
+    found = leg_result_of(leg, solution, leg.still_beside(solution))
+    return replace(found, profilers=profilers_of(leg), warnings=warnings_of(found, solution))
+
+
+def result_together(design: Design, found: NetSolution, still: Sequence[Solution | None]) -> Result:
+    """The result of several legs; `still` are these in still water, None where that is unknown.
+
+    NoEquilibrium: an anchor is lifted, or a leg hangs into the slope.
+    """
+    legs: list[LegResult] = []
+    for leg, solution, before in zip(design.legs, found.legs, still, strict=True):
+        leg.refuse_a_lifted_anchor(solution)
+        leg.refuse_in_the_slope(solution)
+        meant = replace(leg, for_surface=bool((before or solution).afloat))
+        result = leg_result_of(meant, solution, before)
+        legs.append(replace(result, warnings=warnings_of(result, solution)))
+    anchors = [end for leg in legs for end in leg.ends if end.weight is not None]
+    places = zip(nodes_of(design.file.legs), found.nodes, found.imbalance, strict=True)
+    return Result(
+        design=design,
+        status=Status.CONVERGED.label,
+        iterations=found.marches,
+        segments=sum(leg.segments for leg in legs),
+        miss=found.miss,
+        closure=max(leg.closure for leg in legs),
+        accuracy=Accuracy(found.depth_error, found.tension_error),
+        legs=tuple(legs),
+        nodes=tuple(
+            NodePlace(name, -float(at[2]), float(at[0]), float(at[1]), float(left))
+            for name, at, left in places
+        ),
+        warnings=(
+            *design.file.notices,
+            *(said for leg in legs for said in leg.warnings),
+            *(said for leg in legs if (said := _upside_down(leg))),
+            *(
+                f"The anchors of legs {one.leg} and {other.leg} stand in one place, and each is "
+                "judged for itself; where they are one anchor, join the legs at a node above it."
+                for one, other in combinations(anchors, 2)
+                if dist((one.x, one.y), (other.x, other.y)) < 1e-3
+            ),
+        ),
+    )
+
+
+def _upside_down(result: LegResult) -> str:
+    """Return what is said of a leg with a free end that hangs or stands the other way round."""
+    leg, rows = result.leg, result.components
+    top, bottom = float(rows.depth_top[0]), float(rows.depth_bottom[len(rows) - 2])
+    if not (leg.top.free or leg.bottom.free) or top <= bottom:
+        return ""
+    return (
+        f"Leg {leg.name} is the other way round: its upper end is {say('length', top - bottom)} "
+        "deeper than its lower one. Legs are listed from their upper to their lower ends."
+    )
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Result:
+    """A converged design. Lengths and depths [m], forces [N], angles [degrees].
+
+    x and y are east and north of the anchor, or of the tow point; of several legs, of the origin of
+    the file's places. What has one leg has the figures of that leg, such as `top` and `anchor`, as
+    its own.
+
+    Attributes
+    ----------
+    design : that was solved
+    status : ``converged``
+    iterations, segments : marches, and the cuts of the final one
+    miss : how far the end of a line, the worst, is from where it is held; of one leg in height [m]
+    closure : the relative force residual recomputed from the final coordinates
+    accuracy : the solver's own estimate of its errors
+    legs : each a line of its own
+    nodes : where they join
+    notebook_form, netcdf_form : make HTML of a result, and a file; the packages above set them
+    """
+
+    design: Design
+    status: str
+    iterations: int
+    segments: int
+    miss: float
+    closure: float
+    accuracy: Accuracy
+    legs: tuple[LegResult, ...]
+    nodes: tuple[NodePlace, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    notebook_form: ClassVar[Callable[[Any], str] | None] = None
+    netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
+
+    @property
+    def anchors(self) -> tuple[EndLoad, ...]:
+        """What the legs do to their anchors."""
+        return tuple(end for leg in self.legs for end in leg.ends if end.weight is not None)
+
+    @property
+    def held(self) -> tuple[EndLoad, ...]:
+        """What the legs do to what holds them: a ship, a pier."""
+        return tuple(end for leg in self.legs for end in leg.ends if end.weight is None)
+
+    @property
+    def file(self) -> MooringFile:
+        """The file as read."""
+        return self.design.file
+
+    @property
+    def name(self) -> str:
+        """The name of the design."""
+        return self.file.name
+
+    @property
+    def water(self) -> Water:
+        """The water that it stands in, or goes through."""
+        return self.design.water
+
+    @property
+    def towed(self) -> bool:
+        """Return whether it is drawn through the water."""
+        return self.design.towed
+
+    @property
+    def type(self) -> str:
+        """Return ``subsurface``, ``surface``, ``tow`` or ``net``."""
+        return "net" if self.several else self.legs[0].type
+
+    @property
+    def several(self) -> bool:
+        """Return whether its legs are named and solved together, be they only one."""
+        return self.design.several
+
+    @property
+    def leg(self) -> LegResult:
+        """The leg of a design that has a single one; UsageError: it has several."""
+        if self.several:
+            raise UsageError(
+                f"{self.name} has several legs, each with its own ends and shape: see `legs`, "
+                "`nodes`, `anchors` and `held`"
+            )
+        return self.legs[0]
+
+    @property
+    def top(self) -> Top:
+        """The upper end of the only leg."""
+        return self.leg.top
+
+    @property
+    def anchor(self) -> AnchorLoad:
+        """The load on the anchor of the only leg."""
+        return self.leg.anchor
+
+    @property
+    def tow_point(self) -> TowPoint:
+        """What a tow does to the ship."""
+        assert self.leg.tow_point is not None, "only a tow has a tow point"
+        return self.leg.tow_point
+
+    @property
+    def body(self) -> TowedBody:
+        """What a tow pulls."""
+        assert self.leg.body is not None, "only a tow has a towed body"
+        return self.leg.body
+
+    @property
+    def shape(self) -> Shape:
+        """The only leg node by node."""
+        return self.leg.shape
+
+    @property
+    def still_shape(self) -> Shape | None:
+        """The same without current; None where that has no unique shape."""
+        return self.leg.still_shape
+
+    @property
+    def profilers(self) -> tuple[ProfilerTravel, ...]:
+        """The profilers of the only leg, on their way."""
+        return self.leg.profilers
+
+    @property
+    def strumming(self) -> Strumming | None:
+        """How the cables of the only leg strum; None where none does."""
+        return self.leg.strumming
+
+    @property
+    def strumming_band(self) -> StrummingBand | None:
+        """The only leg with more drag on its cables; solved when first asked for."""
+        return self.leg.strumming_band
+
+    @property
+    def other_equilibrium(self) -> dict[str, float] | None:
+        """Another equilibrium of the only leg; None if none was found."""
+        return self.leg.other_equilibrium
+
+    @cached_property
+    def components(self) -> Components:
+        """The pieces of the file, leg by leg."""
+        if not self.several:
+            return self.leg.components
+        tables = [leg.components.head(len(leg.leg.pieces)) for leg in self.legs]
+        pieces = self.file.pieces
+        whole = Components.joined(tables)
+        return whole.with_columns(part=list(pieces), index=np.arange(len(pieces)))
+
+    @cached_property
+    def clamps(self) -> Clamps:
+        """Return what is clamped on them."""
+        if not self.several:
+            return self.leg.clamps
+        tables = [
+            leg.clamps.with_columns(index=leg.clamps.index + keys.first)
+            for keys, leg in zip(self.file.legs, self.legs, strict=True)
+        ]
+        return Clamps.joined(tables)
+
+    @property
+    def ends(self) -> dict[str, Floats]:
+        """Of each leg the depth of its free upper end [m], the share in use of the buoyancy there,
+        that in another equilibrium, and the pull on its anchor up and sideways [N]; NaN where there
+        is none.
+        """
+        legs, free = self.legs, np.array([1.0 if leg.leg.top.free else nan for leg in self.legs])
+        return {
+            "top_depth": free * [leg.top.depth for leg in legs],
+            "anchor_vertical": np.array([leg.anchor.vertical for leg in legs]),
+            "anchor_horizontal": np.array([leg.anchor.horizontal for leg in legs]),
+            "used_buoyancy": free * [leg.top.used_buoyancy for leg in legs],
+            "other_used_buoyancy": np.array([leg.other_used_buoyancy for leg in legs]),
+        }
+
+    def to_pandas(self) -> Any:
+        """Return the components as a pandas data frame."""
+        return self.components.to_pandas()
+
+    def to_xarray(self) -> Any:
+        """The dataset that `calm run --netcdf` writes: components, clamps and shape, with units."""
+        from io import BytesIO
+
+        from xarray import load_dataset
+
+        form = type(self).netcdf_form
+        assert form is not None, "a design is read by calm.load"
+        return load_dataset(BytesIO(form(self)))
+
+    def _repr_html_(self) -> str | None:
+        """The table of the line, for notebooks; None where nothing makes it."""
+        form = type(self).notebook_form
+        return None if form is None else form(self)
+
+    def __repr__(self) -> str:
+        """Return the figures of its ends, of several legs also of the nodes; SI and degrees."""
+        if self.several:
+            lines = [f"{self.name}: {self.type} of {len(self.legs)} legs, {self.status}"]
+            lines += [f"node {one.name}: depth {one.depth:.6g}" for one in self.nodes]
+            lines += [
+                f"{what} of leg {one.leg}: tension {one.tension:.6g}, angle {one.angle:.3g}"
+                for what, ends in (("anchor", self.anchors), ("held end", self.held))
+                for one in ends
+            ]
+            return "\n".join([*lines[:9], f"{len(self.warnings)} warnings"])
+        lines = [f"{self.name}: {self.type}, {self.status}"]
+        for name, end in self._ends().items():
+            known = [f"{key} {value:.6g}" for key, value in end.items() if value is not None]
+            lines.append(f"{name}: {', '.join(known)}")
+        tables = f"{len(self.components)} components, {len(self.clamps)} clamps"
+        return "\n".join([*lines, f"{tables}, {len(self.warnings)} warnings"])
+
+    def _ends(self) -> dict[str, dict[str, Any]]:
+        """The figures of both ends of the only leg."""
+        if self.towed:
+            return {"tow_point": asdict(self.tow_point), "body": asdict(self.body)}
+        return {"top": asdict(self.top), "anchor": asdict(self.anchor)}
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON object of the result format; None stands where a figure is unknown."""
+        from calm.version import __version__
+
+        document = self.file.document
+        told = ("type", "status", "iterations", "segments", "miss", "closure")
+        return {
+            "calm": __version__,
+            "name": self.name,
+            **({} if document is None else {"document": document.to_dict()}),
+            **{name: getattr(self, name) for name in told},
+            "accuracy": {k: v for k, v in asdict(self.accuracy).items() if v is not None},
+            **(self._document_of_legs() if self.several else self._document_of_leg()),
+            "components": [*self._rows(self.components)],
+            "clamps": [*self._rows(self.clamps)],
+            **({} if self.several else {"shape": self.shape.to_dict()}),
+            "warnings": list(self.warnings),
+        }
+
+    def _rows(self, table: Components | Clamps) -> Iterator[dict[str, Any]]:
+        """Pieces or clamps as dictionaries, with their serial numbers, of several with their
+        legs.
+        """
+        parts: Sequence[Piece | Clamp] = table.part
+        numbers = leg_numbers(self.file)
+        for row, part in zip(table.to_dicts(), parts, strict=True):
+            if isinstance(part, Piece):
+                for name in ("kind", "role", "tension", "least_tension"):
+                    del row[name]
+            if part.serial is not None:
+                row["serial"] = part.serial
+            if self.several:
+                row["leg"] = self.legs[numbers[row["index"]]].name
+            yield row
+
+    def _document_of_leg(self) -> dict[str, Any]:
+        leg, keys = self.leg, self.file.tow
+        return {
+            **({} if keys is None else {"speed": keys.speed, "toward": keys.toward}),
+            **self._ends(),
+            **({"profilers": [asdict(one) for one in leg.profilers]} if leg.profilers else {}),
+            "strumming": None if leg.strumming is None else asdict(leg.strumming),
+            "strumming_band": None if (band := leg.strumming_band) is None else asdict(band),
+            "other_equilibrium": leg.other_equilibrium,
+        }
+
+    def _document_of_legs(self) -> dict[str, Any]:
+        anchors = [asdict(each) for each in self.anchors]
+        of_anchors = ("required_weight", "weight", "grounded_length", "slack_length")
+        return {
+            **({"anchor": anchors[0]} if len(anchors) == 1 else {}),
+            "anchors": anchors,
+            "held": [
+                {k: v for k, v in asdict(each).items() if k not in of_anchors} for each in self.held
+            ],
+            "nodes": [asdict(each) for each in self.nodes],
+            "legs": [
+                {
+                    "name": leg.name,
+                    "closure": leg.closure,
+                    "used_buoyancy": leg.top.used_buoyancy,
+                    "reserve": leg.top.reserve,
+                    "shape": leg.shape.to_dict(),
+                }
+                for leg in self.legs
+            ],
+        }
+
+
+AnyResult: TypeAlias = Result | LegResult
+"""What has legs: a design, or one of its legs."""
+
+
+def load(
+    path: str | Path,
+    environment: str | Path | None = None,
+    catalogs: Sequence[str | Path] = (),
+    text: str | None = None,
+) -> Design:
+    """Read the file of a mooring, a tow or a net of legs.
+
+    Parameters
+    ----------
+    path : the YAML file
+    environment : name of one of its `environments`, or an environment file
+    catalogs : catalogue files of your own, whose definitions come before the shipped ones
+    text : in place of the file's content; files that it names are still looked for beside the file
+
+    Raises
+    ------
+    InputError
+        With every mistake of the file, each with its line and column.
+    """
+    return load_in(path, (environment,), catalogs, text)[0]
+
+
+def load_in(
+    path: str | Path,
+    environments: Sequence[str | Path | None] | None,
+    catalogs: Sequence[str | Path] = (),
+    text: str | None = None,
+) -> list[Design]:
+    """Read a file as `load` does in several environments; None is its own and all that it names.
+
+    InputError: with the mistakes of all.
+    """
+    reader = MooringReader(path, catalogs=catalogs, text=text)
+    asked, read = [*(environments or (None,))], []
+    problems: dict[Problem, None] = {}
+    for name in asked:
+        try:
+            file = reader.in_environment(name)
+        except InputError as error:
+            problems |= dict.fromkeys(error.problems)
+            continue
+        if environments is None and name is None and file.tow is None:
+            asked += file.variants
+        read.append(Design(file, origin=Origin(path, name, tuple(map(Path, catalogs)), text)))
+    if problems:
+        raise InputError(list(problems))
+    return read
