@@ -38,7 +38,7 @@ from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 from calm.files import Clamp, MooringFile, Piece
 from calm.files.environment import Environment
 from calm.files.legs import Leg as LegKeys
-from calm.files.legs import leg_numbers, nodes_of, refuse_all_but_moorings, refuse_several
+from calm.files.legs import leg_numbers, legs_of, nodes_of, refuse_all_but_moorings, refuse_several
 from calm.files.mooring_file import STAND_IN
 from calm.files.reader import MooringReader
 from calm.physics.hull import AIR_DENSITY
@@ -60,9 +60,7 @@ class Design:
     Attributes
     ----------
     file : as read
-    for_surface : of a single leg, as of `Leg`
-    memory : keeps what was solved of a single leg for other states of the same file, and in other
-        environments
+    for_surface, memory : as of `Leg`
     lines, given_water : in place of those that follow from the file
     near : an equilibrium of several legs, near which theirs is sought first
     origin : what it was read from
@@ -82,16 +80,19 @@ class Design:
         known = tuple(leg.line for leg in legs if "line" in vars(leg))
         lines = known if known and len(known) == len(legs) else self.lines
         water = vars(self).get("water", self.given_water)
-        return Design, (self.file, self.for_surface, self.memory, lines, water, self.near)
+        given = self.file, self.for_surface, self.memory, lines, water, self.near, self.origin
+        return Design, given
 
     @cached_property
     def legs(self) -> tuple[Leg, ...]:
         """Its legs, in the order of the file."""
-        lines = self.lines or (None,) * max(len(self.file.legs), 1)
-        if not self.several:
-            return (Leg(self.file, self.for_surface, self.memory, lines[0], self.given_water),)
-        pairs = zip(self.file.legs, lines, strict=True)
-        return tuple(Leg(leg.line_of(self.file), given_line=line) for leg, line in pairs)
+        keys = legs_of(self.file)
+        # one of several has the depth of its own anchor
+        water = None if self.several else self.given_water
+        return tuple(
+            Leg(each.line_of(self.file), self.for_surface, self.memory, line, water)
+            for each, line in zip(keys, self.lines or (None,) * len(keys), strict=True)
+        )
 
     @property
     def several(self) -> bool:
@@ -202,8 +203,8 @@ class Design:
     def with_length(self, index: int, length: float) -> Design:
         """Return the same with another unstretched length [m] of a piece of the file."""
         number, lines = leg_numbers(self.file)[index], [leg.line for leg in self.legs]
-        first = self.file.legs[number].first if self.several else 0
-        lines[number] = lines[number].with_length(index - first, length)
+        own = index - self.legs[number].keys.first
+        lines[number] = lines[number].with_length(own, length)
         return self.with_lines(lines)
 
     def with_pieces(self, pieces: Sequence[Sequence[Piece]]) -> Design:
@@ -512,8 +513,8 @@ class Result:
         if not self.several:
             return self.leg.clamps
         tables = [
-            leg.clamps.with_columns(index=leg.clamps.index + keys.first)
-            for keys, leg in zip(self.file.legs, self.legs, strict=True)
+            leg.clamps.with_columns(index=leg.clamps.index + leg.leg.keys.first)
+            for leg in self.legs
         ]
         return Clamps.joined(tables)
 

@@ -135,9 +135,9 @@ def explain(result: Result, label: str | None = None) -> Explanation:
         No part above the anchor is called so; it is a tow.
     """
     refuse_tow(result.file)
-    mooring, several = result.design, result.several
+    mooring = result.design
     pieces = [piece for leg in mooring.legs for piece in leg.file.pieces[: len(leg.line.length)]]
-    free = [leg.file.pieces[0].label for leg in mooring.legs if several and leg.top.free]
+    free = [leg.file.pieces[0].label for leg in mooring.legs if leg.top.free]
     try:
         part = one_part(pieces, label or (free or [TOP])[0])
     except LookupError as error:
@@ -239,7 +239,7 @@ def _causes(result: Result, shares: attribution.Attribution) -> Causes:
     for leg, piece, clamp in shares.parts:
         pieces = legs[leg].file.pieces
         labels.append((clamps_in(pieces)[clamp] if clamp >= 0 else pieces[piece]).label)
-    first = [leg.file.legs[0].first if leg.file.legs else 0 for leg in legs]
+    first = [leg.leg.keys.first for leg in legs]
     return Causes(
         index=np.array([first[leg] + piece for leg, piece, _ in shares.parts], dtype=np.int64),
         label=labels,

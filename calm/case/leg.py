@@ -12,7 +12,8 @@ from calm.case import parts
 from calm.case.memory import Forgetful, Memory
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Piece
-from calm.files.legs import EndKeys, ends_of
+from calm.files.legs import EndKeys, legs_of
+from calm.files.legs import Leg as LegKeys
 from calm.files.mooring_file import STAND_IN, parts_of
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water
@@ -67,14 +68,24 @@ class Leg:
         return self.file.name
 
     @property
+    def keys(self) -> LegKeys:
+        """What the file of the design says of it."""
+        return legs_of(self.file)[0]
+
+    @property
+    def of_several(self) -> bool:
+        """Return whether it has a name of its own, and is solved with those that it joins."""
+        return bool(self.file.legs)
+
+    @property
     def top(self) -> EndKeys:
         """What holds its upper end."""
-        return ends_of(self.file)[0]
+        return self.keys.top
 
     @property
     def bottom(self) -> EndKeys:
         """What holds its lower end."""
-        return ends_of(self.file)[1]
+        return self.keys.bottom
 
     @property
     def towed(self) -> bool:
@@ -209,7 +220,7 @@ class Leg:
         pull, weight = float(solution.force[-1, 2]), self.anchor_weight
         if pull > weight:
             line, its = "the line", "the anchor"
-            if self.file.legs:
+            if self.of_several:
                 line, its = f"leg {self.name}", "its anchor"
             raise Status.ANCHOR_LIFTS.because(
                 f"The vertical pull of {line} is {pull:.0f} N; {its} weighs {weight:.0f} N "

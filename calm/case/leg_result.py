@@ -137,7 +137,7 @@ class LegResult:
 
         None of a leg of a net, which does not stand alone.
         """
-        if self.file.legs:
+        if self.leg.of_several:
             return None
         still = self.still_shape
         return band_of(self.leg, None if still is None else float(still.depth[0]))

@@ -23,7 +23,7 @@ from calm.solve.net import NetSolution, solve_net
 
 def net_legs(legs: Sequence[Leg]) -> tuple[NetLeg, ...]:
     """The legs as the solver takes them."""
-    nodes = nodes_of([keys for leg in legs for keys in leg.file.legs])
+    nodes = nodes_of([leg.keys for leg in legs])
     return tuple(
         NetLeg(leg.line, _end(leg.top, nodes, leg), _end(leg.bottom, nodes, leg)) for leg in legs
     )
@@ -50,7 +50,7 @@ def solve_together(
     NoEquilibrium: there is none that passes every check.
     """
     solved_for = [piece for leg in legs for piece in leg.file.pieces[:-1]]
-    laid, nodes = net_legs(legs), nodes_of([keys for leg in legs for keys in leg.file.legs])
+    laid, nodes = net_legs(legs), nodes_of([leg.keys for leg in legs])
     try:
         with naming_the_piece(solved_for):
             return solve_net(laid, len(nodes), water, settings, near)

@@ -13,6 +13,7 @@ import numpy as np
 
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.files import Clamp, MooringFile, Piece, read_mooring
+from calm.files.legs import legs_of
 from calm.files.mooring_file import parts_of
 from calm.files.yaml_document import Location
 from calm.physics.line import Floats
@@ -152,7 +153,7 @@ def below_the_seabed(file: MooringFile, solution: Solution, depth: float) -> Flo
     """
     seabed, place = file.environment.seabed, solution.position
     assert seabed is not None
-    anchor = file.legs[0].bottom.anchor if file.legs else None
+    anchor = legs_of(file)[0].bottom.anchor
     origin = (0.0, 0.0) if anchor is None else anchor.at
     below: Floats = -place[:, 2] - depth - seabed.deeper(place[:, :2] - np.array(origin))
     return below

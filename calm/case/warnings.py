@@ -61,7 +61,7 @@ def _same_serial(result: LegResult, _: Solution) -> Iterator[str]:
 def _anchor_too_light(result: LegResult, _: Solution) -> Iterator[str]:
     anchor = result.anchor
     if anchor.weight < anchor.required_weight:
-        of = f" of leg {result.name}" if result.file.legs else ""
+        of = f" of leg {result.name}" if result.leg.of_several else ""
         yield (
             f"The anchor{of} weighs {say('wet_weight', anchor.weight)} in water; "
             f"{say('required_weight', anchor.required_weight)} is required to hold the line."
@@ -174,7 +174,7 @@ def _power(number: float) -> str:
 
 
 def _bight(result: LegResult, solution: Solution) -> Iterator[str]:
-    if result.file.legs:  # which hang as their ends are held
+    if result.leg.of_several:  # which hang as their ends are held
         return
     water, (east, north, up) = solution.water, solution.force[1:].T
     if solution.landed:  # as the seabed leads up so does the line above it
@@ -225,7 +225,7 @@ def _far_too_long(result: LegResult, solution: Solution) -> Iterator[str]:
     times = float(line.length.sum()) / depth
     lying = solution.element_piece[solution.hanging :].tolist()
     ropes = [pieces[p].label for p in lying if isinstance(pieces[p].component, Cable)]
-    if solution.surface and not result.file.legs and times > 2.0 and ropes:
+    if solution.surface and not result.leg.of_several and times > 2.0 and ropes:
         yield (
             f"The line is {times:.1f} times as long as the water is deep, and {ropes[0]} lies on "
             f"the seabed.{doubted_depth(depth)}"

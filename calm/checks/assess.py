@@ -66,7 +66,7 @@ def judged_stand(
     day : on which accepts count or have ended; today unless given
     """
     given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
-    if not leg.file.legs:
+    if not leg.of_several:
         given += _findings_in_waves(situations[0], name, environment, day)
     states = {_of(finding): finding.state.severity for finding in given}
     others = [

@@ -103,7 +103,7 @@ def assessment_of(
     stands : those of `stands_of`, of one environment after the other
     day : see `check`
     """
-    if not stands[0].leg.file.legs:
+    if not stands[0].leg.of_several:
         return assess.assessment_of(name, stands, day)
     own: dict[str, MooringInEnvironment] = {}
     for stand in stands:

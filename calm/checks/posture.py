@@ -11,6 +11,7 @@ from calm.checks import criterion
 from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, parts_of, pieces_of
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.files import MooringFile
+from calm.files.legs import legs_of
 from calm.quantities import say
 from calm.solve.finish import watch_circle_radius
 
@@ -47,9 +48,7 @@ def reaches_the_surface(leg: Leg) -> bool:
 
 def left_out_of_a_leg(file: MooringFile) -> tuple[str, ...]:
     """Return the rules of a whole line that say nothing of a leg with these ends."""
-    if not file.legs:
-        return ()
-    top, bottom = file.legs[0].ends
+    top, bottom = legs_of(file)[0].ends
     of_both_ends = () if top.free and bottom.anchor is not None else ("watch-circle", "scope")
     return of_both_ends if top.free else (*of_both_ends, "top-depth", "knockdown", "excursion")
 

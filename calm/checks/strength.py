@@ -13,6 +13,7 @@ from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
 from calm.checks.posture import reaches_the_surface
 from calm.files import Cable, Component, MooringFile, Piece, SafetyFactors
+from calm.files.legs import legs_of
 from calm.quantities import say
 
 WEAK_LINK = 0.5
@@ -51,10 +52,8 @@ def passes_load_on(file: MooringFile, index: int) -> bool:
     piece = file.pieces[index]
     if piece.length == 0.0 and abs(piece.component.net_buoyancy) < WEIGHT_OF_A_HINGE:
         return False
-    first, last = 1, len(file.pieces) - 1
-    if file.legs:
-        first, last = int(file.legs[0].top.free), last - file.legs[0].bottom.free
-    return first <= index < last
+    top, bottom = legs_of(file)[0].ends
+    return int(top.free) <= index < len(file.pieces) - 1 - bottom.free
 
 
 def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -> float:

@@ -140,7 +140,8 @@ class Deck:
 
     def leg(self, index: int) -> str:
         """Return the name of the leg that a piece is in; nothing of a single line."""
-        return self.file.legs[leg_numbers(self.file)[index]].name if self.file.legs else ""
+        number = leg_numbers(self.file)[index]
+        return self.result.legs[number].name if self.result.several else ""
 
     def by_leg(
         self, items: Iterable[_Listed], index: Callable[[_Listed], int]

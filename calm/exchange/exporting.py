@@ -206,7 +206,7 @@ def _omitted(leg: Leg) -> tuple[str, ...]:
     omitted = ["limits of the design check, strengths, ratings and tilts of components"]
     if file.solver.strumming is not None:
         omitted.append("strumming: cables have their drag at rest")
-    anchor = file.legs[0].bottom.anchor if file.legs else None
+    anchor = leg.bottom.anchor
     if file.environment.seabed is not None or (anchor is not None and anchor.depth is not None):
         omitted.append("the slope of the seabed: it is level there, as deep as the deepest anchor")
     if file.solver.drag == "reynolds":

@@ -95,7 +95,7 @@ class EndKeys(Model):
         return self.join is None and self.anchor is None and self.held is None
 
 
-_FREE = EndKeys()
+_FREE, _ANCHORED = EndKeys(), EndKeys(anchor=AnchoredKeys())
 
 
 def _end_given(value: object) -> object:
@@ -145,8 +145,10 @@ class Leg:
     def line_of(self, file: MooringFile) -> MooringFile:
         """Return the leg as the file of a single line: its pieces, counted from its upper end.
 
-        One without an anchor has a stand-in for it, of the id `STAND_IN`.
+        One of several without an anchor has a stand-in for it, of the id `STAND_IN`.
         """
+        if not file.legs:
+            return file
         own = file.pieces[self.first : self.end]
         pieces = [replace(piece, index=index) for index, piece in enumerate(own)]
         if self.bottom.anchor is None:
@@ -372,23 +374,23 @@ def refuse_all_but_moorings(file: MooringFile) -> None:
     refuse_tow(file)
 
 
-def ends_of(file: MooringFile) -> tuple[EndKeys, EndKeys]:
-    """Return what holds the upper and the lower end of a single line, or of the first leg.
+def legs_of(file: MooringFile) -> tuple[Leg, ...]:
+    """Return the legs of a file; of a single line one, with its ends.
 
     A tow is held at the ship, a mooring stands on its anchor.
     """
     if file.legs:
-        return file.legs[0].ends
+        return file.legs
+    ends = _FREE, _ANCHORED
     if file.tow is not None:
         ship = HeldKeys.model_construct(depth=-file.tow.height, at=(0.0, 0.0))
-        return EndKeys(held=ship), _FREE
-    return _FREE, EndKeys(anchor=AnchoredKeys())
+        ends = EndKeys(held=ship), _FREE
+    return (Leg(file.name, 0, len(file.pieces), *ends),)
 
 
 def leg_numbers(file: MooringFile) -> list[int]:
-    """Return the number of the leg that each piece of a file is in; a single line is one."""
-    numbers = [n for n, leg in enumerate(file.legs) for _ in range(leg.first, leg.end)]
-    return numbers or [0] * len(file.pieces)
+    """Return the number of the leg that each piece of a file is in."""
+    return [n for n, leg in enumerate(legs_of(file)) for _ in range(leg.first, leg.end)]
 
 
 def nodes_of(legs: Sequence[Leg]) -> Mapping[str, int]:

@@ -75,7 +75,7 @@ def deck_sheets(deck: Deck) -> dict[str, tuple[Sequence[str], Rows]]:
         "recovery": [*enumerate(deck.recovery, 1)],
     }
     sheets = {name: _sheet(_COLUMNS[name], items) for name, items in rows.items()}
-    if deck.file.legs:
+    if deck.result.several:
         for name, index in _INDEX.items():
             heads, listed = sheets[name]
             legs = [deck.leg(index(one)) for one in rows[name]]

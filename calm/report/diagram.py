@@ -273,7 +273,7 @@ def _columns(
         else:
             there = placed(group, _TOP + sea, _TOP + sea + group[0].height / 2)
         below = f"continues at {mark}" if mark else bottom
-        leg = leg_title(line) if line.file.legs else ""
+        leg = leg_title(line) if line.leg.of_several else ""
         yield _PageColumn(there, above, below, afloat and above is None, leg)
         above = f"from {mark}"
 
@@ -323,7 +323,7 @@ def _fields(deck: Deck, paper: Paper) -> list[_Fields]:
 def _known(deck: Deck) -> dict[str, str]:
     """The anchor's weights, what floats the release after the worst break, and the verdict."""
     anchors = [one for one in deck.assessment.inventory if one.role == "anchor"]
-    if not deck.file.legs:
+    if not deck.result.several:
         anchors = anchors[-1:] or [deck.assessment.inventory[-1]]
     texts = [
         ", ".join(

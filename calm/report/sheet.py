@@ -189,7 +189,7 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
         names, of_an_end = _TOW_COLUMNS, "Depth and layback"
     elif result.several:
         names, of_an_end = _NET_COLUMNS, "Depth, east and north"
-        heads = {leg.file.legs[0].first: leg_title(leg) for leg in result.legs}
+        heads = {leg.leg.keys.first: leg_title(leg) for leg in result.legs}
     columns = [Column("no.", numeric=True, narrow=False), Column("piece", short="")]
     rows: list[tuple[Cell, ...]] = []
     for number, (piece, clamps) in enumerate(rows_down(result)):
