@@ -91,7 +91,7 @@ def build_result(**changes):
     _of_the_file(components, clamps, pieces)
     limits = Record(steel=3.0, synthetic=5.0, surface=5.0)
     file = Record(
-        pieces=pieces, checks=Record(safety_factor=limits), environment=Record(depth=1100.0),
+        name="Iroise 2026", pieces=pieces, checks=Record(safety_factor=limits), environment=Record(depth=1100.0),
         solver=Record(strumming=None), legs=(), tow=None,
     )  # fmt: skip
     water = Record(
@@ -117,7 +117,7 @@ def build_result(**changes):
         file=file, strumming=None, profilers=(), tow_point=None, body=None,
         strumming_band=StrummingBand(1.5, "converged", 118.0, 13.05, 5333.3),
     )  # fmt: skip
-    leg = Record(file=file, water=water, towed=False, anchored=True)
+    leg = Record(file=file, water=water, towed=False, anchored=True, for_surface=False)
     result = _solved(leg, fields | changes)
     result.to_dict = lambda: {"name": result.name, "status": result.status, "miss": result.miss}
     return result
