@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
 
-from calm.case.result_tables import Clamps, Components, Shape
+from calm.case.result_tables import MOORED_ENDS, Clamps, Components, Shape, documents
 from calm.case.strumming import Strumming, StrummingBand, band_of
-from calm.files import Clamp, MooringFile, Piece
-from calm.files.legs import leg_numbers
+from calm.files import MooringFile
 from calm.physics.line import Floats
 from calm.solve.solution import OtherEquilibrium
 
@@ -32,14 +31,6 @@ def document_of(
     """The JSON object of a result; `ends` stand before its components, `last` behind its clamps."""
     from calm.version import __version__
 
-    components, clamps = result.components.to_dicts(), result.clamps.to_dicts()
-    for component in components:
-        for name in ("kind", "role", "tension", "least_tension"):
-            del component[name]
-    parts: list[Piece | Clamp] = [*result.components.part, *result.clamps.part]
-    for row, part in zip((*components, *clamps), parts, strict=True):
-        if part.serial is not None:
-            row["serial"] = part.serial
     document = result.file.document
     told = ("type", "status", "iterations", "segments", "miss", "closure")
     return {
@@ -49,8 +40,8 @@ def document_of(
         **{name: getattr(result, name) for name in told},
         "accuracy": {k: v for k, v in asdict(result.accuracy).items() if v is not None},
         **ends,
-        "components": components,
-        "clamps": clamps,
+        "components": documents(result.components, result.file),
+        "clamps": documents(result.clamps, result.file),
         **last,
         "warnings": list(result.warnings),
     }
@@ -341,13 +332,10 @@ class NetResult(ResultForms):
         """Of each leg the depth of its free upper end [m], the share in use of the buoyancy there,
         and the pull on its anchor up and sideways [N]; NaN where there is none.
         """
-        free = np.array([1.0 if keys.top.free else nan for keys in self.file.legs])
         return {
-            "top_depth": free * [leg.top.depth for leg in self.legs],
-            "anchor_vertical": np.array([leg.anchor.vertical for leg in self.legs]),
-            "anchor_horizontal": np.array([leg.anchor.horizontal for leg in self.legs]),
-            "used_buoyancy": free * [leg.top.used_buoyancy for leg in self.legs],
-            "other_used_buoyancy": nan * free,
+            one.name: np.array([one.found(leg) for leg in self.legs])
+            for one in MOORED_ENDS
+            if one.found
         }
 
     def to_dict(self) -> dict[str, Any]:
@@ -372,10 +360,7 @@ class NetResult(ResultForms):
                 for leg in self.legs
             ],
         }
-        document, numbers = document_of(self, ends), leg_numbers(self.file)
-        for row in (*document["components"], *document["clamps"]):
-            row["leg"] = self.legs[numbers[row["index"]]].name
-        return document
+        return document_of(self, ends)
 
 
 _OF_ANCHORS = ("required_weight", "weight", "grounded_length", "slack_length")

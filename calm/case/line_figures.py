@@ -1,0 +1,220 @@
+"""Arrays measured on a solution, of which the columns of a result are made.
+
+Pieces are those solved for, first-listed first: an anchor is not among them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from calm.files import Clamp, Piece
+from calm.files.mooring_file import clamps_in
+from calm.physics.line import Floats, Integers
+from calm.physics.track import head_count
+from calm.solve import Solution
+
+
+class LineFigures:
+    """Figures of the n pieces of a solved line; `top` and `bottom` are their ends.
+
+    Attributes
+    ----------
+    solution, still : the line, and the same in still water, for the knockdown
+    pieces : (n,) of the file, for what the solution does not know
+    upper, lower : (n,) nodes of the first-listed and of the other end
+    top, bottom : (n, 3) where these are: east, north, up [m]
+    """
+
+    def __init__(
+        self, solution: Solution, still: Solution | None = None, pieces: Sequence[Piece] = ()
+    ) -> None:
+        self.solution, self.still, self.pieces = solution, still, pieces
+        self._ahead = slice(None, None, -1) if solution.line.towed else slice(None)
+        self._first, self._last = solution.piece_nodes.T
+        ends = (self._last, self._first) if solution.line.towed else (self._first, self._last)
+        self.upper, self.lower = ends[0][self._ahead], ends[1][self._ahead]
+        self.top, self.bottom = solution.position[self.upper], solution.position[self.lower]
+
+    @property
+    def count(self) -> int:
+        """How many pieces there are."""
+        return len(self.upper)
+
+    @property
+    def index(self) -> Integers:
+        """(n,) of the piece in the file."""
+        return np.array([piece.index for piece in self.pieces])
+
+    @cached_property
+    def length(self) -> Floats:
+        """(n,) stretched [m]."""
+        stretched, solution = np.zeros(self.count), self.solution
+        np.add.at(stretched, solution.element_piece, solution.cut * (1.0 + solution.strain))
+        return stretched[self._ahead]
+
+    @property
+    def cut_length(self) -> Floats:
+        """(n,) unstretched [m]."""
+        return self.solution.line.length[self._ahead]
+
+    @property
+    def tension_top(self) -> Floats:
+        """(n,) at the first-listed end [N]."""
+        tension: Floats = self.solution.tension[self.upper]
+        return tension
+
+    @property
+    def tension_bottom(self) -> Floats:
+        """(n,) at the other end [N]."""
+        tension: Floats = self.solution.tension[self.lower]
+        return tension
+
+    @property
+    def greatest_tension(self) -> Floats:
+        """(n,) [N]."""
+        tension = self.solution.tension
+        within = np.maximum.reduceat(tension[:-1], self._first)
+        greatest: Floats = np.maximum(within, tension[self._last])[self._ahead]
+        return greatest
+
+    @property
+    def least_tension(self) -> Floats:
+        """(n,) of what does not lie on the seabed [N]; NaN where all of a piece does."""
+        tension = self.solution.tension
+        hanging = np.where(np.arange(len(tension)) <= self.solution.hanging, tension, np.inf)
+        within = np.minimum.reduceat(hanging[:-1], self._first)
+        least = np.minimum(within, hanging[self._last])[self._ahead]
+        return np.where(np.isfinite(least), least, np.nan)
+
+    @cached_property
+    def tilt(self) -> Floats:
+        """(n,) of the chord from the vertical [degrees]; where it has no length of the pull, and
+        all of a head, which is one rod, that of the rod.
+        """
+        solution, chord = self.solution, self.top - self.bottom
+        pull = solution.force[self.upper] + solution.force[self.lower]
+        lean = np.where(
+            np.linalg.norm(chord, axis=1) > 0,
+            leaning_of(chord),
+            leaning_of(-pull if solution.line.towed else pull),
+        )
+        head = 0 if solution.pulled else head_count(solution.line)
+        if head and (self.top[0] != self.bottom[head - 1]).any():
+            lean[:head] = leaning_of(self.top[0] - self.bottom[head - 1])
+        return lean
+
+    @property
+    def knockdown(self) -> Floats:
+        """(n,) [m]; NaN without the line in still water."""
+        if self.still is None:
+            return np.full(self.count, np.nan)
+        before = self.still.piece_nodes[self._ahead, 1 if self.solution.line.towed else 0]
+        knockdown: Floats = self.still.position[before, 2] - self.top[:, 2]
+        return knockdown
+
+    @property
+    def reynolds(self) -> Floats:
+        """(n,) greatest Reynolds number of speed and diameter; NaN without a diameter."""
+        solution = self.solution
+        middle = -0.5 * (solution.position[:-1] + solution.position[1:])[:, 2]
+        speed = np.linalg.norm(solution.water.current_at(middle), axis=1)
+        greatest = np.zeros(self.count)
+        np.maximum.at(greatest, solution.element_piece, speed / solution.water.viscosity_at(middle))
+        return greatest[self._ahead] * catalogue_figures(self.pieces, "diameter")
+
+
+class ClampFigures:
+    """Figures of the m instruments clamped on a line, those on the first-listed piece first.
+
+    Attributes
+    ----------
+    clamps : (m,) of the file
+    index : (m,) of the piece each sits on
+    position : (m, 3) east, north, up [m]
+    """
+
+    def __init__(
+        self, pieces: Sequence[Piece], solution: Solution, still: Solution | None = None
+    ) -> None:
+        self.solution, self.still = solution, still
+        order = clamps_in(pieces)
+        elements = np.flatnonzero(solution.element_clamp >= 0)
+        self.index: Integers = solution.element_piece[elements]
+        if solution.line.towed:
+            elements = elements[::-1]
+            self.index = len(pieces) - 1 - self.index[::-1]
+        self.clamps = [order[which] for which in solution.element_clamp[elements]]
+        self.position, self._elements = solution.position[elements], elements
+
+    @property
+    def tension(self) -> Floats:
+        """(m,) the greater of those above and below [N]."""
+        tension = self.solution.tension
+        return np.maximum(tension[self._elements], tension[self._elements + 1])
+
+    @property
+    def tilt(self) -> Floats:
+        """(m,) of the pull in the line, above and below alike; on a rigid piece its [degrees]."""
+        solution, elements = self.solution, self._elements
+        pull = solution.force[elements] + solution.force[elements + 1]
+        cable = solution.line.flexible[solution.element_piece[elements]]
+        tilt = leaning_of(-pull if solution.line.towed else pull)
+        return (
+            tilt if cable.all() else np.where(cable, tilt, LineFigures(solution).tilt[self.index])
+        )
+
+    @property
+    def knockdown(self) -> Floats:
+        """(m,) [m]; NaN without the line in still water."""
+        if self.still is None:
+            return np.full(len(self._elements), np.nan)
+        before = self.still.position[np.flatnonzero(self.still.element_clamp >= 0)]
+        ahead = slice(None, None, -1) if self.solution.line.towed else slice(None)
+        return before[ahead, 2] - self.position[:, 2]
+
+
+@dataclass(frozen=True)
+class NodeFigures:
+    """Figures of the k nodes of a line, free end first."""
+
+    solution: Solution
+
+    @property
+    def position(self) -> Floats:
+        """(k, 3) east, north, up [m]."""
+        return self.solution.position
+
+    @property
+    def tension(self) -> Floats:
+        """(k,) [N]."""
+        return self.solution.tension
+
+    @property
+    def tilt(self) -> Floats:
+        """(k,) of the segment that ends at each [degrees]."""
+        chord = self.solution.position[:-1] - self.solution.position[1:]
+        if self.solution.line.towed:
+            chord = -chord
+        lengthy = np.linalg.norm(chord, axis=1) > 0
+        # a point without length leans as the segment above it, the first ones as the one below
+        last = np.maximum.accumulate(np.where(lengthy, np.arange(len(chord)), -1))
+        first = int(np.argmax(lengthy))
+        leaning = leaning_of(chord)[np.where(last >= 0, last, first)]
+        return np.concatenate([leaning[:1], leaning])
+
+
+def leaning_of(vector: Floats) -> Floats:
+    """Angle of upward-pointing vectors (..., 3) from the vertical [degrees]; 0 for none."""
+    horizontal = np.hypot(vector[..., 0], vector[..., 1])
+    tilt: Floats = np.degrees(np.arctan2(horizontal, vector[..., 2]))
+    return np.where((horizontal > 0) | (vector[..., 2] != 0), tilt, 0.0)
+
+
+def catalogue_figures(parts: Sequence[Piece | Clamp], name: str) -> Floats:
+    """(n,) a figure of the components of pieces or clamps; NaN where it is not known."""
+    values = [getattr(part.component, name, None) for part in parts]
+    return np.array([np.nan if value is None else value for value in values])
