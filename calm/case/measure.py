@@ -12,7 +12,15 @@ import numpy as np
 from calm.assemble import net_buoyancy
 from calm.case.line_figures import ClampFigures, LineFigures, NodeFigures
 from calm.case.result import Accuracy, AnchorLoad, Result, Top
-from calm.case.result_tables import Clamps, ComponentRow, Components, LineEnd, OnAnchor, Shape
+from calm.case.result_tables import (
+    ClampRow,
+    Clamps,
+    ComponentRow,
+    Components,
+    LineEnd,
+    OnAnchor,
+    Shape,
+)
 from calm.case.strumming import strumming_of
 from calm.case.warnings import warnings_of
 from calm.files import Clamp, Piece
@@ -61,7 +69,7 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
     components = with_anchor(above, pieces[-1], mooring.water.depth)
     clamps = clamps_of(pieces[:-1], solution, still)
     for clamp in clamps_down(pieces[-1:]):
-        clamps = Clamps.joined([clamps, on_anchor(clamp, components[-1])])
+        clamps = clamps.with_row(on_anchor(clamp, components[-1]))
     knockdown, riding = float(components.knockdown[0]), solution.riding
     shape = shape_of(solution)
     still_shape = shape if still is solution else None if still is None else shape_of(still)
@@ -102,9 +110,11 @@ def with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
     return Components.joined([above, _standing(Components, anchor, end)])
 
 
-def on_anchor(clamp: Clamp, anchor: ComponentRow) -> Clamps:
-    """The row of what is clamped on the anchor."""
-    return _standing(Clamps, clamp, OnAnchor(clamp, anchor))
+def on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
+    """Return what is clamped on the anchor stands still with it, and is held with the line's
+    pull.
+    """
+    return _standing(Clamps, clamp, OnAnchor(clamp, anchor))[0]
 
 
 def _standing(table: type[T], part: Piece | Clamp, end: LineEnd | OnAnchor) -> T:

@@ -150,6 +150,11 @@ class ColumnTable(Columnar, Generic[Row]):
         """Return the first rows."""
         return type(self)(**{name: part[:count] for name, part in self.__getstate__().items()})
 
+    def with_row(self, row: Row) -> Self:
+        """Return the same table with one more row."""
+        last = {name: [getattr(row, name)] for name in self.names()}
+        return self.joined([self, type(self)(**last)])
+
     def to_dicts(self) -> list[dict[str, Any]]:
         """The rows as dictionaries of plain numbers and text; None where unknown."""
         names = [name for name in self.names() if name != _OF_THE_FILE]

@@ -7,10 +7,12 @@ from typing import Any
 import xarray as xr
 
 import calm
-from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS, OF_NODE
+from calm.batch.profiles import Profiles
+from calm.case.columns import Output, ResultColumn
+from calm.case.result_tables import OF_ROWS, Clamps, Components, Shape
 from calm.motion.correction import OF_MOTION
 from calm.quantities import QUANTITIES
-from calm.report.result_files import HEADER, result_netcdf
+from calm.report.result_files import result_netcdf
 from calm.shipped import shipped_folder
 from pages.markdown import code, plain, table
 
@@ -46,11 +48,6 @@ _MEANINGS = {
         "depth of the free end, length on the seabed, share of the float's buoyancy in use, and "
         "anchor load in another equilibrium; `null` if none was found",
     ),
-    "index": ("", "number of the piece in the file, from 0"),
-    "use": ("", "the component's id"),
-    "label": ("", "name of the piece in this line"),
-    "reynolds": ("", "Reynolds number of the flow across the piece"),
-    "shape.depth": ("m", "depth of every node, free end first"),
     "warnings": ("", "[sentences](messages.md#warnings)"),
     "toward": ("deg", "where the ship goes to, clockwise from north"),
     "body.tension": ("N", "pull on the towed body"),
@@ -75,7 +72,7 @@ def page() -> str:
         table(("key", "unit", "meaning"), (_json(key) for key, _ in own)),
         "## CSV",
         "A row for each piece and each clamped instrument:",
-        table(("column", "meaning"), map(_column, HEADER)),
+        table(("column", "meaning"), _csv()),
         "## NetCDF of one equilibrium",
         table(("variable", "dimensions", "unit", "meaning"), _netcdf(result_netcdf(moored))),
         "A tow has these in place of the figures of its ends:",
@@ -102,8 +99,22 @@ def _keys(document: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, 
             yield f"{before}{key}", value
 
 
+_COLUMNS = {
+    f"{part}{one.name}": one
+    for part, columns in {
+        "components[].": (*OF_ROWS, *Components.columns()),
+        "clamps[].": (*OF_ROWS, *Clamps.columns()),
+        "shape.": Shape.columns(),
+    }.items()
+    for one in columns
+}
+"""The columns of results by the keys of JSON."""
+
+
 def _json(key: str) -> tuple[str, str, str]:
     last = key.rpartition(".")[2]
+    if key in _COLUMNS:
+        return code(key), _COLUMNS[key].unit, plain(_COLUMNS[key].description)
     if key in _MEANINGS or last in _MEANINGS:
         unit, meaning = _MEANINGS.get(key) or _MEANINGS[last]
         return code(key), unit, meaning
@@ -111,11 +122,11 @@ def _json(key: str) -> tuple[str, str, str]:
     return code(key), quantity.unit, plain(quantity.meaning)
 
 
-def _column(header: str) -> tuple[str, str]:
-    name = header.partition("[")[0]
-    if name in ("mooring", "part"):
-        return code(header), {"mooring": "its name", "part": "`component` or `clamp`"}[name]
-    return code(header), _json(name)[2]
+def _csv() -> Iterator[tuple[str, str]]:
+    yield code("mooring"), "its name"
+    yield code("part"), "`component` or `clamp`"
+    for one in Components.columns(Output.CSV):
+        yield code(one.header), plain(one.description)
 
 
 def _netcdf(content: bytes) -> list[tuple[str, str, str, str]]:
@@ -133,13 +144,13 @@ def _variable(name: str, dimensions: Any, attributes: Mapping[str, Any]) -> tupl
 
 def _batch() -> Iterator[tuple[str, ...]]:
     yield code("time"), "time", "", "time of the profile"
-    for dimension, quantities in {
-        "component": OF_COMPONENT, "clamp": OF_CLAMP, "": OF_ENDS, "node": OF_NODE
-    }.items():  # fmt: skip
-        for name, (unit, meaning, _) in quantities.items():
-            yield _variable(
-                name, filter(None, ("time", dimension)), {"units": unit, "long_name": meaning}
-            )
+    entered: dict[str, list[ResultColumn]] = {
+        **Profiles.columns(),
+        "node": Shape.columns(Output.BATCH),
+    }
+    for dimension, columns in entered.items():
+        for one in columns:
+            yield _variable(one.variable, filter(None, ("time", dimension)), one.described)
     yield (
         code("status"),
         "time",

@@ -45,10 +45,10 @@ def test_a_table_has_the_columns_of_its_rows_and_no_others(clamps):
         clamps.with_columns(drag=np.zeros(2))
 
 
-def test_tables_are_joined_and_cut(clamps):
+def test_tables_are_joined_and_get_rows(clamps):
     both = Clamps.joined([clamps, clamps.with_columns(label=["C", "D"])])
     assert both.label == ["A", "B", "C", "D"] and both.depth[2] == 1.5
-    longer = Clamps.joined([clamps, clamps.head(1)])
+    longer = clamps.with_row(clamps[0])
     assert longer.label == ["A", "B", "A"] and longer.depth.tolist()[2] == 1.5
     assert longer.index.dtype == clamps.index.dtype
 
