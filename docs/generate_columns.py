@@ -59,11 +59,11 @@ BLOCKS: dict[str, dict[str, Callable[[], str]]] = {
     },
     "batch": {"batch": _of_batch},
 }
-"""What is written into each page, between `<!-- columns: NAME -->` and `<!-- columns end -->`."""
+"""Tables of each page, written between `<!-- columns: NAME -->` and `<!-- columns end -->`."""
 
 
 def pages() -> Iterator[tuple[Path, str]]:
-    """Each page, and its text with the columns as they are."""
+    """Each page, and its text with current tables."""
     for page, blocks in BLOCKS.items():
         path = REFERENCE / f"{page}.md"
         text = path.read_text(encoding="utf-8")

@@ -52,9 +52,9 @@ class Profiles(Columnar):
     offsets and knockdown [m], tensions and forces [N], tilt [degrees]; the p components
     are in the order of the file, the anchor last, the m clamps down the line.
 
-    Besides those listed it has the columns of `Components`, (n, p), of `Clamps` as ``clamp_depth``
-    and so on, (n, m), and those of the line as a whole, (n,), or (n, l) of the legs of a net, that
-    a batch has: see the manual.
+    Further attributes are the batch columns: those of `Components` have the shape (n, p), those of
+    `Clamps`, such as ``clamp_depth``, (n, m), and those of the ends (n,), or (n, l) for the legs of
+    a net. `Profiles.columns` lists them.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class Profiles(Columnar):
 
     @classmethod
     def columns(cls) -> dict[str, list[ResultColumn]]:
-        """Return the columns of the components, of the clamps and of the line as a whole."""
+        """The batch columns by dimension: `component`, `clamp`, and none for the ends."""
         return {
             "component": Components.columns(Output.BATCH),
             "clamp": Clamps.columns(Output.BATCH),
@@ -85,7 +85,7 @@ class Profiles(Columnar):
     def made(
         cls, pieces: Sequence[Piece], status: NDArray[np.int8], columns: Mapping[str, Floats]
     ) -> Profiles:
-        """The profiles of a line; what follows from other columns follows."""
+        """Make the profiles of a line, with labels and derived columns."""
         parts: dict[str, Sequence[Piece | Clamp]] = {
             "component": pieces,
             "clamp": clamps_down(pieces),

@@ -1,8 +1,7 @@
-"""What a column of a result is: its title and unit, what it means, how it is found, who shows it.
+"""The entry of a result column: title, unit, description, computation and outputs.
 
-The columns themselves stand in `calm.case.result_tables`, one entry each. Tables, JSON, CSV,
-NetCDF, the results of batches, the builder and the manual ask there, so that a column that is
-entered appears in all outputs that its entry names.
+The entries are in `calm.case.result_tables`, one for each column. Tables, JSON, CSV, NetCDF,
+batches, the builder and the manual read them, so a new entry appears in every output it names.
 """
 
 from __future__ import annotations
@@ -19,18 +18,18 @@ from calm.quantities import QUANTITIES, Quantity
 
 _ENTRY = "column"
 _CF_UNITS = {"": "1", "deg": "degree", "m/s": "m s-1"}
-"""Units as the CF conventions write them, where results have them otherwise."""
+"""CF spelling of the units that results spell differently."""
 
 
 class Output(Flag):
-    """Where a column appears; every one is an array of the tables in Python, too."""
+    """Outputs of a column. In Python every column is an array of its table, even without any."""
 
     JSON = auto()
     CSV = auto()
     NETCDF = auto()
-    """Of one equilibrium: `calm run`, `Result.to_xarray`."""
+    """NetCDF and `to_xarray` of one equilibrium."""
     BATCH = auto()
-    """Of many profiles: `calm batch`, `calm motion`, `calm.solve_profiles`."""
+    """Results of many profiles: `calm batch`, `calm motion`, `calm.solve_profiles`."""
     MOORING_TABLE = auto()
     TOW_TABLE = auto()
     NET_TABLE = auto()
@@ -45,27 +44,27 @@ _LAST = 1000
 
 @dataclass(frozen=True)
 class ResultColumn:
-    """One figure, or word, of the rows of a result.
+    """A column of a result table.
 
-    It is found in one of four ways: `of_part` from the piece or clamp of the file, `found` from the
-    arrays of a solved line, with `at_anchor` for the row of an anchor, `derived` from columns
-    entered before it, or `of_row` when a row is shown.
+    Each column is computed in one of four ways: `of_part` reads the piece or clamp of the file;
+    `found` reads the arrays of a solved line, and `at_anchor` fills the row of the anchor;
+    `derived` combines earlier columns; `of_row` is evaluated when an output shows a row.
 
     Attributes
     ----------
-    name : in Python and JSON
-    quantity : its title, the unit of its numbers, its digits; None of words
-    description : what it is, for the manual and the `long_name` of NetCDF
-    outputs : where it appears
-    prefix : of its name in NetCDF and in batches
-    of_part : its value for a piece or clamp of the file
-    found : (n,) its values, of `LineFigures`, `ClampFigures` or `NodeFigures`
-    at_anchor : its value for an anchor, of `LineEnd`, or for what is clamped on it, of `OnAnchor`
-    derived : (…, n) its values, of the other columns by their names, with `part` of (n,)
-    of_row : its value, of a row and the file of the mooring; kept in no table
-    worst : that of several like pieces which share a row in the builder
-    place : from the left in tables for people; without one on the right
-    attributes : further ones of the NetCDF variable
+    name : name in Python and JSON
+    quantity : title, unit and digits of a numeric column; None for text
+    description : meaning, for the manual and the NetCDF `long_name`
+    outputs : outputs that show the column
+    prefix : prefix of the name in NetCDF and batches
+    of_part : value for a piece or clamp of the file
+    found : values (n,) from `LineFigures`, `ClampFigures` or `NodeFigures`
+    at_anchor : value for the anchor, from a `LineEnd`, or for a clamp on it, from an `OnAnchor`
+    derived : values (…, n) from a namespace of earlier columns and `part`, the n pieces or clamps
+    of_row : value from a row and the mooring file; no table stores it
+    worst : picks one value for the builder, where several pieces share a row
+    place : rank from the left in tables for people; columns without one come last
+    attributes : additional attributes of the NetCDF variable
     """
 
     name: str
@@ -84,33 +83,33 @@ class ResultColumn:
 
     @property
     def variable(self) -> str:
-        """The name in NetCDF and in batches."""
+        """Name in NetCDF and batches."""
         return self.prefix + self.name
 
     @property
     def header(self) -> str:
-        """Name and unit as the head of a column of CSV."""
+        """Heading in CSV: name and unit."""
         return self.name if self.quantity is None else self.quantity.header
 
     @property
     def unit(self) -> str:
-        """SI, or degrees; empty of a pure number and of words."""
+        """SI unit, or degrees; empty for text and pure numbers."""
         return "" if self.quantity is None else self.quantity.unit
 
     @property
     def term(self) -> tuple[str, str, Attributes]:
-        """Unit, meaning and further attributes by the CF conventions."""
+        """CF unit, description and additional attributes."""
         return _CF_UNITS.get(self.unit, self.unit), self.description, dict(self.attributes)
 
     @property
     def described(self) -> Attributes:
-        """The attributes of a variable by the CF conventions; words have no unit."""
+        """Attributes of the NetCDF variable; text has no unit."""
         unit, meaning, more = self.term
         units = {} if self.quantity is None else {"units": unit}
         return {**units, "long_name": meaning, **more}
 
     def value(self, row: Any, file: MooringFile) -> Any:
-        """What a row shows; None of one that has no such column, as a clamp has no length."""
+        """Value shown for a row; None if the row lacks the column, as clamps lack a length."""
         return self.of_row(row, file) if self.of_row else getattr(row, self.name, None)
 
 
@@ -122,13 +121,13 @@ def column(
     in_repr: bool = True,
     **more: Any,
 ) -> Any:
-    """Enter a column: the field of a class of rows, or of arrays, which gives it its name.
+    """Declare a dataclass field as a result column; the field gives the column its name.
 
     Parameters
     ----------
-    description, outputs, more : as of `ResultColumn`
-    quantity : where `QUANTITIES` has none of the name; words have none
-    in_repr : whether a row says it where it is printed
+    description, outputs, more : attributes of the `ResultColumn`
+    quantity : by default the entry of `QUANTITIES` with the name of the field, if there is one
+    in_repr : whether the `repr` of a row includes the field
     """
     entry = ResultColumn("", quantity, description, outputs, **more)
     return field(repr=in_repr, metadata={_ENTRY: entry})
@@ -138,9 +137,9 @@ _known: dict[type[Any], tuple[ResultColumn, ...]] = {}
 
 
 def columns_of(record: type[Any]) -> tuple[ResultColumn, ...]:
-    """The columns of a class of rows, or of arrays, in their order.
+    """The columns of a dataclass, in the order of its fields.
 
-    A field that is not entered by `column` has the words of the quantity of its name.
+    Fields declared without `column` take title and meaning from `QUANTITIES`.
     """
     if record not in _known:
         _known[record] = tuple(_columns_of(record))
@@ -158,21 +157,21 @@ def _columns_of(record: type[Any]) -> Iterator[ResultColumn]:
 
 
 def shown_in(columns: Iterable[ResultColumn], output: Output) -> list[ResultColumn]:
-    """Those of some columns that appear in an output."""
+    """The columns that an output shows."""
     return [one for one in columns if output in one.outputs]
 
 
 def terms(columns: Iterable[ResultColumn]) -> dict[str, tuple[str, str, Attributes]]:
-    """Unit, meaning and attributes of the variables of columns, by their names."""
+    """CF unit, description and attributes of each variable, by its name."""
     return {one.variable: one.term for one in columns}
 
 
 def derive(columns: Iterable[ResultColumn], known: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the values of the columns that follow from others, by name.
+    """Compute the derived columns, by name.
 
     Parameters
     ----------
-    known : the others, by name; `part` are the pieces or clamps
+    known : the other columns by name, and `part`, the pieces or clamps
     """
     rows, found = SimpleNamespace(**known), {}
     for one in columns:

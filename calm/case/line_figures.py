@@ -1,6 +1,6 @@
-"""Arrays measured on a solution, of which the columns of a result are made.
+"""Arrays measured on a solved line: the columns of pieces, clamps and nodes.
 
-Pieces are those solved for, first-listed first: an anchor is not among them.
+Pieces are in the order of the file, without the anchor.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from calm.solve import Solution
 
 
 class LineFigures:
-    """Figures of the n pieces of a solved line; `top` and `bottom` are their ends.
+    """Columns of the n pieces of a solved line.
 
     Attributes
     ----------
-    solution, still : the line, and the same in still water, for the knockdown
-    pieces : (n,) of the file, for what the solution does not know
-    upper, lower : (n,) nodes of the first-listed and of the other end
-    top, bottom : (n, 3) where these are: east, north, up [m]
+    solution, still : the line in the current, and in still water for the knockdown
+    pieces : (n,) pieces of the file; needed for `index` and `reynolds` only
+    upper, lower : (n,) node numbers of the first-listed and the other end
+    top, bottom : (n, 3) positions of these ends: east, north, up [m]
     """
 
     def __init__(
@@ -41,41 +41,41 @@ class LineFigures:
 
     @property
     def count(self) -> int:
-        """How many pieces there are."""
+        """Number of pieces."""
         return len(self.upper)
 
     @property
     def index(self) -> Integers:
-        """(n,) of the piece in the file."""
+        """(n,) numbers of the pieces in the file."""
         return np.array([piece.index for piece in self.pieces])
 
     @cached_property
     def length(self) -> Floats:
-        """(n,) stretched [m]."""
+        """(n,) stretched lengths [m]."""
         stretched, solution = np.zeros(self.count), self.solution
         np.add.at(stretched, solution.element_piece, solution.cut * (1.0 + solution.strain))
         return stretched[self._ahead]
 
     @property
     def cut_length(self) -> Floats:
-        """(n,) unstretched [m]."""
+        """(n,) unstretched lengths [m]."""
         return self.solution.line.length[self._ahead]
 
     @property
     def tension_top(self) -> Floats:
-        """(n,) at the first-listed end [N]."""
+        """(n,) tensions at the first-listed end [N]."""
         tension: Floats = self.solution.tension[self.upper]
         return tension
 
     @property
     def tension_bottom(self) -> Floats:
-        """(n,) at the other end [N]."""
+        """(n,) tensions at the other end [N]."""
         tension: Floats = self.solution.tension[self.lower]
         return tension
 
     @property
     def greatest_tension(self) -> Floats:
-        """(n,) [N]."""
+        """(n,) greatest tension within each piece [N]."""
         tension = self.solution.tension
         within = np.maximum.reduceat(tension[:-1], self._first)
         greatest: Floats = np.maximum(within, tension[self._last])[self._ahead]
@@ -83,7 +83,7 @@ class LineFigures:
 
     @property
     def least_tension(self) -> Floats:
-        """(n,) of what does not lie on the seabed [N]; NaN where all of a piece does."""
+        """(n,) least tension above the seabed [N]; NaN for a piece that lies on it entirely."""
         tension = self.solution.tension
         hanging = np.where(np.arange(len(tension)) <= self.solution.hanging, tension, np.inf)
         within = np.minimum.reduceat(hanging[:-1], self._first)
@@ -92,8 +92,10 @@ class LineFigures:
 
     @cached_property
     def tilt(self) -> Floats:
-        """(n,) of the chord from the vertical [degrees]; where it has no length of the pull, and
-        all of a head, which is one rod, that of the rod.
+        """(n,) angle of the chord from the vertical [degrees].
+
+        A piece without length takes the angle of the pull; all pieces of a head, which is one rod,
+        take the angle of the rod.
         """
         solution, chord = self.solution, self.top - self.bottom
         pull = solution.force[self.upper] + solution.force[self.lower]
@@ -109,7 +111,7 @@ class LineFigures:
 
     @property
     def knockdown(self) -> Floats:
-        """(n,) [m]; NaN without the line in still water."""
+        """(n,) knockdown [m]; NaN without the line in still water."""
         if self.still is None:
             return np.full(self.count, np.nan)
         before = self.still.piece_nodes[self._ahead, 1 if self.solution.line.towed else 0]
@@ -128,12 +130,12 @@ class LineFigures:
 
 
 class ClampFigures:
-    """Figures of the m instruments clamped on a line, those on the first-listed piece first.
+    """Columns of the m instruments clamped on a solved line, in the order of the file.
 
     Attributes
     ----------
-    clamps : (m,) of the file
-    index : (m,) of the piece each sits on
+    clamps : (m,) clamps of the file
+    index : (m,) number of the piece under each clamp
     position : (m, 3) east, north, up [m]
     """
 
@@ -152,13 +154,13 @@ class ClampFigures:
 
     @property
     def tension(self) -> Floats:
-        """(m,) the greater of those above and below [N]."""
+        """(m,) greater of the tensions above and below the clamp [N]."""
         tension = self.solution.tension
         return np.maximum(tension[self._elements], tension[self._elements + 1])
 
     @property
     def tilt(self) -> Floats:
-        """(m,) of the pull in the line, above and below alike; on a rigid piece its [degrees]."""
+        """(m,) angle of the mean pull above and below; on a rigid piece its tilt [degrees]."""
         solution, elements = self.solution, self._elements
         pull = solution.force[elements] + solution.force[elements + 1]
         cable = solution.line.flexible[solution.element_piece[elements]]
@@ -179,23 +181,23 @@ class ClampFigures:
 
 @dataclass(frozen=True)
 class NodeFigures:
-    """Figures of the k nodes of a line, free end first."""
+    """Columns of the k nodes of a solved line, free end first."""
 
     solution: Solution
 
     @property
     def position(self) -> Floats:
-        """(k, 3) east, north, up [m]."""
+        """(k, 3) positions: east, north, up [m]."""
         return self.solution.position
 
     @property
     def tension(self) -> Floats:
-        """(k,) [N]."""
+        """(k,) tensions [N]."""
         return self.solution.tension
 
     @property
     def tilt(self) -> Floats:
-        """(k,) of the segment that ends at each [degrees]."""
+        """(k,) angle of the segment that ends at each node, from the vertical [degrees]."""
         chord = self.solution.position[:-1] - self.solution.position[1:]
         if self.solution.line.towed:
             chord = -chord
@@ -215,6 +217,6 @@ def leaning_of(vector: Floats) -> Floats:
 
 
 def catalogue_figures(parts: Sequence[Piece | Clamp], name: str) -> Floats:
-    """(n,) a figure of the components of pieces or clamps; NaN where it is not known."""
+    """(n,) values of a catalogue field of pieces or clamps; NaN for unknown values."""
     values = [getattr(part.component, name, None) for part in parts]
     return np.array([np.nan if value is None else value for value in values])

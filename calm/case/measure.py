@@ -111,14 +111,12 @@ def with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
 
 
 def on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
-    """Return what is clamped on the anchor stands still with it, and is held with the line's
-    pull.
-    """
+    """Make the row of a clamp on the anchor, which stands still with it."""
     return _standing(Clamps, clamp, OnAnchor(clamp, anchor))[0]
 
 
 def _standing(table: type[T], part: Piece | Clamp, end: LineEnd | OnAnchor) -> T:
-    """A table of one row, of what does not move."""
+    """Make the row of an anchor, or of a clamp on it, as a table."""
     return table.made([part], lambda column: np.array([column.at_anchor and column.at_anchor(end)]))
 
 

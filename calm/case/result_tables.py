@@ -1,8 +1,9 @@
-"""The columns of results, one entry each, and the tables that have them.
+"""The registry of result columns, and the tables that hold them.
 
-Tables are kept by column: one array per figure, records and data frames on demand. Who adds a
-column enters it here, with how it is found; what takes more than a line is in
-`calm.case.line_figures`.
+A table stores one array per column and makes records and data frames on demand. To add a column,
+add a field with its entry to the class of its rows; a computation longer than one line goes into
+`calm.case.line_figures`. `OF_ROWS`, `MOORED_ENDS` and `TOWED_ENDS` have the columns of outputs
+only.
 """
 
 from __future__ import annotations
@@ -85,18 +86,18 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @classmethod
     def columns(cls, output: Output | None = None) -> list[ResultColumn]:
-        """Return what the columns are, of those that appear in an output."""
+        """The entries of the columns, by default all, else those that an output shows."""
         every = columns_of(cls.record)
         return [*every] if output is None else shown_in(every, output)
 
     @classmethod
     def made(cls, parts: Sequence[Any], value: Callable[[ResultColumn], Any]) -> Self:
-        """Return a table of pieces or clamps of a file; what follows from other columns follows.
+        """Make a table of pieces or clamps of a file, with its derived columns.
 
         Parameters
         ----------
-        parts : one for each row
-        value : gives the other columns
+        parts : the piece or clamp of each row
+        value : computes a column that neither `of_part` nor `derived` gives
         """
         known: dict[str, Any] = {}
         for one in cls.columns():
@@ -189,11 +190,8 @@ def _known(value: Any) -> Any:
     return None if isinstance(value, float) and not isfinite(value) else value
 
 
-# The columns. What is `found` is measured on the solution, in `calm.case.line_figures`.
-
-
 class LineEnd(NamedTuple):
-    """The anchor at the end of a line, for its row: the row above it, its piece, the seabed [m]."""
+    """Input of the anchor's row: the row above the anchor, its piece, the water depth [m]."""
 
     above: ComponentRow
     piece: Piece
@@ -201,14 +199,12 @@ class LineEnd(NamedTuple):
 
     @property
     def height(self) -> float:
-        """Of the anchor [m]."""
+        """Height of the anchor [m]."""
         return self.piece.length or 0.0
 
 
 class OnAnchor(NamedTuple):
-    """What is clamped on an anchor, and the row of this: they stand still together, and are held
-    with the pull of the line.
-    """
+    """Input of the row of a clamp on an anchor: the clamp, and the row of the anchor."""
 
     clamp: Clamp
     anchor: ComponentRow
@@ -239,7 +235,10 @@ class ComponentRow:
         "name of the piece in this line", _OF_PIECES, of_part=lambda piece: piece.label
     )
     kind: str = column("kind of component", of_part=lambda piece: piece.component.kind)
-    role: str = column("what the piece is for", of_part=lambda piece: piece.component.role)
+    role: str = column(
+        "purpose of the piece, such as float or instrument",
+        of_part=lambda piece: piece.component.role,
+    )
     length: float = column(
         "length, stretched",
         FILES | LINE_TABLES,
@@ -319,7 +318,7 @@ class ComponentRow:
         at_anchor=lambda end: end.above.tension_bottom,
     )
     least_tension: float = column(
-        "least tension of what does not lie on the seabed; unknown where all of the piece does",
+        "least tension above the seabed; unknown for a piece that lies on it entirely",
         quantity=Quantity("least_tension", "least tension", "N", "Least pull in the piece.", 0),
         found=lambda line: line.least_tension,
         at_anchor=lambda end: end.above.tension_bottom,
@@ -469,8 +468,8 @@ OF_ROWS = tuple(
         ("leg", "name of the leg, of a net", Output.JSON | Output.CSV, _leg, {}),
     )
 )  # fmt: skip
-"""Columns that are kept in no table: they are told of each row as it is shown, of pieces and clamps
-alike; what has none of them, None, is left out of JSON.
+"""Columns of pieces and clamps that no table stores: outputs compute them row by row. JSON omits a
+column that is None.
 """
 
 
@@ -498,7 +497,7 @@ class Clamps(ColumnTable[ClampRow]):
 
 
 def documents(table: Components | Clamps, file: MooringFile) -> list[dict[str, Any]]:
-    """The rows as JSON has them; None where a figure is unknown."""
+    """The rows as JSON objects; None for unknown figures."""
     own, beside = table.columns(Output.JSON), shown_in(OF_ROWS, Output.JSON)
     rows = []
     for row in table:
@@ -509,7 +508,7 @@ def documents(table: Components | Clamps, file: MooringFile) -> list[dict[str, A
 
 
 def table_columns(output: Output) -> list[ResultColumn]:
-    """The columns of a table for people, from the left; of the builder in the order entered."""
+    """The columns of a table for people, from the left; for the builder in the order of entry."""
     shown = shown_in((*OF_ROWS, *Components.columns()), output)
     return shown if output == Output.BUILDER else sorted(shown, key=lambda one: one.place)
 
@@ -554,7 +553,7 @@ class Shape:
 
     @classmethod
     def columns(cls, output: Output | None = None) -> list[ResultColumn]:
-        """Return what the columns are, of those that appear in an output."""
+        """The entries of the columns, by default all, else those that an output shows."""
         every = columns_of(cls)
         return [*every] if output is None else shown_in(every, output)
 
@@ -578,7 +577,7 @@ class Shape:
 
 
 def _free(line: Any) -> float:
-    """Return 1 of a line whose upper end is free, NaN of a leg of a net that is held or joined."""
+    """1 for a line with a free upper end, NaN for a leg that is held or joined there."""
     legs = line.file.legs
     return 1.0 if not legs or legs[0].top.free else nan
 
@@ -621,7 +620,7 @@ MOORED_ENDS = (
         found=lambda line: _free(line) * line.other_used_buoyancy,
     ),
 )
-"""Columns of a moored line, or of each leg of a net, as a whole."""
+"""Columns of the ends of a moored line, or of each leg of a net."""
 
 TOWED_ENDS = (
     ResultColumn(
@@ -653,7 +652,7 @@ TOWED_ENDS = (
         found=lambda tow: tow.tow_point.tension,
     ),
 )
-"""Columns of a tow as a whole."""
+"""Columns of the ends of a tow."""
 
 
 class WithClamps(Protocol):
