@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from calm.batch.profiles import Profiles
-from calm.case.columns import FILES, Output, ResultColumn
-from calm.case.result_tables import Clamps, Components, Shape
+from calm.case.columns import FILES, Output, ResultColumn, columns_of
+from calm.case.result_tables import ENDS, Clamps, Components, Shape
 
 REFERENCE = Path(__file__).parent / "reference"
 _OUTPUTS = {
@@ -51,11 +51,21 @@ def _of_batch() -> str:
     return _rows("variable | dimensions | unit | ", rows)
 
 
+def _of_ends() -> str:
+    rows = [
+        (f"`{end}.{one.name}`", one.unit, one.description)
+        for end, record in ENDS.items()
+        for one in columns_of(record)
+    ]
+    return _rows("name | unit | ", rows)
+
+
 BLOCKS: dict[str, dict[str, Callable[[], str]]] = {
     "python": {
         "components": lambda: _of_table(Components.columns()),
         "clamps": lambda: _of_table(Clamps.columns()),
         "shape": lambda: _of_table(Shape.columns()),
+        "ends": _of_ends,
     },
     "batch": {"batch": _of_batch},
 }

@@ -7,7 +7,7 @@ batches, the builder and the manual read them, so a new entry appears in every o
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import MISSING, dataclass, field, fields, replace
 from enum import Flag, auto
 from types import SimpleNamespace
 from typing import Any
@@ -119,6 +119,7 @@ def column(
     quantity: Quantity | None = None,
     *,
     in_repr: bool = True,
+    default: Any = MISSING,
     **more: Any,
 ) -> Any:
     """Declare a dataclass field as a result column; the field gives the column its name.
@@ -128,9 +129,10 @@ def column(
     description, outputs, more : attributes of the `ResultColumn`
     quantity : by default the entry of `QUANTITIES` with the name of the field, if there is one
     in_repr : whether the `repr` of a row includes the field
+    default : of the field
     """
     entry = ResultColumn("", quantity, description, outputs, **more)
-    return field(repr=in_repr, metadata={_ENTRY: entry})
+    return field(default=default, repr=in_repr, metadata={_ENTRY: entry})
 
 
 _known: dict[type[Any], tuple[ResultColumn, ...]] = {}

@@ -11,8 +11,10 @@ import numpy as np
 
 from calm.assemble import net_buoyancy
 from calm.case.line_figures import ClampFigures, LineFigures, NodeFigures
-from calm.case.result import Accuracy, AnchorLoad, Result, Top
+from calm.case.result import Result
 from calm.case.result_tables import (
+    Accuracy,
+    AnchorLoad,
     ClampRow,
     Clamps,
     ComponentRow,
@@ -20,6 +22,7 @@ from calm.case.result_tables import (
     LineEnd,
     OnAnchor,
     Shape,
+    Top,
 )
 from calm.case.strumming import strumming_of
 from calm.case.warnings import warnings_of

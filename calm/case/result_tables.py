@@ -9,7 +9,7 @@ only.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import chain
 from math import hypot, isfinite, nan
@@ -574,6 +574,146 @@ class Shape:
     def to_xarray(self) -> Dataset:
         """Return a dataset over `node`, with units and meanings."""
         return _dataset(vars(self), self.columns(), "node")
+
+
+# The ends of lines. `calm.case` computes them where it makes these records; all fields are in JSON.
+
+_AN_END = Output.JSON | Output.NET_TABLE
+_PULL = replace(QUANTITIES["tension"], heading="pull")
+_UP = replace(QUANTITIES["vertical"], heading="up")
+_SIDEWAYS = replace(QUANTITIES["horizontal"], heading="sideways")
+_NEEDS = replace(QUANTITIES["required_weight"], heading="needs")
+_HAS = replace(QUANTITIES["weight"], name="weight", decimals=0)
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Error estimates of the solver; None where a result, such as a tow, has no anchor."""
+
+    depth: float = column("worst error expected of any depth or offset", Output.JSON)
+    tension: float = column("worst error expected of any tension", Output.JSON)
+    anchor: float | None = column(
+        "worst error expected of the vertical and horizontal pull on the anchor",
+        Output.JSON,
+        Quantity("anchor", "pull on the anchor", "N", "Pull on the anchor.", 0),
+        default=None,
+    )
+    required_weight: float | None = column(
+        "error expected of the weight in water that the anchor needs", Output.JSON, default=None
+    )
+
+
+@dataclass(frozen=True)
+class Top:
+    """The free end of a line; None for figures that it lacks."""
+
+    depth: float = column("depth of the free end", Output.JSON)
+    x: float = column(f"{_EAST}, of the free end", Output.JSON)
+    y: float = column(f"{_NORTH}, of the free end", Output.JSON)
+    knockdown: float | None = column(
+        "depth of the free end less its depth in still water", Output.JSON
+    )
+    used_buoyancy: float = column(
+        "share of the buoyancy at the surface that is in use; 1 below the surface", Output.JSON
+    )
+    reserve: float = column(
+        "buoyancy at the surface that is not in use; 0 below the surface", Output.JSON
+    )
+    draft: float | None = column(
+        "draft of the hull at the surface, if the hull is known", Output.JSON, default=None
+    )
+    freeboard: float | None = column(
+        "freeboard of the hull at the surface, if the hull is known", Output.JSON, default=None
+    )
+
+
+@dataclass(frozen=True)
+class AnchorLoad:
+    """The load of a line on its anchor."""
+
+    tension: float = column("tension of the line at the anchor", Output.JSON)
+    vertical: float = column("upward pull of the line on the anchor", Output.JSON)
+    horizontal: float = column("horizontal pull of the line on the anchor", Output.JSON)
+    angle: float = column("angle of the pull from the vertical", Output.JSON)
+    required_weight: float = column("weight in water that the anchor needs", Output.JSON)
+    weight: float = column("weight of the anchor in water", Output.JSON, _HAS)
+    friction: float = column("coefficient of friction of the anchor on the seabed", Output.JSON)
+    grounded_length: float = column("unstretched length of line on the seabed", Output.JSON)
+
+
+@dataclass(frozen=True)
+class TowPoint:
+    """The load of a towed line on the ship."""
+
+    tension: float = column("tension of the line at the ship", Output.JSON)
+    angle: float = column("angle of the line at the ship below the horizontal", Output.JSON)
+    vertical: float = column("downward pull on the ship", Output.JSON)
+    horizontal: float = column("backward pull on the ship", Output.JSON)
+
+
+@dataclass(frozen=True)
+class TowedBody:
+    """The upper end of the lowest piece of a tow, or the free end of a bare cable."""
+
+    depth: float = column("depth of the towed body", Output.JSON)
+    layback: float = column("horizontal distance behind the tow point", Output.JSON)
+    tension: float = column("tension at the towed body", Output.JSON)
+    angle: float = column("angle of the line above the body from the horizontal", Output.JSON)
+
+
+@dataclass(frozen=True)
+class EndLoad:
+    """The load of a leg on its anchor, or on what holds its end; held ends lack the last four."""
+
+    leg: str = column("name of the leg", Output.JSON)
+    tension: float = column("tension of the leg at its end", _AN_END, _PULL, place=1)
+    vertical: float = column("upward pull of the leg", _AN_END, _UP, place=2)
+    horizontal: float = column("horizontal pull of the leg", _AN_END, _SIDEWAYS, place=3)
+    angle: float = column("angle of the pull from the vertical", Output.JSON)
+    x: float = column("offset of the end to the east of the origin", _AN_END, place=5)
+    y: float = column("offset of the end to the north of the origin", _AN_END, place=6)
+    depth: float = column("depth of the end", _AN_END, place=4)
+    required_weight: float | None = column(
+        "weight in water that the anchor needs", _AN_END, _NEEDS, place=7, default=None
+    )
+    weight: float | None = column("weight of the anchor in water", Output.JSON, _HAS, default=None)
+    grounded_length: float = column(
+        "unstretched length of the leg on the seabed", Output.JSON, default=0.0
+    )
+    slack_length: float = column(
+        "surplus length on the seabed, beyond the way to the anchor",
+        Output.JSON,
+        Quantity("slack_length", "slack length", "m", "Surplus length on the seabed."),
+        default=0.0,
+    )
+
+
+@dataclass(frozen=True)
+class NodePlace:
+    """A node, where legs meet."""
+
+    name: str = column("name of the node", Output.JSON)
+    depth: float = column("depth of the node", _AN_END)
+    x: float = column("offset of the node to the east of the origin", _AN_END)
+    y: float = column("offset of the node to the north of the origin", _AN_END)
+    imbalance: float = column(
+        "remaining sum of the pulls at the node",
+        Output.JSON,
+        Quantity("imbalance", "imbalance", "N", "Remaining sum of the pulls at a node.", 2),
+    )
+
+
+ENDS: Mapping[str, type[Any]] = {
+    "accuracy": Accuracy,
+    "top": Top,
+    "anchor": AnchorLoad,
+    "tow_point": TowPoint,
+    "body": TowedBody,
+}
+"""Records of a single line by their names in JSON and of the result in Python."""
+
+NET_ENDS: Mapping[str, type[Any]] = {"anchors": EndLoad, "held": EndLoad, "nodes": NodePlace}
+"""Records of a net, each name for several of them."""
 
 
 def _free(line: Any) -> float:

@@ -266,16 +266,17 @@ def blank(heading: str, unit: str = "", share: float = 1.0) -> Field:
     return words(heading, lambda _: None, share, unit=unit)
 
 
-def quantity(name: str, show: Shown = "", heading: str | None = None) -> Field:
+def quantity(name: str | Quantity, show: Shown = "", heading: str | None = None) -> Field:
     """A column of a quantity, in the unit that people read.
 
     Parameters
     ----------
-    name : of the quantity
+    name : of the quantity, or the quantity
     show : what it shows of an item [SI, degrees], as in `words`; by default what has its name
     heading : where it is another than that of the quantity
     """
-    value, shown = _getter(show, name), QUANTITIES[name]
+    shown = QUANTITIES[name] if isinstance(name, str) else name
+    value = _getter(show, shown.name)
     return quantity_column(shown, heading), lambda one: figure_cell(shown, value(one))
 
 

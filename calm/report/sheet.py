@@ -6,9 +6,10 @@ Of a net they are the table of its legs, its nodes, and what its ends bear.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 from calm.case import Result, TowResult
-from calm.case.columns import Output, ResultColumn
+from calm.case.columns import Output, ResultColumn, columns_of, shown_in
 from calm.case.mooring import ProfilerTravel
 from calm.case.result import AnyResult, NetResult, legs_of
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down, table_columns
@@ -21,7 +22,18 @@ from calm.files.legs import EndKeys
 from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.quantities import duration, say
 from calm.report import blocks
-from calm.report.blocks import Cell, Column, Line, Note, Prose, ReportPart, Span, Table, words
+from calm.report.blocks import (
+    Cell,
+    Column,
+    Field,
+    Line,
+    Note,
+    Prose,
+    ReportPart,
+    Span,
+    Table,
+    words,
+)
 from calm.solve import Status
 
 _NOTE = "of the upper end. Tension: the greatest in the piece. ~ near a limit, ! beyond it."
@@ -296,16 +308,11 @@ def end_text(end: EndKeys) -> str:
 
 def _ends(result: NetResult) -> Iterator[Table | Prose]:
     """Nodes, anchors and held ends, and floats at the surface."""
-    if result.nodes:
-        places = map(blocks.quantity, ("depth", "x", "y"))
-        yield blocks.table_of("Nodes", result.nodes, words("", "name"), *places)
-    heads = {"tension": "pull", "vertical": "up", "horizontal": "sideways"}
-    heads |= {"depth": "depth", "x": "east", "y": "north", "required_weight": "needs"}
-    fields = [blocks.quantity(name, heading=head) for name, head in heads.items()]
-    if result.anchors:
-        yield blocks.table_of("Anchors", result.anchors, words("leg"), *fields)
-    if result.held:
-        yield blocks.table_of("Held ends", result.held, words("leg"), *fields[:-1])
+    ends = {"Nodes": result.nodes, "Anchors": result.anchors, "Held ends": result.held}
+    for title, rows in ends.items():
+        if rows:
+            head = words("", "name") if title == "Nodes" else words("leg")
+            yield blocks.table_of(title, rows, head, *_fields(rows))
     afloat = [
         f"{leg.name}: float at the surface, {leg.top.used_buoyancy:.1%} of its buoyancy used, "
         f"{say('reserve', leg.top.reserve)} in reserve"
@@ -314,6 +321,15 @@ def _ends(result: NetResult) -> Iterator[Table | Prose]:
     ]
     if afloat:
         yield Prose(tuple(afloat))
+
+
+def _fields(rows: Sequence[Any]) -> Iterator[Field]:
+    """The columns of nodes or ends, without those that no row has."""
+    columns = shown_in(columns_of(type(rows[0])), Output.NET_TABLE)
+    for one in sorted(columns, key=lambda one: one.place):
+        known = any(getattr(row, one.name) is not None for row in rows)
+        if known and one.quantity:
+            yield blocks.quantity(one.quantity, one.name)
 
 
 def _convergence(result: NetResult) -> str:

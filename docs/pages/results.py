@@ -8,8 +8,8 @@ import xarray as xr
 
 import calm
 from calm.batch.profiles import Profiles
-from calm.case.columns import Output, ResultColumn
-from calm.case.result_tables import OF_ROWS, Clamps, Components, Shape
+from calm.case.columns import Output, ResultColumn, columns_of
+from calm.case.result_tables import ENDS, NET_ENDS, OF_ROWS, Clamps, Components, Shape
 from calm.motion.correction import OF_MOTION
 from calm.quantities import QUANTITIES
 from calm.report.result_files import result_netcdf
@@ -35,10 +35,6 @@ _MEANINGS = {
     "segments": ("", "number of segments of the line"),
     "miss": ("m", "distance of the end of the line from its anchor"),
     "closure": ("", "remaining sum of the forces, as a share of the greatest"),
-    "accuracy.depth": ("m", "worst error expected of any depth or offset"),
-    "accuracy.tension": ("N", "worst error expected of any tension"),
-    "accuracy.anchor": ("N", "the same of the vertical and horizontal pull on the anchor"),
-    "accuracy.required_weight": ("N", "the same of the weight that the anchor needs"),
     "strumming": ("", "`frequency`, `cn_min` and `cn_max`, where a law of strumming is chosen"),
     "strumming_band": ("", "`null` where a law of strumming is chosen"),
     "strumming_band.factor": ("", "factor on the Cn of every cable"),
@@ -50,8 +46,6 @@ _MEANINGS = {
     ),
     "warnings": ("", "[sentences](messages.md#warnings)"),
     "toward": ("deg", "where the ship goes to, clockwise from north"),
-    "body.tension": ("N", "pull on the towed body"),
-    "tow_point.tension": ("N", "pull on the ship"),
     "cn_min": ("", "least Cn of the cables as they strum"),
     "cn_max": ("", "greatest Cn of the cables as they strum"),
 }
@@ -70,6 +64,15 @@ def page() -> str:
         "## JSON of a tow",
         "The keys of a mooring, with these in place of `top` and `anchor`:",
         table(("key", "unit", "meaning"), (_json(key) for key, _ in own)),
+        "## JSON of a net of legs",
+        "The keys of a mooring without `top` and `shape`. Pieces and clamps have the name of their "
+        "`leg`; `anchor` stands only in a net with a single anchor. `held` has the keys of "
+        "`anchors` up to `depth`. Each of `legs` has its `name`, `closure`, `used_buoyancy`, "
+        "`reserve` and `shape`.",
+        table(
+            ("key", "unit", "meaning"),
+            [_json(key) for key in _COLUMNS if key.startswith(("anchors[", "nodes["))],
+        ),
         "## CSV",
         "A row for each piece and each clamped instrument:",
         table(("column", "meaning"), _csv()),
@@ -105,6 +108,8 @@ _COLUMNS = {
         "components[].": (*OF_ROWS, *Components.columns()),
         "clamps[].": (*OF_ROWS, *Clamps.columns()),
         "shape.": Shape.columns(),
+        **{f"{end}.": columns_of(record) for end, record in ENDS.items()},
+        **{f"{ends}[].": columns_of(record) for ends, record in NET_ENDS.items()},
     }.items()
     for one in columns
 }

@@ -3,7 +3,7 @@
 import csv
 import importlib.util
 import io
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,22 +12,25 @@ import xarray
 
 import calm
 from calm.batch.profiles import Profiles
-from calm.case.columns import FILES, LINE_TABLES, Output, column
+from calm.case.columns import FILES, LINE_TABLES, Output, column, columns_of
 from calm.case.result_tables import (
+    ENDS,
     MOORED_ENDS,
+    NET_ENDS,
     OF_ROWS,
     TOWED_ENDS,
     ClampRow,
     Clamps,
     ComponentRow,
     Components,
+    NodePlace,
     Shape,
     table_columns,
 )
 from calm.cli.main import main
 from calm.quantities import Quantity
 from calm.report.result_files import header, to_csv
-from calm.report.sheet import table_of_line
+from calm.report.sheet import net_part, table_of_line
 from calm.shipped import shipped_folder
 from calm.tui.line_rows import table_rows
 from calm.tui.line_table import layout_for
@@ -121,6 +124,23 @@ def test_a_result_has_a_column_that_is_entered(lines: dict[str, Path], kind: str
     assert GAIN.format(float(pieces.gain[0])) == whole[0]
 
 
+@dataclass(frozen=True)
+class TrialNode(NodePlace):
+    """A node with one column more."""
+
+    gain: float = column("twice the depth", Output.JSON | Output.NET_TABLE, GAIN)
+
+
+def test_a_node_has_a_column_that_is_entered(lines: dict[str, Path]) -> None:
+    result = calm.load(lines["net"]).solve()
+    nodes = tuple(TrialNode(**asdict(one), gain=2.0 * one.depth) for one in result.nodes)
+    result = replace(result, nodes=nodes)
+    assert result.to_dict()["nodes"][0]["gain"] == 2.0 * nodes[0].depth
+    (table,) = (one for one in net_part(result).blocks if getattr(one, "title", "") == "Nodes")
+    assert [one.heading for one in table.columns] == ["", "depth", "east", "north", "gain"]
+    assert table.rows[0][-1].text == GAIN.format(2.0 * nodes[0].depth)
+
+
 @pytest.mark.usefixtures("trial")
 @pytest.mark.parametrize("kind", ["mooring", "net"])
 def test_a_batch_has_it(lines: dict[str, Path], tmp_path: Path, kind: str) -> None:
@@ -176,6 +196,10 @@ def test_every_column_says_what_it_is_and_how_it_is_found() -> None:
         assert sum(way is not None for way in ways) == 1, one.name
     for one in tables[: -len(Shape.columns())]:
         assert one.found is None or one.at_anchor is not None, one.name
+    for record in (*ENDS.values(), *NET_ENDS.values()):
+        for one in columns_of(record):
+            assert one.description and Output.JSON in one.outputs, one.name
+            assert one.quantity is not None or one.name in ("leg", "name"), one.name
 
 
 def test_columns_are_named_as_files_of_others_know_them() -> None:
