@@ -10,11 +10,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields, replace
 from enum import Flag, auto
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from calm.dataset.netcdf import Attributes
-from calm.files import MooringFile
 from calm.quantities import QUANTITIES, Quantity
+
+if TYPE_CHECKING:
+    from calm.dataset.netcdf import Attributes
+    from calm.files import MooringFile
 
 _ENTRY = "column"
 _CF_UNITS = {"": "1", "deg": "degree", "m/s": "m s-1"}
