@@ -118,8 +118,10 @@ class ResultColumn:
 def column(
     description: str,
     outputs: Output = NOWHERE,
-    quantity: Quantity | None = None,
     *,
+    title: str = "",
+    unit: str | None = None,
+    decimals: int = 1,
     in_repr: bool = True,
     default: Any = MISSING,
     **more: Any,
@@ -129,12 +131,21 @@ def column(
     Parameters
     ----------
     description, outputs, more : attributes of the `ResultColumn`
-    quantity : by default the entry of `QUANTITIES` with the name of the field, if there is one
+    title, unit, decimals : of the quantity. By default it is the entry of `QUANTITIES` with the
+        name of the field, of which `title` may replace the heading; a field without is text.
     in_repr : whether the `repr` of a row includes the field
     default : of the field
     """
-    entry = ResultColumn("", quantity, description, outputs, **more)
-    return field(default=default, repr=in_repr, metadata={_ENTRY: entry})
+
+    def named(name: str, prefix: str) -> ResultColumn:
+        quantity = QUANTITIES.get(name)
+        if unit is not None:
+            quantity = Quantity(name, title, unit, f"{description.capitalize()}.", decimals)
+        elif quantity is not None and title:
+            quantity = replace(quantity, heading=title)
+        return ResultColumn(name, quantity, description, outputs, prefix, **more)
+
+    return field(default=default, repr=in_repr, metadata={_ENTRY: named})
 
 
 _known: dict[type[Any], tuple[ResultColumn, ...]] = {}
@@ -152,12 +163,11 @@ def columns_of(record: type[Any]) -> tuple[ResultColumn, ...]:
 
 def _columns_of(record: type[Any]) -> Iterator[ResultColumn]:
     for one in fields(record):
-        quantity = QUANTITIES.get(one.name)
-        meaning = "" if quantity is None else quantity.meaning
-        entry = one.metadata.get(_ENTRY) or ResultColumn("", quantity, meaning)
-        own = entry.quantity or quantity
-        prefix = getattr(record, "prefix", "")
-        yield replace(entry, name=one.name, quantity=own, prefix=prefix)
+        if (named := one.metadata.get(_ENTRY)) is not None:
+            yield named(one.name, getattr(record, "prefix", ""))
+        else:
+            quantity = QUANTITIES.get(one.name)
+            yield ResultColumn(one.name, quantity, "" if quantity is None else quantity.meaning)
 
 
 def shown_in(columns: Iterable[ResultColumn], output: Output) -> list[ResultColumn]:

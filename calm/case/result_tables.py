@@ -9,7 +9,7 @@ only.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from functools import cached_property
 from itertools import chain
 from math import hypot, isfinite, nan
@@ -32,7 +32,7 @@ from calm.errors import unknown
 from calm.files import Clamp, MooringFile, Piece, Place
 from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats
-from calm.quantities import QUANTITIES, Quantity
+from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     import pandas
@@ -215,7 +215,6 @@ _EAST, _NORTH = "offset to the east of the anchor", "offset to the north of the 
 _IN_BATCHES = FILES | Output.BATCH
 _OF_PIECES = FILES & ~Output.NETCDF
 _OF_NODES = Output.JSON | Output.NETCDF
-_NUMBER = Quantity("index", "no.", "", "Number of the piece.", 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,7 +225,9 @@ class ComponentRow:
     index: int = column(
         "number of the piece in the file, from 0",
         _OF_PIECES,
-        _NUMBER,
+        title="no.",
+        unit="",
+        decimals=0,
         found=lambda line: line.index,
         at_anchor=lambda end: end.piece.index,
     )
@@ -255,7 +256,8 @@ class ComponentRow:
     depth_top: float = column(
         "depth of the upper end",
         _IN_BATCHES,
-        Quantity("depth_top", "depth, upper end", "m", "Depth of the upper end."),
+        title="depth, upper end",
+        unit="m",
         found=lambda line: -line.top[:, 2],
         at_anchor=lambda end: end.above.depth_bottom,
         attributes=_LEVEL,
@@ -263,7 +265,8 @@ class ComponentRow:
     depth_bottom: float = column(
         "depth of the lower end",
         FILES,
-        Quantity("depth_bottom", "depth, lower end", "m", "Depth of the lower end."),
+        title="depth, lower end",
+        unit="m",
         found=lambda line: -line.bottom[:, 2],
         at_anchor=lambda end: end.seabed,
         attributes=_LEVEL,
@@ -271,42 +274,50 @@ class ComponentRow:
     x_top: float = column(
         f"{_EAST}, of the upper end",
         _IN_BATCHES,
-        Quantity("x_top", "east, upper end", "m", "Like x, of the upper end."),
+        title="east, upper end",
+        unit="m",
         found=lambda line: line.top[:, 0],
         at_anchor=lambda end: end.above.x_bottom,
     )
     y_top: float = column(
         f"{_NORTH}, of the upper end",
         _IN_BATCHES,
-        Quantity("y_top", "north, upper end", "m", "Like y, of the upper end."),
+        title="north, upper end",
+        unit="m",
         found=lambda line: line.top[:, 1],
         at_anchor=lambda end: end.above.y_bottom,
     )
     x_bottom: float = column(
         "offset to the east, of the lower end",
         FILES,
-        Quantity("x_bottom", "east, lower end", "m", "Like x, of the lower end."),
+        title="east, lower end",
+        unit="m",
         found=lambda line: line.bottom[:, 0],
         at_anchor=lambda end: end.above.x_bottom,
     )
     y_bottom: float = column(
         "offset to the north, of the lower end",
         FILES,
-        Quantity("y_bottom", "north, lower end", "m", "Like y, of the lower end."),
+        title="north, lower end",
+        unit="m",
         found=lambda line: line.bottom[:, 1],
         at_anchor=lambda end: end.above.y_bottom,
     )
     tension_top: float = column(
         "tension at the upper end",
         _IN_BATCHES,
-        Quantity("tension_top", "tension, upper end", "N", "Pull at the upper end.", 0),
+        title="tension, upper end",
+        unit="N",
+        decimals=0,
         found=lambda line: line.tension_top,
         at_anchor=lambda end: end.above.tension_bottom,
     )
     tension_bottom: float = column(
         "tension at the lower end",
         _IN_BATCHES,
-        Quantity("tension_bottom", "tension, lower end", "N", "Pull at the lower end.", 0),
+        title="tension, lower end",
+        unit="N",
+        decimals=0,
         found=lambda line: line.tension_bottom,
         at_anchor=lambda end: end.above.tension_bottom,
     )
@@ -319,7 +330,9 @@ class ComponentRow:
     )
     least_tension: float = column(
         "least tension above the seabed; unknown for a piece that lies on it entirely",
-        quantity=Quantity("least_tension", "least tension", "N", "Least pull in the piece.", 0),
+        title="least tension",
+        unit="N",
+        decimals=0,
         found=lambda line: line.least_tension,
         at_anchor=lambda end: end.above.tension_bottom,
     )
@@ -354,7 +367,9 @@ class ComponentRow:
     reynolds: float = column(
         "greatest Reynolds number of speed and diameter",
         Output.JSON,
-        Quantity("reynolds", "Reynolds number", "", "Of speed and diameter.", 0),
+        title="Reynolds number",
+        unit="",
+        decimals=0,
         found=lambda line: line.reynolds,
         at_anchor=lambda end: nan,
     )
@@ -380,7 +395,9 @@ class ClampRow:
     index: int = column(
         "number of the piece that it sits on, from 0",
         _OF_PIECES,
-        _NUMBER,
+        title="no.",
+        unit="",
+        decimals=0,
         found=lambda held: held.index,
         at_anchor=lambda on: on.anchor.index,
     )
@@ -579,11 +596,6 @@ class Shape:
 # The ends of lines. `calm.case` computes them where it makes these records; all fields are in JSON.
 
 _AN_END = Output.JSON | Output.NET_TABLE
-_PULL = replace(QUANTITIES["tension"], heading="pull")
-_UP = replace(QUANTITIES["vertical"], heading="up")
-_SIDEWAYS = replace(QUANTITIES["horizontal"], heading="sideways")
-_NEEDS = replace(QUANTITIES["required_weight"], heading="needs")
-_HAS = replace(QUANTITIES["weight"], name="weight", decimals=0)
 
 
 @dataclass(frozen=True)
@@ -595,7 +607,9 @@ class Accuracy:
     anchor: float | None = column(
         "worst error expected of the vertical and horizontal pull on the anchor",
         Output.JSON,
-        Quantity("anchor", "pull on the anchor", "N", "Pull on the anchor.", 0),
+        title="pull on the anchor",
+        unit="N",
+        decimals=0,
         default=None,
     )
     required_weight: float | None = column(
@@ -636,7 +650,7 @@ class AnchorLoad:
     horizontal: float = column("horizontal pull of the line on the anchor", Output.JSON)
     angle: float = column("angle of the pull from the vertical", Output.JSON)
     required_weight: float = column("weight in water that the anchor needs", Output.JSON)
-    weight: float = column("weight of the anchor in water", Output.JSON, _HAS)
+    weight: float = column("weight of the anchor in water", Output.JSON)
     friction: float = column("coefficient of friction of the anchor on the seabed", Output.JSON)
     grounded_length: float = column("unstretched length of line on the seabed", Output.JSON)
 
@@ -666,24 +680,25 @@ class EndLoad:
     """The load of a leg on its anchor, or on what holds its end; held ends lack the last four."""
 
     leg: str = column("name of the leg", Output.JSON)
-    tension: float = column("tension of the leg at its end", _AN_END, _PULL, place=1)
-    vertical: float = column("upward pull of the leg", _AN_END, _UP, place=2)
-    horizontal: float = column("horizontal pull of the leg", _AN_END, _SIDEWAYS, place=3)
+    tension: float = column("tension of the leg at its end", _AN_END, title="pull", place=1)
+    vertical: float = column("upward pull of the leg", _AN_END, title="up", place=2)
+    horizontal: float = column("horizontal pull of the leg", _AN_END, title="sideways", place=3)
     angle: float = column("angle of the pull from the vertical", Output.JSON)
     x: float = column("offset of the end to the east of the origin", _AN_END, place=5)
     y: float = column("offset of the end to the north of the origin", _AN_END, place=6)
     depth: float = column("depth of the end", _AN_END, place=4)
     required_weight: float | None = column(
-        "weight in water that the anchor needs", _AN_END, _NEEDS, place=7, default=None
+        "weight in water that the anchor needs", _AN_END, title="needs", place=7, default=None
     )
-    weight: float | None = column("weight of the anchor in water", Output.JSON, _HAS, default=None)
+    weight: float | None = column("weight of the anchor in water", Output.JSON, default=None)
     grounded_length: float = column(
         "unstretched length of the leg on the seabed", Output.JSON, default=0.0
     )
     slack_length: float = column(
         "surplus length on the seabed, beyond the way to the anchor",
         Output.JSON,
-        Quantity("slack_length", "slack length", "m", "Surplus length on the seabed."),
+        title="slack length",
+        unit="m",
         default=0.0,
     )
 
@@ -699,7 +714,9 @@ class NodePlace:
     imbalance: float = column(
         "remaining sum of the pulls at the node",
         Output.JSON,
-        Quantity("imbalance", "imbalance", "N", "Remaining sum of the pulls at a node.", 2),
+        title="imbalance",
+        unit="N",
+        decimals=2,
     )
 
 

@@ -63,7 +63,8 @@ class TrialRow(ComponentRow):
     """A piece with one column more: this entry is all that is written for it."""
 
     gain: float = column(
-        "tension at the upper end less that at the lower", EVERYWHERE, GAIN, place=8,
+        "tension at the upper end less that at the lower", EVERYWHERE,
+        title="gain", unit="N", place=8,
         derived=lambda rows: rows.tension_top - rows.tension_bottom,
     )  # fmt: skip
 
@@ -73,7 +74,7 @@ class TrialClamp(ClampRow):
     """The same of a clamp, found from the arrays of the solved line."""
 
     gain: float = column(
-        "twice the tension", EVERYWHERE & ~Output.BATCH, GAIN,
+        "twice the tension", EVERYWHERE & ~Output.BATCH, title="gain", unit="N",
         found=lambda held: 2.0 * held.tension, at_anchor=lambda on: 0.0,
     )  # fmt: skip
 
@@ -128,7 +129,7 @@ def test_a_result_has_a_column_that_is_entered(lines: dict[str, Path], kind: str
 class TrialNode(NodePlace):
     """A node with one column more."""
 
-    gain: float = column("twice the depth", Output.JSON | Output.NET_TABLE, GAIN)
+    gain: float = column("twice the depth", Output.JSON | Output.NET_TABLE, title="gain", unit="N")
 
 
 def test_a_node_has_a_column_that_is_entered(lines: dict[str, Path]) -> None:
