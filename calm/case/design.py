@@ -6,39 +6,49 @@ several legs, which join at nodes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
-from math import dist, nan
+from math import dist
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
 
 from calm.assemble import assemble_water
-from calm.case.ends import (
-    Accuracy,
-    AnchorLoad,
-    EndLoad,
-    NodePlace,
-    Top,
-    TowedBody,
-    TowPoint,
-)
 from calm.case.leg import Leg
 from calm.case.leg_result import LegResult, leg_result_of
 from calm.case.memory import Forgetful, Memory
 from calm.case.parts import Origin, OtherEnvironment
 from calm.case.profilers import ProfilerTravel, profilers_of
-from calm.case.result_tables import Clamps, Components, Shape
+from calm.case.result_tables import (
+    MOORED_ENDS,
+    Accuracy,
+    AnchorLoad,
+    Clamps,
+    Components,
+    EndLoad,
+    NodePlace,
+    Shape,
+    Top,
+    TowedBody,
+    TowPoint,
+    documents,
+)
 from calm.case.strumming import Strumming, StrummingBand
 from calm.case.warnings import warnings_of
 from calm.errors import InputError, NoEquilibrium, Problem, UsageError
-from calm.files import Clamp, MooringFile, Piece
+from calm.files import MooringFile, Piece
 from calm.files.environment import Environment
-from calm.files.legs import Leg as LegKeys
-from calm.files.legs import leg_numbers, legs_of, nodes_of, refuse_all_but_moorings, refuse_several
+from calm.files.legs import (
+    FileLeg,
+    leg_numbers,
+    legs_of,
+    nodes_of,
+    refuse_all_but_moorings,
+    refuse_several,
+)
 from calm.files.mooring_file import STAND_IN
 from calm.files.reader import MooringReader
 from calm.physics.hull import AIR_DENSITY
@@ -213,7 +223,7 @@ class Design:
             return Design(
                 replace(self.file, pieces=tuple(pieces[0])), self.for_surface, self.memory
             )
-        legs: list[LegKeys] = []
+        legs: list[FileLeg] = []
         listed: list[Piece] = []
         for leg, own in zip(self.file.legs, pieces, strict=True):
             first = len(listed)
@@ -524,13 +534,10 @@ class Result:
         that in another equilibrium, and the pull on its anchor up and sideways [N]; NaN where there
         is none.
         """
-        legs, free = self.legs, np.array([1.0 if leg.leg.top.free else nan for leg in self.legs])
         return {
-            "top_depth": free * [leg.top.depth for leg in legs],
-            "anchor_vertical": np.array([leg.anchor.vertical for leg in legs]),
-            "anchor_horizontal": np.array([leg.anchor.horizontal for leg in legs]),
-            "used_buoyancy": free * [leg.top.used_buoyancy for leg in legs],
-            "other_used_buoyancy": np.array([leg.other_used_buoyancy for leg in legs]),
+            one.name: np.array([one.found(leg) for leg in self.legs])
+            for one in MOORED_ENDS
+            if one.found
         }
 
     def to_pandas(self) -> Any:
@@ -589,27 +596,11 @@ class Result:
             **{name: getattr(self, name) for name in told},
             "accuracy": {k: v for k, v in asdict(self.accuracy).items() if v is not None},
             **(self._document_of_legs() if self.several else self._document_of_leg()),
-            "components": [*self._rows(self.components)],
-            "clamps": [*self._rows(self.clamps)],
+            "components": documents(self.components, self.file),
+            "clamps": documents(self.clamps, self.file),
             **({} if self.several else {"shape": self.shape.to_dict()}),
             "warnings": list(self.warnings),
         }
-
-    def _rows(self, table: Components | Clamps) -> Iterator[dict[str, Any]]:
-        """Pieces or clamps as dictionaries, with their serial numbers, of several with their
-        legs.
-        """
-        parts: Sequence[Piece | Clamp] = table.part
-        numbers = leg_numbers(self.file)
-        for row, part in zip(table.to_dicts(), parts, strict=True):
-            if isinstance(part, Piece):
-                for name in ("kind", "role", "tension", "least_tension"):
-                    del row[name]
-            if part.serial is not None:
-                row["serial"] = part.serial
-            if self.several:
-                row["leg"] = self.legs[numbers[row["index"]]].name
-            yield row
 
     def _document_of_leg(self) -> dict[str, Any]:
         leg, keys = self.leg, self.file.tow

@@ -3,129 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from math import atan2, degrees, hypot, isnan, nan
 
 import numpy as np
 
 from calm.case.leg import Leg
-from calm.case.result_tables import Components
+from calm.case.result_tables import (
+    Accuracy,
+    AnchorLoad,
+    Components,
+    EndLoad,
+    Top,
+    TowedBody,
+    TowPoint,
+)
 from calm.physics.line import Floats
 from calm.physics.seabed import required_weight
 from calm.solve import Solution
-
-
-@dataclass(frozen=True)
-class Accuracy:
-    """The solver's own estimate of its errors.
-
-    Of the worst of any depth or offset [m], of any tension [N], of the vertical and the horizontal
-    pull on the anchor [N], and of the weight that it needs [N]; the last two None in a tow.
-    """
-
-    depth: float
-    tension: float
-    anchor: float | None = None
-    required_weight: float | None = None
-
-
-@dataclass(frozen=True)
-class Top:
-    """The free end: depth, offsets east and north, knockdown [m]; None where there is none.
-
-    `used_buoyancy` is the share in use of the buoyancy that is at the surface, `reserve` the
-    rest of it [N]; 1 and 0 below the surface. `draft` and `freeboard` [m] are those of a float at
-    the surface whose hull is known.
-    """
-
-    depth: float
-    x: float
-    y: float
-    knockdown: float | None
-    used_buoyancy: float
-    reserve: float
-    draft: float | None = None
-    freeboard: float | None = None
-
-
-@dataclass(frozen=True)
-class AnchorLoad:
-    """Hold what the line does to its anchor [N]; `angle` is from the vertical [degrees].
-
-    `required_weight` is the weight in water that holds it, `weight` what it has, `friction` its
-    coefficient on the bed; `grounded_length` is the unstretched length of line on the seabed [m].
-    """
-
-    tension: float
-    vertical: float
-    horizontal: float
-    angle: float
-    required_weight: float
-    weight: float
-    friction: float
-    grounded_length: float
-
-
-@dataclass(frozen=True)
-class TowPoint:
-    """Hold what the line does to the ship: its tension, downward and backward [N].
-
-    `angle` is that of the line there below the horizontal [degrees].
-    """
-
-    tension: float
-    angle: float
-    vertical: float
-    horizontal: float
-
-
-@dataclass(frozen=True)
-class TowedBody:
-    """The upper end of the lowest piece, or the free end of a bare cable.
-
-    Depth and horizontal distance from the tow point [m], tension there [N], and the angle of the
-    line above it from the horizontal [degrees].
-    """
-
-    depth: float
-    layback: float
-    tension: float
-    angle: float
-
-
-@dataclass(frozen=True)
-class EndLoad:
-    """Hold what a leg does to an end that is held, or to its anchor.
-
-    The pull of the line and its parts up and sideways [N], its angle from the vertical [degrees];
-    where the end is [m]. Of an anchor the weight in water that it needs, and has [N], the
-    unstretched length of line on the seabed, and how much more of that there is than leads to the
-    anchor [m].
-    """
-
-    leg: str
-    tension: float
-    vertical: float
-    horizontal: float
-    angle: float
-    x: float
-    y: float
-    depth: float
-    required_weight: float | None = None
-    weight: float | None = None
-    grounded_length: float = 0.0
-    slack_length: float = 0.0
-
-
-@dataclass(frozen=True)
-class NodePlace:
-    """Hold where the legs of a node meet [m]; `imbalance` is left of their pulls there [N]."""
-
-    name: str
-    depth: float
-    x: float
-    y: float
-    imbalance: float
 
 
 def anchor_load(leg: Leg, solution: Solution) -> AnchorLoad:

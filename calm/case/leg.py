@@ -12,8 +12,7 @@ from calm.case import parts
 from calm.case.memory import Forgetful, Memory
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Piece
-from calm.files.legs import EndKeys, legs_of
-from calm.files.legs import Leg as LegKeys
+from calm.files.legs import EndKeys, FileLeg, legs_of
 from calm.files.mooring_file import STAND_IN, parts_of
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water
@@ -68,7 +67,7 @@ class Leg:
         return self.file.name
 
     @property
-    def keys(self) -> LegKeys:
+    def keys(self) -> FileLeg:
         """What the file of the design says of it."""
         return legs_of(self.file)[0]
 

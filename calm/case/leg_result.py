@@ -6,24 +6,21 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import nan
 
-from calm.case.ends import (
-    Accuracy,
-    AnchorLoad,
-    EndLoad,
-    Top,
-    TowedBody,
-    TowPoint,
-    accuracy_of,
-    anchor_load,
-    body_of,
-    end_loads,
-    top_of,
-    tow_point_of,
-)
+from calm.case.ends import accuracy_of, anchor_load, body_of, end_loads, top_of, tow_point_of
 from calm.case.leg import Leg
 from calm.case.measure import clamps_of, components_of, on_anchor, shape_of, with_anchor
 from calm.case.profilers import ProfilerTravel
-from calm.case.result_tables import Clamps, Components, Shape
+from calm.case.result_tables import (
+    Accuracy,
+    AnchorLoad,
+    Clamps,
+    Components,
+    EndLoad,
+    Shape,
+    Top,
+    TowedBody,
+    TowPoint,
+)
 from calm.case.strumming import Strumming, StrummingBand, band_of, strumming_of
 from calm.files import MooringFile
 from calm.files.mooring_file import clamps_down

@@ -36,7 +36,7 @@ class CableLayout:
 
     problem: cable_grammar.CableProblem
     makers: ComponentMaker
-    design: model.Design
+    design: model.ImportedDesign
     nodes: int = 0
 
     @property

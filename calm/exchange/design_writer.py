@@ -51,7 +51,7 @@ class _Page:
         self.lines += [f"{indent}# {line}" for line in wrap(text, _WIDTH - len(indent) - 2)]
 
 
-def mooring_text(design: model.Design, source: str) -> tuple[str, list[model.Remark]]:
+def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[model.Remark]]:
     """Return the text of the mooring file of a design from a file, and what was guessed in it."""
     page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
     page.remark(f"Imported from {of}, by CALM {__version__} with its own figures.")
@@ -245,7 +245,7 @@ _DIGITS = 2  # that a guessed weight keeps
 _LEAST = 100.0  # N of a guessed weight
 
 
-def secure_anchors(design: model.Design, output: Path) -> None:
+def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
     """Give each anchor a weight where the file gives none, or one that the line would lift.
 
     The shape of the line does not depend on it. The weight is what `calm check` asks for in this
@@ -276,7 +276,7 @@ def secure_anchors(design: model.Design, output: Path) -> None:
 
 
 def _pulls(
-    design: model.Design, anchors: list[model.ImportedComponent], output: Path
+    design: model.ImportedDesign, anchors: list[model.ImportedComponent], output: Path
 ) -> list[tuple[model.ImportedComponent, float | None, float]]:
     """Return each anchor, the upward pull of the line on it and the weight that holds it [N]."""
     before = [anchor.figures for anchor in anchors]

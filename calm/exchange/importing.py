@@ -41,7 +41,7 @@ class ImportFormat:
     name: str
     program: str
     recognises: Callable[[bytes], bool]
-    read: Callable[[Path, model.ImportOptions], model.Design]
+    read: Callable[[Path, model.ImportOptions], model.ImportedDesign]
 
 
 FORMATS = (
@@ -218,7 +218,7 @@ class CatalogueMatch:
     entry: str
 
 
-def match_catalogue_entries(design: model.Design) -> tuple[CatalogueMatch, ...]:
+def match_catalogue_entries(design: model.ImportedDesign) -> tuple[CatalogueMatch, ...]:
     """Use catalogue entries for the components whose name and figures agree with one.
 
     A component is of the same kind, shares half the words of its name, and is within `_TOLERANCE`

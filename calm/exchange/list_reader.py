@@ -29,7 +29,7 @@ _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & 
 _NAMES = 3  # at least, in a list of names alone
 
 
-def read_list(path: Path, options: model.ImportOptions) -> model.Design:
+def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     """Read a CSV file or a workbook.
 
     InputError: no headings are recognised, a figure is missing, or no end is an anchor.
@@ -43,7 +43,7 @@ def read_list(path: Path, options: model.ImportOptions) -> model.Design:
             "is a library of elements, not a mooring; a list takes its figures: --elements FILE",
         )
     library = read_library(elements) if elements is not None else {}
-    design = model.Design("a list", path.stem, [], None, notes=[_NOTE])
+    design = model.ImportedDesign("a list", path.stem, [], None, notes=[_NOTE])
     design.water = _water(sheets, design, path)
     problems: list[str] = []
     ordered = sorted(sheets.values(), key=len, reverse=True)
@@ -90,7 +90,7 @@ def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:
 
 
 def _names(
-    sheets: Mapping[str, SheetRows], design: model.Design, path: Path, library: Library
+    sheets: Mapping[str, SheetRows], design: model.ImportedDesign, path: Path, library: Library
 ) -> list[list_rows.ListRow]:
     """Return the rows of a list that holds names alone, in the longest sheet.
 
@@ -129,7 +129,7 @@ def _names_in(cells: SheetRows) -> list[list_rows.ListRow]:
 
 
 def _water(
-    sheets: Mapping[str, SheetRows], design: model.Design, path: Path
+    sheets: Mapping[str, SheetRows], design: model.ImportedDesign, path: Path
 ) -> model.ImportedWater | None:
     """Return the environment in a sheet of heights, `z`, of Mooring Design & Dynamics."""
     for rows in sheets.values():
@@ -158,7 +158,7 @@ def _figure(row: list[str], index: int, path: Path) -> float:
 
 
 def _from_the_top(
-    rows: list[list_rows.ListRow], path: Path, design: model.Design
+    rows: list[list_rows.ListRow], path: Path, design: model.ImportedDesign
 ) -> list[list_rows.ListRow]:
     """Return the rows from the top down; lists run either way, clamps follow their piece."""
     pieces = [row for row in rows if "at" not in row.figures]

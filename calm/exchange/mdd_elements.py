@@ -292,7 +292,7 @@ def is_moords(content: bytes) -> bool:
     return set(head.strip().split(",")) >= _MARKS
 
 
-def read_moords(path: Path) -> model.Design:
+def read_moords(path: Path) -> model.ImportedDesign:
     """Read a design (InputError: its headings or figures are not those of that program)."""
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:
@@ -318,7 +318,7 @@ def read_moords(path: Path) -> model.Design:
         else:
             items.append(piece_of(element))
     name = rows[0].get("mooring") or path.stem
-    return model.Design("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
+    return model.ImportedDesign("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
 
 
 def _element(row: dict[str, str], place: int, problems: list[str]) -> MddElement:

@@ -35,7 +35,7 @@ _MATLAB_EPOCH = 719529.0  # datenum of 1 January 1970
 _EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this age
 
 
-def read_mdd(path: Path) -> model.Design:
+def read_mdd(path: Path) -> model.ImportedDesign:
     """Read a mooring or a tow.
 
     InputError: the file is damaged, is none of that program, or holds what CALM cannot represent.
@@ -56,7 +56,7 @@ def read_mdd(path: Path) -> model.Design:
     if problems := [*problems, *more]:
         raise refused(path, *problems)
     program = "Mooring Design & Dynamics"
-    design = model.Design(program, path.stem, [], None, notes=[_NOTE], in_kilograms=True)
+    design = model.ImportedDesign(program, path.stem, [], None, notes=[_NOTE], in_kilograms=True)
     try:
         design.water, design.record = read_water(variables, towed, design.guessed)
     except ValueError as error:
@@ -72,7 +72,7 @@ def read_mdd(path: Path) -> model.Design:
     return design
 
 
-def _lay_mooring(design: model.Design, elements: list[MddElement], path: Path) -> None:
+def _lay_mooring(design: model.ImportedDesign, elements: list[MddElement], path: Path) -> None:
     last = elements[-1]
     if last.is_line or len(elements) < 2 or last.lift == 0.0:
         raise refused(path, f"element {last.number}, {last.name}, is not an anchor with a weight")
@@ -85,7 +85,7 @@ def _lay_mooring(design: model.Design, elements: list[MddElement], path: Path) -
 
 
 def _lay_tow(
-    design: model.Design, elements: list[MddElement], variables: MatVariables, path: Path
+    design: model.ImportedDesign, elements: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
     """Lay a tow: the file runs from the body up, and ends with a mark for the ship."""
     end = elements[-1]
@@ -104,7 +104,7 @@ def _lay_tow(
 
 
 def _clamp(
-    design: model.Design, clamped: list[MddElement], variables: MatVariables, path: Path
+    design: model.ImportedDesign, clamped: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
     """Hang what is clamped on: by element and share of its length, counted from its lower end."""
     host, share, height = (variables.row(name).tolist() for name in ("Jobj", "Pobj", "ZCO"))
@@ -127,7 +127,7 @@ def _clamp(
         design.items[place[0]].clamp(mdd_elements.rigid(element), place[1], guess)
 
 
-def _by_share(design: model.Design, host: float, share: float) -> tuple[int, float] | None:
+def _by_share(design: model.ImportedDesign, host: float, share: float) -> tuple[int, float] | None:
     """Return the piece that an element became, and how far below its upper end a share of it is."""
     count, number = len(design.items), round(host) - 1
     if design.tow is not None:

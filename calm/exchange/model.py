@@ -222,7 +222,7 @@ class ImportedTow:
 
 
 @dataclass(eq=False)
-class Design:
+class ImportedDesign:
     """Hold a mooring or a tow as another program's file gives it.
 
     Attributes

@@ -39,7 +39,7 @@ def is_oceanarray(content: bytes) -> bool:
     return re.search(rb"^waterdepth *:", content, re.M) is not None and bool(_MARKS.search(content))
 
 
-def read_oceanarray(path: Path, options: model.ImportOptions) -> model.Design:
+def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     """Read such a configuration.
 
     InputError: it lists no line, a height or length is missing or wrong, or nothing is known of a
@@ -62,7 +62,9 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.Design:
     if problems:
         raise InputError(problems)
     parts = _Parts(reading, options.defines, library)
-    design = model.Design("oceanarray", str(document.data.get("name") or path.stem), [], None)
+    design = model.ImportedDesign(
+        "oceanarray", str(document.data.get("name") or path.stem), [], None
+    )
     _hang(beside, _strung(line, parts, design), parts)
     design.water = model.ImportedWater(depth, guesses={"current": "the file has none: still water"})
     design.heading = _heading(reading)
@@ -255,7 +257,7 @@ class _Strung:
     height: list[float]
 
 
-def _strung(line: list[_Entry], parts: _Parts, design: model.Design) -> _Strung:
+def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> _Strung:
     """Return the pieces from the anchor up, ropes between them, and put them into the design."""
     items: list[model.ImportedPiece] = []
     nominal, height = [0.0], [0.0]  # of lower ends; the last is that of the piece to come

@@ -130,7 +130,7 @@ class LegKeys(Model):
 
 
 @dataclass(frozen=True)
-class Leg:
+class FileLeg:
     """Represent a leg: the pieces `first` to `end` (not itself) of the file, and its two ends.
 
     An end with no key is free.
@@ -170,7 +170,7 @@ class Leg:
             notices=(),
         )
 
-    def grown(self, index: int, more: int) -> Leg:
+    def grown(self, index: int, more: int) -> FileLeg:
         """Return the leg where there are more pieces after that of an index in the file."""
         return replace(
             self,
@@ -192,7 +192,7 @@ def stand_in_anchor(index: int, item: int) -> Piece:
 
 def read_legs(
     top: SourceMapping, reader: LineReader, position: Position | None
-) -> tuple[tuple[Leg, ...], tuple[Piece, ...]]:
+) -> tuple[tuple[FileLeg, ...], tuple[Piece, ...]]:
     """Read the legs of a file, and the pieces of all of them one after another.
 
     Parameters
@@ -211,7 +211,7 @@ def read_legs(
     if len(found) > MOST_LEGS:
         top.refuse(("legs",), f"more than {MOST_LEGS} legs", key=True)
         return (), ()
-    legs: list[Leg] = []
+    legs: list[FileLeg] = []
     pieces: list[Piece] = []
     section, whole, items = top.child("legs"), True, 0
     for name in found:
@@ -234,7 +234,7 @@ def read_legs(
         ends = keys.top, keys.bottom or _FREE
         if len(top.problems) == before:
             ends = _ends(keys, own, pieces[first:])
-        legs.append(Leg(str(name), first, len(pieces), *ends))
+        legs.append(FileLeg(str(name), first, len(pieces), *ends))
     if whole:
         _check_net(legs, top)
     return tuple(legs), numbered(pieces)
@@ -285,7 +285,7 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
     return upper, lower
 
 
-def check_held_depths(legs: Sequence[Leg], top: SourceMapping, depth: float | None) -> None:
+def check_held_depths(legs: Sequence[FileLeg], top: SourceMapping, depth: float | None) -> None:
     """Check that what is held is above the seabed, at a depth [m]."""
     for leg in legs:
         for name, end in zip(("top", "bottom"), leg.ends, strict=True):
@@ -294,7 +294,7 @@ def check_held_depths(legs: Sequence[Leg], top: SourceMapping, depth: float | No
                 top.refuse(("legs", leg.name, name, "held", "depth"), message)
 
 
-def _check_net(legs: Sequence[Leg], top: SourceMapping) -> None:
+def _check_net(legs: Sequence[FileLeg], top: SourceMapping) -> None:
     """Check that every node joins legs, and that something holds each of them."""
     section = top.child("legs")
     joins = [
@@ -324,7 +324,7 @@ def _check_net(legs: Sequence[Leg], top: SourceMapping) -> None:
         _check_held(legs, section)
 
 
-def _check_held(legs: Sequence[Leg], section: SourceMapping) -> None:
+def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
     """Check that no part of the net is without a hold.
 
     Nor may an anchor whose place is not written stand where another does.
@@ -374,7 +374,7 @@ def refuse_all_but_moorings(file: MooringFile) -> None:
     refuse_tow(file)
 
 
-def legs_of(file: MooringFile) -> tuple[Leg, ...]:
+def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
     """Return the legs of a file; of a single line one, with its ends.
 
     A tow is held at the ship, a mooring stands on its anchor.
@@ -385,7 +385,7 @@ def legs_of(file: MooringFile) -> tuple[Leg, ...]:
     if file.tow is not None:
         ship = HeldKeys.model_construct(depth=-file.tow.height, at=(0.0, 0.0))
         ends = EndKeys(held=ship), _FREE
-    return (Leg(file.name, 0, len(file.pieces), *ends),)
+    return (FileLeg(file.name, 0, len(file.pieces), *ends),)
 
 
 def leg_numbers(file: MooringFile) -> list[int]:
@@ -393,7 +393,7 @@ def leg_numbers(file: MooringFile) -> list[int]:
     return [n for n, leg in enumerate(legs_of(file)) for _ in range(leg.first, leg.end)]
 
 
-def nodes_of(legs: Sequence[Leg]) -> Mapping[str, int]:
+def nodes_of(legs: Sequence[FileLeg]) -> Mapping[str, int]:
     """Return the number of every node by its name, as they come up in the legs."""
     names = dict.fromkeys(end.join for leg in legs for end in leg.ends if end.join is not None)
     return {name: number for number, name in enumerate(names)}

@@ -26,7 +26,7 @@ from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping
 
 if TYPE_CHECKING:
-    from calm.files.legs import Leg
+    from calm.files.legs import FileLeg
 
 
 STAND_IN = ""
@@ -224,7 +224,7 @@ class MooringFile:
     releases: tuple[ReleaseKeys, ...] = field(default=(), hash=False)
     deployed: Deployed | None = None
     units: Mapping[str, str] = field(default_factory=dict, hash=False)
-    legs: tuple[Leg, ...] = ()
+    legs: tuple[FileLeg, ...] = ()
 
     def __repr__(self) -> str:
         """Return its name, where it is, and how many pieces it has."""

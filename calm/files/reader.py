@@ -18,7 +18,7 @@ from calm.files.check_limits import Accept, Checks, LimitKey, read_accepts
 from calm.files.components import Anchor, Flexible
 from calm.files.definition import Model, Text, described, optional
 from calm.files.environment import Position, Seabed, read_environment
-from calm.files.legs import Leg, LegKeys, check_held_depths, read_legs, stand_in_anchor
+from calm.files.legs import FileLeg, LegKeys, check_held_depths, read_legs, stand_in_anchor
 from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, OutputUnits, ReleaseKeys, check_deployed
 from calm.files.mooring_file import MooringFile, Piece, Solver, TowKeys, numbered
@@ -110,7 +110,7 @@ class _ReadLine(NamedTuple):
     """The line of a file and what refers to its pieces, and the mistakes in them."""
 
     pieces: tuple[Piece, ...]
-    legs: tuple[Leg, ...]
+    legs: tuple[FileLeg, ...]
     looser: tuple[LimitKey, ...]
     accepts: tuple[Accept, ...]
     notices: tuple[str, ...]
@@ -215,7 +215,7 @@ class MooringReader:
         reader = LineReader(self._catalogue, top, notices, towed=towed, in_air=in_air)
         reader.check(self._definitions.data if self._definitions is not None else ())
         before = len(problems)
-        legs: tuple[Leg, ...] = ()
+        legs: tuple[FileLeg, ...] = ()
         pieces = reader.read(top, "line") if isinstance(top.data.get("line"), list) else ()
         line_is_whole = bool(pieces) and len(problems) == before
         if self._stand_in and not towed and pieces and not _anchored(pieces):
@@ -284,7 +284,7 @@ def _anchored(pieces: Sequence[Piece]) -> bool:
 def _check_slides(
     seabed: Seabed,
     pieces: Sequence[Piece],
-    legs: Sequence[Leg],
+    legs: Sequence[FileLeg],
     checks: Checks,
     top: SourceMapping,
     depth: float | None,

@@ -12,9 +12,10 @@ _SECTIONS = {
     "Parts of a result": [
         "calm.case.result_tables.Components", "calm.case.result_tables.Clamps",
         "calm.case.result_tables.Shape",
-        "calm.case.ends.Top", "calm.case.ends.AnchorLoad", "calm.case.ends.TowPoint",
-        "calm.case.ends.TowedBody", "calm.case.ends.EndLoad", "calm.case.ends.NodePlace",
-        "calm.case.ends.Accuracy",
+        "calm.case.result_tables.Top", "calm.case.result_tables.AnchorLoad",
+        "calm.case.result_tables.TowPoint", "calm.case.result_tables.TowedBody",
+        "calm.case.result_tables.EndLoad", "calm.case.result_tables.NodePlace",
+        "calm.case.result_tables.Accuracy",
         "calm.case.strumming.Strumming", "calm.case.strumming.StrummingBand",
     ],
     "Many profiles": ["calm.solve_profiles", "calm.Profiles"],

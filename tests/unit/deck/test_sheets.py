@@ -239,7 +239,7 @@ def test_instruments_in_all_environments(moorings, deck):
     tilts = [row.tilt for one in results.values() for row in one.clamps if row.label == "high"]
     assert high.greatest_tilt == max(tilts)
     still = deck.result.design.water.still()
-    rope = deck.result.design.equilibrium(still).position
+    rope = deck.result.design.leg.equilibrium(still).position
     top = float(-rope[0, 2])
     # still water leaves the line upright: the clamp is as far below the top as its lengths say
     above = 1.0 + sum(one.stretched for one in deck.parts[1:4]) + 20.0

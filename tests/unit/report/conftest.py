@@ -91,7 +91,8 @@ def build_result(**changes):
     _of_the_file(components, clamps, pieces)
     limits = Record(steel=3.0, synthetic=5.0, surface=5.0)
     file = Record(
-        name="Iroise 2026", pieces=pieces, checks=Record(safety_factor=limits), environment=Record(depth=1100.0),
+        name="Iroise 2026", pieces=pieces, checks=Record(safety_factor=limits),
+        environment=Record(depth=1100.0),
         solver=Record(strumming=None), legs=(), tow=None,
     )  # fmt: skip
     water = Record(
