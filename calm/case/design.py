@@ -130,11 +130,6 @@ class Design:
         return self.leg.line
 
     @property
-    def anchored(self) -> bool:
-        """Return whether an anchor holds any of it."""
-        return any(leg.anchored for leg in self.legs)
-
-    @property
     def towed(self) -> bool:
         """Return whether it is drawn through the water."""
         return any(leg.towed for leg in self.legs)

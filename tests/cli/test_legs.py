@@ -161,7 +161,7 @@ def test_other_commands_say_which_one_solves_nets(
     }
     assert run(command, net, *more.get(command, [])) == 2
     told = capsys.readouterr().err
-    assert f"{net}:5:1" in told
+    assert f"{net}: this is a net of legs" in told
     assert "for `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`" in told
 
 
@@ -283,7 +283,7 @@ legs:
   one:{leg}  two:{leg}    bottom: {{anchor: {{at: [200 m, 0 m]}}}}
 """
     one, two = load(tmp_path / "two.yaml", text=text).solve().legs
-    part = pieces_of(one.design)[0]
+    part = pieces_of(one.leg)[0]
     offset = READINGS["offset"](one, part)
     assert offset == pytest.approx(one.top.x, rel=1e-12)
     assert READINGS["offset"](two, part) == pytest.approx(offset, rel=1e-9)
@@ -352,7 +352,7 @@ def test_an_anchor_that_is_lifted_is_no_result(
     file = tmp_path / "light.yaml"
     file.write_text(NET.replace("anchor-wheels-4", "anchor-wheels-1"))
     assert run("run", file) == 3
-    assert "anchor-lifts: Leg stem has a vertical pull of" in capsys.readouterr().err
+    assert "anchor-lifts: The vertical pull of leg stem is" in capsys.readouterr().err
 
 
 MISTAKES = {

@@ -39,7 +39,6 @@ def test_legs_say_what_holds_their_ends(net: calm.Design) -> None:
     assert [held_by(leg) for leg in net.legs] == [
         ["free", "join"], ["join", "free"], ["join", "anchor"],
     ]  # fmt: skip
-    assert [one.anchored for one in (mooring, tow, net)] == [True, False, True]
     assert [one.towed for one in (mooring, tow, net)] == [False, True, False]
 
 
