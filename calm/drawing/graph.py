@@ -1,4 +1,4 @@
-"""Graphs for the pages of a report, as SVG: drawn many times, without a plotting library.
+"""Graphs as SVG: scales, axes and legends, drawn by the pen.
 
 Lengths are in points (1/72 inch); the upper left corner of a graph is its origin.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, floor, isfinite, log10
+from math import ceil, copysign, floor, isfinite, log10
 from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
@@ -57,6 +57,23 @@ def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
     low, high = float(every.min()), float(every.max())
     spare = margin * (high - low) or margin * abs(low) or margin
     return Scale(low - spare, high + spare)
+
+
+def to_one_scale(across: Scale, up: Scale, width: float, height: float) -> tuple[Scale, Scale]:
+    """Both ranges such that a unit is as long across as it is up: one is widened about its middle.
+
+    Parameters
+    ----------
+    width, height : of the axes [pt]
+    """
+    unit = max(abs(across.high - across.low) / width, abs(up.high - up.low) / height)
+    return _widened(across, unit * width), _widened(up, unit * height)
+
+
+def _widened(scale: Scale, extent: float) -> Scale:
+    middle = (scale.low + scale.high) / 2
+    half = copysign(extent / 2, scale.high - scale.low)
+    return Scale(middle - half, middle + half)
 
 
 _STEPS = (1.0, 2.0, 5.0, 10.0)
@@ -203,10 +220,21 @@ class Graph:
         return within_xml(ElementTree.tostring(self.pen.element, encoding="unicode"))
 
     def axes(
-        self, left: float, top: float, width: float, height: float, across: Scale, up: Scale
+        self,
+        left: float,
+        top: float,
+        width: float,
+        height: float,
+        across: Scale,
+        up: Scale,
+        *,
+        clipped: bool = False,
     ) -> Axes:
-        """Axes at a place [pt] of the graph, their ranges from left to right and upward."""
-        return Axes(self, (left, top, width, height), across, up)
+        """Axes at a place [pt] of the graph, their ranges from left to right and upward.
+
+        What is drawn in `clipped` axes ends at their frame.
+        """
+        return Axes(self, (left, top, width, height), across, up, clipped)
 
     def legend(
         self,
@@ -238,12 +266,23 @@ class Axes:
     """Two scales, and a frame that `frame` draws around what was drawn between them."""
 
     def __init__(
-        self, graph: Graph, place: tuple[float, float, float, float], across: Scale, up: Scale
+        self,
+        graph: Graph,
+        place: tuple[float, float, float, float],
+        across: Scale,
+        up: Scale,
+        clipped: bool = False,
     ) -> None:
         self.graph, self.across, self.up = graph, across, up
         self.left, self.top, self.width, self.height = place
         self._grid = graph.pen.draw("g", **_GRID.attributes())
-        self._drawn = graph.pen.draw("g")
+        self.drawn = graph.pen.draw("g")
+        if clipped:
+            name = f"axes-{len(graph.pen.element)}"
+            left, top, width, height = place
+            frame = graph.pen.draw("clipPath", id=name)
+            frame.draw("rect", x=left, y=top, width=width, height=height)
+            self.drawn = graph.pen.draw("g", clip_path=f"url(#{name})")
 
     def x(self, value: ArrayLike) -> Floats:
         """Points from the left edge of the graph."""
@@ -257,7 +296,7 @@ class Axes:
         """A line from point to point, interrupted where one is not known."""
         path = _path(self.x(x), self.y(y))
         if path:
-            self._drawn.path(path, **stroke.attributes())
+            self.drawn.path(path, **stroke.attributes())
 
     def lines(self, x: ArrayLike, y: ArrayLike, stroke: Stroke) -> None:
         """Lines apart, (2, n) ends of each; what is not known is left out."""
@@ -265,22 +304,22 @@ class Axes:
         for ends in zip(x1.tolist(), y1.tolist(), x2.tolist(), y2.tolist(), strict=True):
             if all(map(isfinite, ends)):
                 left, top, right, bottom = ends
-                self._drawn.line(left, top, right, bottom, **stroke.attributes())
+                self.drawn.line(left, top, right, bottom, **stroke.attributes())
 
     def level(self, value: float, stroke: Stroke) -> None:
         """A line across at a value of the upward axis."""
         y = float(self.y(value))
-        self._drawn.line(self.left, y, self.left + self.width, y, **stroke.attributes())
+        self.drawn.line(self.left, y, self.left + self.width, y, **stroke.attributes())
 
     def plumb(self, value: float, stroke: Stroke) -> None:
         """A line up and down at a value of the axis across."""
         x = float(self.x(value))
-        self._drawn.line(x, self.top, x, self.top + self.height, **stroke.attributes())
+        self.drawn.line(x, self.top, x, self.top + self.height, **stroke.attributes())
 
     def strip(self, low: float, high: float, colour: str) -> None:
         """Do what lies between two values of the upward axis, filled."""
         y = sorted(map(float, self.y([low, high])))
-        self._drawn.draw(
+        self.drawn.draw(
             "rect", x=self.left, y=y[0], width=self.width, height=y[1] - y[0], fill=colour
         )
 
@@ -298,7 +337,30 @@ class Axes:
             for known in map(slice, ends[::2], ends[1::2])
         )
         if path:
-            self._drawn.path(path, fill=colour, stroke=colour, stroke_width=0.4)
+            self.drawn.path(path, fill=colour, stroke=colour, stroke_width=0.4)
+
+    def area(self, x: ArrayLike, y: ArrayLike, colour: str) -> None:
+        """What a closed line encloses, filled in a pale colour."""
+        self.drawn.path(f"{_path(self.x(x), self.y(y))}Z", fill=colour, fill_opacity=0.2)
+
+    def words(
+        self,
+        x: float,
+        y: float,
+        text: str,
+        *,
+        shift: tuple[float, float] = (4.0, -4.0),
+        anchor: str = "start",
+        colour: str = INK,
+    ) -> None:
+        """A text beside a point, so far [pt] to the right of it and below it."""
+        at = float(self.x(x)) + shift[0], float(self.y(y)) + shift[1]
+        self.drawn.letters(*at, text, size=self.graph.size, anchor=anchor, colour=colour)
+
+    def title(self, text: str) -> None:
+        """A text above the left end of the frame; one that is too long is cut short."""
+        size = self.graph.size
+        self.graph.pen.write(self.left, self.top - 0.8 * size, text, self.width, size=size)
 
     def bars(self, at: ArrayLike, value: ArrayLike, width: float, colours: Sequence[str]) -> None:
         """Bars from zero to values, `width` wide on the axis across."""
@@ -307,14 +369,14 @@ class Axes:
         ends, zero = self.y(value), float(self.y(0.0))
         for left, right, end, colour in zip(*edges, ends, colours, strict=True):
             if np.isfinite(end):
-                self._drawn.draw(
+                self.drawn.draw(
                     "rect", x=float(left), y=min(float(end), zero), width=float(right - left),
                     height=abs(float(end) - zero), fill=colour,
                 )  # fmt: skip
 
     def mark(self, x: float, y: float, sign: str, size: float, colour: str) -> None:
         """A sign at a point, as `draw_mark` draws it."""
-        draw_mark(self._drawn, float(self.x(x)), float(self.y(y)), sign, size, colour)
+        draw_mark(self.drawn, float(self.x(x)), float(self.y(y)), sign, size, colour)
 
     def frame(
         self,
@@ -370,6 +432,17 @@ class Axes:
             turned = f"translate({x:.2f} {self.top + self.height / 2:.2f}) rotate(-90)"
             pen.draw("g", transform=turned).letters(0.0, 0.0, text, size=size, anchor="middle")
 
+    def scale_above(self, ticks: Sequence[Tick], label: str) -> None:
+        """A second scale over the frame; the ticks have values of the axis across."""
+        pen, size = self.graph.pen, self.graph.size
+        for tick in ticks:
+            x = float(self.x(tick.value))
+            pen.line(x, self.top - _TICK, x, self.top, **_FRAME.attributes())
+            at = self.top - _TICK - 0.8 * size
+            pen.letters(x, at, tick.text, size=size, anchor="middle")
+        at = self.top - _TICK - 2.3 * size
+        pen.letters(self.left + self.width / 2, at, label, size=size, anchor="middle")
+
 
 def _path(x: Floats, y: Floats) -> str:
     """Straight lines through points; a new one begins after what is not known."""
@@ -385,16 +458,24 @@ def _path(x: Floats, y: Floats) -> str:
 
 
 def draw_mark(pen: Pen, x: float, y: float, sign: str, size: float, colour: str) -> None:
-    """A filled sign of some width [pt] at a point: o, s (square), D (diamond) or v (downward)."""
+    """A sign of some width [pt] at a point.
+
+    Filled: o, s (square), D (diamond), v and ^ (triangles); of lines: +, | (an upright).
+    """
     half = size / 2
     if sign == "o":
         pen.circle(x, y, half, fill=colour)
     elif sign == "s":
         pen.box(x, y, size, size, fill=colour)
+    elif sign in "+|":
+        ends = {"+": ((half, 0.0), (0.0, half)), "|": ((0.0, half),)}[sign]
+        for across, up in ends:
+            pen.line(x - across, y - up, x + across, y + up, stroke=colour, stroke_width=1.2)
     else:
         corners = {
             "D": ((0, -1.2), (1.2, 0), (0, 1.2), (-1.2, 0)),
             "v": ((-1, -0.9), (1, -0.9), (0, 1)),
+            "^": ((-1, 0.9), (1, 0.9), (0, -1)),
         }[sign]
         points = " ".join(f"{x + half * u:.2f},{y + half * v:.2f}" for u, v in corners)
         pen.draw("polygon", points=points, fill=colour)
