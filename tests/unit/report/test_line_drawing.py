@@ -1,5 +1,6 @@
 """A result as a drawing, read back from its SVG; the same on axes of matplotlib."""
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -205,6 +206,6 @@ def test_a_solved_mooring_plots_itself():
 
 
 def test_without_matplotlib_a_plot_says_what_to_type(result, monkeypatch):
-    monkeypatch.setattr(plot, "find_spec", lambda name: None)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(UsageError, match=r"plot needs matplotlib: pip install 'calm-moor"):
         plot.plot_elevation(elevation_of(result))
