@@ -59,11 +59,11 @@ _FASTER, _IN_PLANE = Stroke(WATER_COLOUR, 1.4), Stroke(WATER_COLOUR, 1.0, (3.0, 
 def line_drawing(result: AnyResult, uncertain: Uncertain | None = None) -> str:
     """Draw a mooring, a net or a tow, from the side and above, as SVG.
 
-    The elevation is in the vertical plane of the anchor and the free end, of a net in the one in
-    which it is widest, or in that of the tow, the ship at distance 0; the line in still water is
-    dashed. Beside it are the speed of the water, past the line of a tow, and its part in that
-    plane. The plan is left out if a tow stays in its plane. The band of an uncertain mooring is
-    behind the line.
+    The elevation of a mooring is in the vertical plane of its anchor and its free end, that of a
+    net in the plane in which the net is widest, that of a tow in the plane of the tow, with the
+    ship at distance 0. The line in still water is dashed. The second view has the speed of the
+    water past the line and its component in that plane. The third view, from above, is left out
+    if a tow stays in its plane. The band of an uncertain mooring is behind the line.
     """
     plane = line_picture.plane_of(result)
     side = line_picture.elevation_of(result, uncertain=uncertain)
@@ -213,13 +213,13 @@ def draw_flow(
     depths: Scale,
     what: str,
 ) -> None:
-    """Draw speed by depth, and the part of it in a vertical plane if that differs.
+    """Draw speed against depth, and its component in a vertical plane if that differs.
 
     Parameters
     ----------
     flow : (n,) depth [m], speed to the east and to the north [m/s]
     plane : (2,) direction of the plane, east and north
-    what : the scale says after the word speed
+    what : label of the scale, after the word speed
     """
     depth, u, v = flow
     speed, in_plane = np.hypot(u, v), along(u, v, plane)

@@ -1,4 +1,4 @@
-"""A drawing as a file, and the signs that stand in drawings."""
+"""Drawings as files, and the characters allowed in drawings."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from calm.errors import UsageError
 
 FORMATS = (".svg", ".png", ".pdf")
-"""The endings a picture's file name may have."""
+"""Allowed endings of a picture's file name."""
 
 _PAGE = b"""#set page(width: auto, height: auto, margin: 0pt)
 #image(bytes(sys.inputs.svg), format: "svg")"""
@@ -22,9 +22,9 @@ def check_format(path: Path) -> None:
 
 
 def image(svg: str, suffix: str) -> bytes:
-    """The drawing as a file: as it is, on a PDF page of its size, or as PNG.
+    """Convert a drawing to the bytes of an SVG, PNG or PDF file; a PDF page has its size.
 
-    The suffix is one of `FORMATS`, in any case.
+    The suffix is one of `FORMATS`, in upper or lower case.
     """
     kind = suffix.lower().removeprefix(".")
     if kind == "svg":
@@ -40,12 +40,12 @@ _NOT_XML = "[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 
 
 def within_xml(text: str) -> str:
-    """A drawing whose texts may hold any sign, with � for those that XML does not know."""
+    """Replace characters that XML does not allow by �."""
     return re.sub(_NOT_XML, "\ufffd", text)
 
 
 def set_apart(svg: str, prefix: str) -> str:
-    """The drawing with its identifiers under a prefix: those of one page must differ."""
+    """Add a prefix to the identifiers of a drawing, so that those of one page differ."""
     return re.sub(r"<[^<>]+>", lambda tag: re.sub(_IDENTIFIER, rf"\g<1>{prefix}-", tag[0]), svg)
 
 

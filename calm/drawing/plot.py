@@ -1,4 +1,4 @@
-"""What matplotlib draws: a line on axes of the user, and figures that become SVG.
+"""Drawing with matplotlib: a line on the user's axes, and figures converted to SVG.
 
 matplotlib comes with the extra `plot`.
 """
@@ -49,7 +49,7 @@ _ASIDE = r"(?s)<metadata>.*?</metadata>|<style\b.*?</style>|<!--.*?-->\s*"
 def figure_svg(figure: Figure) -> str:
     """The figure as SVG, its texts as text, without a prologue and metadata.
 
-    A style sheet of the drawing would hold for all of a page; what it sets is an attribute here.
+    A style sheet of the drawing would apply to the whole page; its settings become attributes.
     """
     import matplotlib
 
@@ -66,7 +66,7 @@ def figure_svg(figure: Figure) -> str:
 
 
 def plot_elevation(side: LinePicture, ax: Axes | None = None) -> Axes:
-    """Draw a line from the side on axes of matplotlib; without any, on those of a new figure."""
+    """Draw a line from the side on matplotlib axes, by default those of a new figure."""
     if ax is None:
         require_matplotlib("plot")
         ax = empty_figure(6.0, 6.0, layout="constrained").subplots()

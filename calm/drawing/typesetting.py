@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 FONTS = Path(str(files("calm.drawing") / "fonts"))
-"""DejaVu Sans, regular and bold, and their licence; typst brings DejaVu Sans Mono."""
+"""Folder of DejaVu Sans, regular and bold, and its licence. Typst includes DejaVu Sans Mono."""
 
 DOTS_PER_INCH = 200.0
 
@@ -45,7 +45,7 @@ def typeset(
 
 
 def lacking(texts: Iterable[str]) -> str:
-    """The signs of some texts that the fonts lack, each once, in order."""
+    """Find the characters of some texts that the fonts lack, each once, in order."""
     held, known = list(texts), signs()
     unknown = {sign for sign in set().union(*held) if sign.isprintable() and ord(sign) not in known}
     if not unknown:  # as nearly always: a report has millions of signs
@@ -54,7 +54,7 @@ def lacking(texts: Iterable[str]) -> str:
 
 
 def legible(text: str) -> str:
-    """The text with � in place of each sign that the fonts lack.
+    """Replace each character that the fonts lack by �.
 
     A single one would otherwise have all of a drawing's label shown in boxes.
     """
