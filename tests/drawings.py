@@ -47,6 +47,11 @@ def _walk(element, matrix):
         yield from _walk(child, matrix)
 
 
+def svgs_of(page):
+    """The drawings of an HTML page."""
+    return re.findall(r"<svg.*?</svg>", page, re.DOTALL)
+
+
 def elements_of(svg, tag):
     """Each element of a name, with the matrix of where it stands on the page."""
     page = ElementTree.fromstring(svg)
