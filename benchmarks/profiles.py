@@ -90,7 +90,7 @@ def errors(mooring: Design, base: Water, current: Arrays, found: Profiles, count
                 mooring.file.pieces[:-1],
                 solve_mooring(mooring.line, water, settings)
                 if degrees < 1.0
-                else mooring.equilibrium(water),
+                else mooring.leg.equilibrium(water),
             )
             for name in ("depth_top", "x_top", "y_top"):
                 off = getattr(found, name)[case, :-1] - getattr(exact, name)

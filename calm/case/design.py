@@ -383,7 +383,8 @@ class Result:
     accuracy : the solver's own estimate of its errors
     legs : each a line of its own
     nodes : where they join
-    notebook_form, netcdf_form : make HTML of a result, and a file; the packages above set them
+    notebook_form, netcdf_form, plot_form : make HTML of a result, a file, and draw it; the packages
+        above set them
     """
 
     design: Design
@@ -399,6 +400,7 @@ class Result:
 
     notebook_form: ClassVar[Callable[[Any], str] | None] = None
     netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
+    plot_form: ClassVar[Callable[[Any, Any], Any] | None] = None
 
     @property
     def anchors(self) -> tuple[EndLoad, ...]:
@@ -534,6 +536,15 @@ class Result:
             for one in MOORED_ENDS
             if one.found
         }
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the line from the side on axes of matplotlib, and return them.
+
+        Without `ax` the axes are those of a new figure. UsageError: matplotlib is not installed.
+        """
+        form = type(self).plot_form
+        assert form is not None, "a design is read by calm.load"
+        return form(self, ax)
 
     def to_pandas(self) -> Any:
         """Return the components as a pandas data frame."""

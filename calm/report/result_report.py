@@ -8,8 +8,7 @@ from calm.case import Result
 from calm.case.uncertain import Uncertain
 from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface
-from calm.drawing.picture import figure_svg
-from calm.drawing.plot import draw
+from calm.drawing.line_drawing import line_drawing
 from calm.drawing.schematic import schematic_svg
 from calm.files import Uncertainty
 from calm.files.uncertainty import Spread
@@ -42,7 +41,7 @@ def result_report(result: Result, uncertain: Uncertain | None = None) -> blocks.
         keys = limits_used(result.file, reaches_the_surface(result.leg.leg))
         limits = (ReportPart("Limits", (limits_table(keys),)),)
     described = (blocks.Prose((file.description,)),) if file.description else ()
-    drawing = figure_svg(draw(result, uncertain))
+    drawing = line_drawing(result, uncertain)
     return report_of(
         result.name,
         title.removeprefix(f"{result.name}: "),

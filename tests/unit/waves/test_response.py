@@ -171,7 +171,7 @@ def test_a_sea_that_is_all_but_flat_leaves_the_static_line():
 def test_the_spectrum_of_the_tension_holds_its_variance_and_a_piece_what_its_elements_reach():
     mooring = load(f"{shipped_folder('lines')}/tidal-adcp.yaml")
     (state,) = analyse(
-        mooring, [sea_states.spectrum_of("bretschneider", 2.0, 9.0, 3.3)], 90.0
+        mooring.leg, [sea_states.spectrum_of("bretschneider", 2.0, 9.0, 3.3)], 90.0
     ).states
     omega, density = state.spectrum
     _, mean, deviation, reached = state.along
