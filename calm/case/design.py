@@ -1,7 +1,7 @@
-"""A design as read from its file, ready to be solved, and its result.
+"""Designs read from files, and their results.
 
-A mooring is one leg, free above and anchored below; a tow is one leg held at the ship; a net has
-several legs, which join at nodes.
+A mooring is one leg with a free top and an anchor, a tow is one leg held at the ship, a net has
+several legs that join at nodes.
 """
 
 from __future__ import annotations
@@ -69,11 +69,11 @@ class Design:
 
     Attributes
     ----------
-    file : as read
-    for_surface, memory : as of `Leg`
-    lines, given_water : in place of those that follow from the file
-    near : an equilibrium of several legs, near which theirs is sought first
-    origin : what it was read from
+    file : the file of the design
+    for_surface, memory : see `Leg`
+    lines, given_water : replacements for the lines and the water of the file
+    near : an equilibrium near which the search for that of several legs begins
+    origin : path, environment and catalogues of the file; None for a design made in Python
     """
 
     file: MooringFile
@@ -85,7 +85,7 @@ class Design:
     origin: Origin | None = field(default=None, repr=False, compare=False)
 
     def __reduce__(self) -> tuple[type[Design], tuple[object, ...]]:
-        """Return what another process needs: all else follows from these."""
+        """Pickle the fields and the cut lines; all other attributes are recomputed."""
         legs = vars(self).get("legs", ())
         known = tuple(leg.line for leg in legs if "line" in vars(leg))
         lines = known if known and len(known) == len(legs) else self.lines
@@ -95,9 +95,9 @@ class Design:
 
     @cached_property
     def legs(self) -> tuple[Leg, ...]:
-        """Its legs, in the order of the file."""
+        """The legs in the order of the file."""
         keys = legs_of(self.file)
-        # one of several has the depth of its own anchor
+        # each of several legs has the water depth at its own anchor
         water = None if self.several else self.given_water
         return tuple(
             Leg(each.line_of(self.file), self.for_surface, self.memory, line, water)
@@ -106,42 +106,39 @@ class Design:
 
     @property
     def several(self) -> bool:
-        """Return whether its legs are named and solved together, be they only one."""
+        """Whether the file lists named legs, which are solved together."""
         return bool(self.file.legs)
 
     @property
     def leg(self) -> Leg:
-        """The leg of a design that has a single one; UsageError: it has several."""
+        """The leg of a mooring or a tow; UsageError for several legs."""
         refuse_several(self.file)
         return self.legs[0]
 
     @property
     def moored(self) -> Leg:
-        """The leg of a mooring, free above and anchored below.
-
-        UsageError: it is towed, or has several legs.
-        """
+        """The leg of a mooring; UsageError for a tow and for several legs."""
         refuse_all_but_moorings(self.file)
         return self.legs[0]
 
     @property
     def line(self) -> Line:
-        """The pieces of a single leg as the solver takes them."""
+        """The line of a mooring or a tow as arrays."""
         return self.leg.line
 
     @property
     def towed(self) -> bool:
-        """Return whether it is drawn through the water."""
+        """Whether a ship or an aircraft tows the design."""
         return any(leg.towed for leg in self.legs)
 
     @property
     def environment(self) -> Environment:
-        """The water, current and wind that it stands in, as the file gives them."""
+        """Water, current and wind of the file."""
         return self.file.environment
 
     @property
     def settings(self) -> Settings:
-        """Return how the legs are solved."""
+        """Settings of the solver."""
         return self.legs[0].settings
 
     @cached_property
@@ -152,7 +149,7 @@ class Design:
         return self.water_of(self.environment) if self.several else self.legs[0].water
 
     def water_of(self, environment: Environment) -> Water:
-        """The water of an environment, with still air above it where a leg is held there."""
+        """Water of an environment, with still air above the surface if a leg is held there."""
         if not self.several:
             return assemble_water(environment)
         if isinstance(environment.seabed, SeabedGrid):  # its plane is that of one place
@@ -176,7 +173,7 @@ class Design:
     def with_(
         self, label: str | None = None, /, environment: OtherEnvironment | None = None, **keys: Any
     ) -> Design:
-        """Return the same with some values of its file changed, as `Origin.changed`.
+        """Return the design with some values of its file changed, as `Origin.changed`.
 
         Parameters
         ----------
@@ -201,19 +198,19 @@ class Design:
         return Design(file, origin=origin)
 
     def with_lines(self, lines: Sequence[Line], water: Water | None = None) -> Design:
-        """Return the same with lines for its legs that are not its file's, and other water."""
+        """Return the design with other lines for its legs, and optionally other water."""
         near = self.standing if self.several else None
         return Design(self.file, lines=tuple(lines), given_water=water or self.water, near=near)
 
     def with_length(self, index: int, length: float) -> Design:
-        """Return the same with another unstretched length [m] of a piece of the file."""
+        """Return the design with another unstretched length [m] of one piece of the file."""
         number, lines = leg_numbers(self.file)[index], [leg.line for leg in self.legs]
         own = index - self.legs[number].keys.first
         lines[number] = lines[number].with_length(own, length)
         return self.with_lines(lines)
 
     def with_pieces(self, pieces: Sequence[Sequence[Piece]]) -> Design:
-        """Return the same with other pieces in its legs, stand-ins for anchors among them."""
+        """Return the design with other pieces in its legs, stand-ins for anchors included."""
         if not self.several:
             return Design(
                 replace(self.file, pieces=tuple(pieces[0])), self.for_surface, self.memory
@@ -231,34 +228,26 @@ class Design:
 
     @cached_property
     def standing(self) -> NetSolution:
-        """Several legs in their own water; NoEquilibrium where they do not stand."""
+        """Equilibrium of several legs in the water of the file; raises NoEquilibrium."""
         return self.together(self.water, self.near)
 
     def together(self, water: Water, near: NetSolution | None = None) -> NetSolution:
-        """Several legs solved in some water, sought first near another solution of them.
-
-        Raises
-        ------
-        NoEquilibrium
-        """
+        """Solve several legs in some water, first near another solution; raises NoEquilibrium."""
         from calm.case.net import solve_together
 
         return solve_together(self.legs, water, self.settings, near)
 
     @property
     def solutions(self) -> tuple[Solution, ...]:
-        """The legs in their own water as the solver leaves them, whatever holds their anchors.
-
-        NoEquilibrium: they do not stand.
-        """
+        """Solutions of the legs in the water of the file; raises NoEquilibrium."""
         if self.several:
             return self.standing.legs
         return (self.leg.equilibrium(self.water),)
 
     @cached_property
     def meant(self) -> tuple[Leg, ...]:
-        """The legs, each of several known to be meant for the surface where still water has it
-        there.
+        """The legs with `for_surface`: a leg is meant for the surface if it floats there in still
+        water.
         """
         if not self.several:
             return self.legs
@@ -303,19 +292,20 @@ class Design:
 
 
 def solved_alone(leg: Leg) -> LegResult:
-    """The result of a leg by itself, with its profilers on their way.
-
-    NoEquilibrium: as `Design.solve`.
-    """
+    """Solve a leg by itself, with its profilers at all their places; raises NoEquilibrium."""
     solution = leg.equilibrium()
     found = leg_result_of(leg, solution, leg.still_beside(solution))
     return replace(found, profilers=profilers_of(leg), warnings=warnings_of(found, solution))
 
 
 def result_together(design: Design, found: NetSolution, still: Sequence[Solution | None]) -> Result:
-    """The result of several legs; `still` are these in still water, None where that is unknown.
+    """Make the result of several legs.
 
-    NoEquilibrium: an anchor is lifted, or a leg hangs into the slope.
+    NoEquilibrium: a leg lifts its anchor, or hangs into a slope.
+
+    Parameters
+    ----------
+    still : the legs in still water; None for an unknown shape
     """
     legs: list[LegResult] = []
     for leg, solution, before in zip(design.legs, found.legs, still, strict=True):
@@ -354,7 +344,7 @@ def result_together(design: Design, found: NetSolution, still: Sequence[Solution
 
 
 def _upside_down(result: LegResult) -> str:
-    """Return what is said of a leg with a free end that hangs or stands the other way round."""
+    """Warn of a leg with a free end that is listed from its lower to its upper end."""
     leg, rows = result.leg, result.components
     top, bottom = float(rows.depth_top[0]), float(rows.depth_bottom[len(rows) - 2])
     if not (leg.top.free or leg.bottom.free) or top <= bottom:
@@ -369,22 +359,21 @@ def _upside_down(result: LegResult) -> str:
 class Result:
     """A converged design. Lengths and depths [m], forces [N], angles [degrees].
 
-    x and y are east and north of the anchor, or of the tow point; of several legs, of the origin of
-    the file's places. What has one leg has the figures of that leg, such as `top` and `anchor`, as
-    its own.
+    x and y are east and north of the anchor or the tow point, for several legs of the origin in the
+    file. A result with one leg has the attributes of this leg too, such as `top` and `anchor`.
 
     Attributes
     ----------
-    design : that was solved
+    design : the solved design
     status : ``converged``
-    iterations, segments : marches, and the cuts of the final one
-    miss : how far the end of a line, the worst, is from where it is held; of one leg in height [m]
-    closure : the relative force residual recomputed from the final coordinates
-    accuracy : the solver's own estimate of its errors
-    legs : each a line of its own
-    nodes : where they join
-    notebook_form, netcdf_form, plot_form : make HTML of a result, a file, and draw it; the packages
-        above set them
+    iterations, segments : number of marches, and of segments of the final shape
+    miss : greatest distance of an end from its place; for one leg the distance in height [m]
+    closure : relative force residual, recomputed from the final coordinates
+    accuracy : error estimates of the solver
+    legs : results of the legs
+    nodes : places of the nodes
+    notebook_form, netcdf_form, plot_form : functions for HTML, NetCDF and pictures of a result, set
+        by the packages above
     """
 
     design: Design
@@ -404,17 +393,17 @@ class Result:
 
     @property
     def anchors(self) -> tuple[EndLoad, ...]:
-        """What the legs do to their anchors."""
+        """Loads of the legs on their anchors."""
         return tuple(end for leg in self.legs for end in leg.ends if end.weight is not None)
 
     @property
     def held(self) -> tuple[EndLoad, ...]:
-        """What the legs do to what holds them: a ship, a pier."""
+        """Loads of the legs on other fixed ends, such as a ship or a pier."""
         return tuple(end for leg in self.legs for end in leg.ends if end.weight is None)
 
     @property
     def file(self) -> MooringFile:
-        """The file as read."""
+        """The file of the design."""
         return self.design.file
 
     @property
@@ -424,27 +413,27 @@ class Result:
 
     @property
     def water(self) -> Water:
-        """The water that it stands in, or goes through."""
+        """Water of the design."""
         return self.design.water
 
     @property
     def towed(self) -> bool:
-        """Return whether it is drawn through the water."""
+        """Whether a ship or an aircraft tows the design."""
         return self.design.towed
 
     @property
     def type(self) -> str:
-        """Return ``subsurface``, ``surface``, ``tow`` or ``net``."""
+        """Type of the design: ``subsurface``, ``surface``, ``tow`` or ``net``."""
         return "net" if self.several else self.legs[0].type
 
     @property
     def several(self) -> bool:
-        """Return whether its legs are named and solved together, be they only one."""
+        """Whether the file lists named legs, which are solved together."""
         return self.design.several
 
     @property
     def leg(self) -> LegResult:
-        """The leg of a design that has a single one; UsageError: it has several."""
+        """Result of the leg of a mooring or a tow; UsageError for several legs."""
         if self.several:
             raise UsageError(
                 f"{self.name} has several legs, each with its own ends and shape: see `legs`, "
@@ -454,54 +443,54 @@ class Result:
 
     @property
     def top(self) -> Top:
-        """The upper end of the only leg."""
+        """Upper end of the leg."""
         return self.leg.top
 
     @property
     def anchor(self) -> AnchorLoad:
-        """The load on the anchor of the only leg."""
+        """Load on the anchor of the leg."""
         return self.leg.anchor
 
     @property
     def tow_point(self) -> TowPoint:
-        """What a tow does to the ship."""
+        """Load of a tow on the ship."""
         assert self.leg.tow_point is not None, "only a tow has a tow point"
         return self.leg.tow_point
 
     @property
     def body(self) -> TowedBody:
-        """What a tow pulls."""
+        """Towed body."""
         assert self.leg.body is not None, "only a tow has a towed body"
         return self.leg.body
 
     @property
     def shape(self) -> Shape:
-        """The only leg node by node."""
+        """Shape of the leg, node by node."""
         return self.leg.shape
 
     @property
     def still_shape(self) -> Shape | None:
-        """The same without current; None where that has no unique shape."""
+        """Shape of the leg in still water; None without a unique shape."""
         return self.leg.still_shape
 
     @property
     def profilers(self) -> tuple[ProfilerTravel, ...]:
-        """The profilers of the only leg, on their way."""
+        """Profilers of the leg at their places."""
         return self.leg.profilers
 
     @property
     def strumming(self) -> Strumming | None:
-        """How the cables of the only leg strum; None where none does."""
+        """Strumming of the cables; None without a law of strumming."""
         return self.leg.strumming
 
     @property
     def strumming_band(self) -> StrummingBand | None:
-        """The only leg with more drag on its cables; solved when first asked for."""
+        """The leg with more drag on its cables; solved on first use."""
         return self.leg.strumming_band
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
-        """Another equilibrium of the only leg; None if none was found."""
+        """Another equilibrium of the leg; None if none was found."""
         return self.leg.other_equilibrium
 
     @cached_property
@@ -516,7 +505,7 @@ class Result:
 
     @cached_property
     def clamps(self) -> Clamps:
-        """Return what is clamped on them."""
+        """The clamps of the file, leg by leg."""
         if not self.several:
             return self.leg.clamps
         tables = [
@@ -527,10 +516,7 @@ class Result:
 
     @property
     def ends(self) -> dict[str, Floats]:
-        """Of each leg the depth of its free upper end [m], the share in use of the buoyancy there,
-        that in another equilibrium, and the pull on its anchor up and sideways [N]; NaN where there
-        is none.
-        """
+        """Columns of the ends, one value for each leg; see `MOORED_ENDS`."""
         return {
             one.name: np.array([one.found(leg) for leg in self.legs])
             for one in MOORED_ENDS
@@ -584,7 +570,7 @@ class Result:
         return "\n".join([*lines, f"{tables}, {len(self.warnings)} warnings"])
 
     def _ends(self) -> dict[str, dict[str, Any]]:
-        """The figures of both ends of the only leg."""
+        """Figures of both ends of the leg, by name."""
         if self.towed:
             return {"tow_point": asdict(self.tow_point), "body": asdict(self.body)}
         return {"top": asdict(self.top), "anchor": asdict(self.anchor)}
@@ -643,7 +629,7 @@ class Result:
 
 
 AnyResult: TypeAlias = Result | LegResult
-"""What has legs: a design, or one of its legs."""
+"""The result of a design, or of one of its legs."""
 
 
 def load(

@@ -1,4 +1,4 @@
-"""The ends of a leg: where they are, and what the line does to what holds them."""
+"""Places of the ends of a leg, and the loads on their supports."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from calm.solve import Solution
 
 
 def anchor_load(leg: Leg, solution: Solution) -> AnchorLoad:
-    """Return what a line does to its anchor; NaN where it has none."""
+    """Load of a leg on its anchor; NaN for a leg without an anchor."""
     if not leg.anchored:
         return AnchorLoad(**{each.name: nan for each in fields(AnchorLoad)})
     force, friction = solution.force[-1], leg.file.anchor_friction
@@ -43,9 +43,7 @@ def anchor_load(leg: Leg, solution: Solution) -> AnchorLoad:
 
 
 def accuracy_of(leg: Leg, solution: Solution) -> Accuracy:
-    """Return what the solver states of its errors, and what follows for the weight of the
-    anchor.
-    """
+    """Error estimates of the solver, and the resulting error of the required anchor weight."""
     if leg.towed:
         return Accuracy(solution.depth_error, solution.tension_error)
     lift, pull = solution.lift_error, solution.pull_error
@@ -59,7 +57,7 @@ def accuracy_of(leg: Leg, solution: Solution) -> Accuracy:
 
 
 def top_of(components: Components, solution: Solution, knockdown: float | None) -> Top:
-    """Return the upper end of a leg, whose knockdown [m] is None where still water has no shape."""
+    """Upper end of a leg; its knockdown [m] is None without a unique shape in still water."""
     riding = solution.riding
     return Top(
         depth=float(components.depth_top[0]),
@@ -74,7 +72,7 @@ def top_of(components: Components, solution: Solution, knockdown: float | None) 
 
 
 def tow_point_of(solution: Solution) -> TowPoint:
-    """Return what a tow does to the ship."""
+    """Load of a tow on the ship."""
     force = solution.force[-1]
     backward = hypot(force[0], force[1])
     return TowPoint(
@@ -86,7 +84,7 @@ def tow_point_of(solution: Solution) -> TowPoint:
 
 
 def body_of(solution: Solution) -> TowedBody:
-    """Return what a tow pulls."""
+    """Towed body, or the free end of a bare cable."""
     node = solution.body_node
     x, y, z = solution.position[node]
     pull = -solution.force[node]
@@ -101,10 +99,10 @@ def body_of(solution: Solution) -> TowedBody:
 
 
 def end_loads(leg: Leg, components: Components, solution: Solution) -> Iterator[EndLoad]:
-    """Return what a leg does to where it is held, and to its anchor."""
+    """Loads of a leg on its anchor and on other fixed ends."""
     last = len(leg.pieces) - 1
     if leg.top.held is not None:
-        # what hangs down from its upper end is marched from its lower one
+        # a leg that hangs from its upper end is marched from its lower end
         row, force = (
             components[0],
             solution.force[-1] if solution.line.towed else -solution.force[0],

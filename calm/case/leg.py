@@ -1,4 +1,4 @@
-"""A leg of a design: its pieces from its upper to its lower end, and what holds these."""
+"""A leg of a design: its pieces from the upper to the lower end, and the supports of both ends."""
 
 from __future__ import annotations
 
@@ -35,18 +35,16 @@ from calm.solve.solution import standing_lift, too_heavy
 
 @dataclass(frozen=True)
 class Leg:
-    """A leg; `line` and `water` are what the solver takes.
-
-    They follow from the file where they are not given.
+    """A leg, with its line and its water as arrays for the solver.
 
     Attributes
     ----------
-    file : of the leg alone: its pieces, counted from its upper end. One that ends in no anchor has
-        a stand-in for it, of the id `STAND_IN`; what is towed has none
-    for_surface : whether it is meant to reach the surface, where that is known beforehand: a leg
-        judged with a change is meant for what it was meant for before
-    memory : keeps what was solved for other states of the same file, and in other environments
-    given_line, given_water : in place of those of the file
+    file : file of this leg alone, its pieces counted from the upper end. A leg without an anchor,
+        other than a tow, has a stand-in of the id `STAND_IN` as its last piece
+    for_surface : whether the leg is meant to reach the surface; None if the leg itself decides. A
+        leg that is judged with a change keeps its purpose
+    memory : cache of solutions for other states of the file and other environments
+    given_line, given_water : replacements for the line and the water of the file
     """
 
     file: MooringFile
@@ -56,66 +54,66 @@ class Leg:
     given_water: Water | None = field(default=None, repr=False, compare=False)
 
     def __reduce__(self) -> tuple[type[Leg], tuple[object, ...]]:
-        """Return what another process needs: all else follows from these."""
+        """Pickle the fields and the cut line; all other attributes are recomputed."""
         known = vars(self)
         line, water = (known.get(name, known[f"given_{name}"]) for name in ("line", "water"))
         return Leg, (self.file, self.for_surface, self.memory, line, water)
 
     @property
     def name(self) -> str:
-        """Its name in its design; of the only one that of the design."""
+        """Name of the leg; for a mooring or a tow the name of the design."""
         return self.file.name
 
     @property
     def keys(self) -> FileLeg:
-        """What the file of the design says of it."""
+        """Entry of the leg in the file of the design."""
         return legs_of(self.file)[0]
 
     @property
     def of_several(self) -> bool:
-        """Return whether it has a name of its own, and is solved with those that it joins."""
+        """Whether the leg belongs to a net, with which it is solved."""
         return bool(self.file.legs)
 
     @property
     def top(self) -> EndKeys:
-        """What holds its upper end."""
+        """Support of the upper end."""
         return self.keys.top
 
     @property
     def bottom(self) -> EndKeys:
-        """What holds its lower end."""
+        """Support of the lower end."""
         return self.keys.bottom
 
     @property
     def towed(self) -> bool:
-        """Return whether a ship, or what flies, moves its upper end through the water."""
+        """Whether a ship or an aircraft tows the leg."""
         return self.file.tow is not None
 
     @property
     def anchored(self) -> bool:
-        """Return whether it ends in an anchor."""
+        """Whether the leg ends in an anchor."""
         return self.bottom.anchor is not None
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
-        """Return its pieces, without a stand-in for an anchor."""
+        """Pieces of the leg, without a stand-in for an anchor."""
         return tuple(piece for piece in self.file.pieces if piece.use != STAND_IN)
 
     @cached_property
     def water(self) -> Water:
-        """Depth, current over the ground and density by level; the depth is that at its anchor."""
+        """Current over the ground and density by level; water depth at the anchor."""
         return self.given_water or assemble_water(self.file.environment)
 
     @property
     def settings(self) -> Settings:
-        """Return how the line is solved."""
+        """Settings of the solver."""
         solver = self.file.solver
         friction = 0.0 if self.towed else solver.seabed_friction
         return Settings(solver.angle_step, solver.tolerance, friction)
 
     @property
     def towing(self) -> Towing:
-        """The ship's way, the sheave's height and the wind."""
+        """Velocity of the ship, height of the sheave, and wind."""
         keys, wind = self.file.tow, self.file.environment.wind
         assert keys is not None
         return Towing(
@@ -127,9 +125,9 @@ class Leg:
 
     @cached_property
     def line(self) -> Line:
-        """The pieces above the anchor, or all; what is cut to fit a depth at its cut length.
+        """Pieces above the anchor as arrays, a fitted piece at its cut length.
 
-        NoEquilibrium: where no length fits.
+        NoEquilibrium: no length fits.
         """
         if self.given_line is not None:
             return self.given_line
@@ -156,7 +154,7 @@ class Leg:
         )
 
     def cut(self, file: MooringFile) -> MooringFile:
-        """Return a file with the piece that is cut to fit at the length that it has here.
+        """Return a file with the fitted piece at the cut length of this leg.
 
         NoEquilibrium: no length fits.
         """
@@ -175,7 +173,7 @@ class Leg:
 
     @cached_property
     def anchor_weight(self) -> float:
-        """Weight in the water at the seabed of the anchor with what is clamped on it [N]."""
+        """Weight of the anchor and its clamps in the water at the seabed [N]."""
         density = self.water.density_at(np.array(self.water.depth))
         excess = (float(density) - REFERENCE_DENSITY) * self.water.gravity
         return -sum(
@@ -186,9 +184,9 @@ class Leg:
 
     @cached_property
     def anchor_drag(self) -> float:
-        """K of the falling anchor [N/(m/s)²]; where it gives none, that of a cube.
+        """Drag of the falling anchor at 1 m/s [N/(m/s)²]; by default the drag of a cube.
 
-        The cube has the volume that the anchor displaces, or that of steel of its weight.
+        The cube has the displaced volume of the anchor, or the volume of steel of its weight.
         """
         anchor = self.file.anchor
         if anchor.kt is not None:
@@ -200,9 +198,10 @@ class Leg:
         return area_drag(max(volume, 0.0) ** (2.0 / 3.0), BLOCK_CD)
 
     def equilibrium(self, water: Water | None = None) -> Solution:
-        """The leg by itself, in its own or in other water; refused where it is not meant to be so.
+        """Solve the leg by itself, in its own or in other water.
 
-        NoEquilibrium: with status, message and advice, where there is none that passes every check.
+        NoEquilibrium: there is none that passes every check, or the leg lifts its anchor, lies on
+        the seabed in a heap, or hangs into a slope.
         """
         water = water or self.water
         with parts.naming_the_piece(self.file.pieces, towed=self.towed):
@@ -227,7 +226,7 @@ class Leg:
             )
 
     def _refuse_a_heap(self, solution: Solution) -> None:
-        """A sub-surface line is meant to stand: only chain may lie on the seabed below it."""
+        """Refuse a sub-surface line with more than chain on the seabed."""
         if solution.surface:
             return
         pieces = self.file.pieces
@@ -236,9 +235,7 @@ class Leg:
                 raise self.heaped(pieces[lying].label)
 
     def heaped(self, label: str) -> NoEquilibrium:
-        """Return why a sub-surface line is refused where more of it than chain lies on the
-        seabed.
-        """
+        """Explain the refusal of a sub-surface line with a piece other than chain on the seabed."""
         lift, length = standing_lift(self.line, self.water), np.cumsum(self.line.length)
         height = self.water.depth - self.line.anchor_height
         hung = float(np.interp(height, length, np.cumsum(lift)))
@@ -252,9 +249,9 @@ class Leg:
         )
 
     def refuse_in_the_slope(self, solution: Solution) -> None:
-        """Refuse a line that hangs into a seabed out of a grid, whose plane the solver knows.
+        """Refuse a line that hangs into a seabed from a grid; the solver knows only its plane.
 
-        What hangs may come as far below as what lies.
+        The tolerance is the greatest depth of the grounded part below the grid.
         """
         depth = self.water.depth
         if self.file.environment.seabed is None:
@@ -272,13 +269,13 @@ class Leg:
             )
 
     def solved(self, line: Line) -> Solution:
-        """Return another line in the same place; NoEquilibrium: it has no equilibrium."""
+        """Solve another line in place of that of the leg; raises NoEquilibrium."""
         if self.towed:
             return solve_tow(line, self.water, self.towing, self.settings)
         return solve_mooring(line, self.water, self.settings)
 
     def still_beside(self, solution: Solution) -> Solution | None:
-        """Return the same line without current; None where it has no unique shape, or is towed."""
+        """The line in still water; None for a tow, or without a unique shape."""
         if self.towed:
             return None
         floating = self.line.floating
@@ -287,7 +284,7 @@ class Leg:
 
     @cached_property
     def at_rest(self) -> Solution | None:
-        """The line without current and wind; None where it has no unique shape."""
+        """The line without current and wind; None without a unique shape."""
         line, floating = self.line, self.line.floating
         if floating is not None:
             line = replace(line, floating=replace(floating, wind=(0.0, 0.0)))

@@ -1,4 +1,4 @@
-"""The result of a leg: its pieces, its clamps, its shape and its ends."""
+"""Results of legs: pieces, clamps, shape and ends."""
 
 from __future__ import annotations
 
@@ -33,22 +33,23 @@ from calm.solve.solution import OtherEquilibrium
 class LegResult:
     """A leg of a converged design. Lengths and depths [m], forces [N], angles [degrees].
 
+    The components of a tow run from the ship down, and its shape begins at the free end.
+
     Attributes
     ----------
-    leg : that was solved
+    leg : the solved leg
     type : ``subsurface``, ``surface`` or ``tow``
-    top : its upper end
-    anchor : the load on its anchor; NaN where it has none, which then is a stand-in among the
-        components, of which nothing is true
-    tow_point, body : of a tow, whose components run from the ship down and whose shape begins at
-        the free end; None of other legs
-    ends : what it does to what holds its ends
-    still_shape : the same line without current, None where that has no unique shape
-    profilers : on their way; all else is of all of them at their upper stops
-    iterations, segments, miss : marches, the cuts of the final one, and how far its end is from
-        where it is held [m]; of one that stands alone
-    closure : the relative force residual recomputed from the final coordinates
-    other : another equilibrium that was found
+    top : upper end
+    anchor : load on the anchor; NaN for a leg without an anchor, whose last component is a stand-in
+        without meaning
+    tow_point, body : both ends of a tow; None for other legs
+    ends : loads on the anchor and on other fixed ends
+    still_shape : shape in still water; None without a unique shape
+    profilers : profilers at their places; all other figures hold with them at their upper stops
+    iterations, segments : number of marches, and of segments of the final shape
+    miss : distance of the lower end from its place, in height [m]
+    closure : relative force residual, recomputed from the final coordinates
+    other : another equilibrium, if one was found
     """
 
     leg: Leg
@@ -78,7 +79,7 @@ class LegResult:
 
     @property
     def name(self) -> str:
-        """Its name in its design."""
+        """Name of the leg."""
         return self.leg.name
 
     @property
@@ -88,41 +89,40 @@ class LegResult:
 
     @property
     def file(self) -> MooringFile:
-        """The file of the leg."""
+        """File of the leg alone."""
         return self.leg.file
 
     @property
     def water(self) -> Water:
-        """The water that it stands in, or goes through."""
+        """Water of the leg."""
         return self.leg.water
 
     @property
     def towed(self) -> bool:
-        """Return whether it is drawn through the water."""
+        """Whether a ship or an aircraft tows the leg."""
         return self.leg.towed
 
     @property
     def legs(self) -> tuple[LegResult, ...]:
-        """It is one."""
+        """This leg alone, as a `Result` lists its legs."""
         return (self,)
 
     @property
     def several(self) -> bool:
-        """Return False: it is one, whatever it joins."""
+        """False, since this is a single leg."""
         return False
 
     @property
     def other_used_buoyancy(self) -> float:
-        """Share in use of the buoyancy of the float in another equilibrium at the surface; NaN if
-        none was found.
-        """
+        """Share of buoyancy in use in another equilibrium at the surface; NaN if none was found."""
         afloat = self.other is not None and self.other.used_buoyancy < 1.0
         return self.other.used_buoyancy if self.other is not None and afloat else nan
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
-        """Depth of the free end, length on the seabed, buoyancy in use and anchor load of another
-        equilibrium, of a tow the depth alone; None if none was found.
+        """Depth of the free end in another equilibrium; None if none was found.
+
+        For a mooring also length on the seabed, share of buoyancy in use, and anchor load.
         """
         if self.other is None:
             return None
@@ -130,10 +130,7 @@ class LegResult:
 
     @cached_property
     def strumming_band(self) -> StrummingBand | None:
-        """Return the same line with more drag on its cables; solved when first asked for.
-
-        None of a leg of a net, which does not stand alone.
-        """
+        """The line with more drag on its cables, solved on first use; None for a leg of a net."""
         if self.leg.of_several:
             return None
         still = self.still_shape
@@ -141,11 +138,11 @@ class LegResult:
 
 
 def leg_result_of(leg: Leg, solution: Solution, still: Solution | None) -> LegResult:
-    """The result of a leg, without its warnings and profilers.
+    """Make the result of a leg, without warnings and profilers.
 
     Parameters
     ----------
-    still : the same line in still water; None where its shape there is not unique
+    still : the line in still water; None without a unique shape
     """
     pieces = leg.file.pieces
     above = pieces if leg.towed else pieces[:-1]

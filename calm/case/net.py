@@ -1,4 +1,4 @@
-"""Several legs, solved together."""
+"""Legs of a net, solved together."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from calm.solve.net import NetSolution, solve_net
 
 
 def net_legs(legs: Sequence[Leg]) -> tuple[NetLeg, ...]:
-    """The legs as the solver takes them."""
+    """Legs as input of the solver."""
     nodes = nodes_of([leg.keys for leg in legs])
     return tuple(
         NetLeg(leg.line, _end(leg.top, nodes, leg), _end(leg.bottom, nodes, leg)) for leg in legs
@@ -45,7 +45,7 @@ def _end(end: EndKeys, nodes: Mapping[str, int], leg: Leg) -> LegEnd:
 def solve_together(
     legs: Sequence[Leg], water: Water, settings: Settings, near: NetSolution | None
 ) -> NetSolution:
-    """Find the legs in some water, sought first near another solution of them.
+    """Solve the legs of a net in some water, first near another solution of the net.
 
     NoEquilibrium: there is none that passes every check.
     """
@@ -61,10 +61,10 @@ def solve_together(
 
 
 def _why_not(legs: Sequence[Leg], laid: Sequence[NetLeg]) -> NoEquilibrium | None:
-    """Return why it sinks or held ends are out of reach, if weights or lengths say so.
+    """Explain a net that sinks, or whose fixed ends are farther apart than its legs are long.
 
-    What may lie on the seabed weighs nothing. Between every two ends the shortest way through the
-    net counts (Floyd and Warshall).
+    Pieces that may lie on the seabed count without their weight. The shortest path through the net
+    between two ends follows from the method of Floyd and Warshall.
     """
     lift = 0.0
     for each in laid:

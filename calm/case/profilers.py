@@ -1,4 +1,4 @@
-"""Profilers at their stops and between them."""
+"""Profilers at and between their stops."""
 
 from __future__ import annotations
 

@@ -55,10 +55,10 @@ def judged_stand(
     environment: str,
     day: date | None = None,
 ) -> MooringInEnvironment:
-    """Judge a leg in the situations that it was solved in.
+    """Judge a leg in all its situations.
 
-    Findings as given are all there, of another situation those whose state is worse there. What
-    fails only as the cables strum is a warning: they may not.
+    The stand lists all findings as given, and findings of other situations with a worse state. A
+    failure only of strumming cables is a warning, since the cables may not strum.
 
     Parameters
     ----------

@@ -1,7 +1,6 @@
-"""The design check: a design in each of its environments, leg by leg, then as it is handled.
+"""The design check: each leg in each environment, then handling, breaks and composition.
 
-A single line is also judged in waves, at its launch and at its recovery. Of several legs these are
-not solved, and nothing of them is judged; what their breaks leave is.
+Waves, launch and recovery are solved and judged for a single line only, breaks for nets as well.
 """
 
 from collections.abc import Sequence
@@ -44,13 +43,13 @@ def check(*designs: Design, day: date | None = None) -> Assessment:
 
     Parameters
     ----------
-    designs : the same one, loaded in each of the environments it is judged in
-    day : on which accepts count or have ended; today unless given
+    designs : the design in each of its environments
+    day : date for the validity of accepts; today by default
 
     Raises
     ------
     UsageError
-        It is a tow, which no rule judges.
+        The design is a tow.
     """
     for each in designs:
         refuse_tow(each.file)
@@ -61,14 +60,14 @@ def check(*designs: Design, day: date | None = None) -> Assessment:
 
 
 def stands_of(design: Design, name: str, day: date | None = None) -> list[MooringInEnvironment]:
-    """Solve a design in its environment, in every situation, and judge each of its legs.
+    """Solve a design in its environment, in every situation, and judge each leg.
 
-    Where it does not stand there is one, with the reason.
+    A design without equilibrium has one stand, with the reason.
 
     Parameters
     ----------
-    name : of the design in its findings
-    day : on which accepts count or have ended; today unless given
+    name : name of the design in its findings
+    day : date for the validity of accepts; today by default
     """
     environment = design.environment.name or OWN
     given, *changed = situations.situations_of(design)
@@ -76,7 +75,7 @@ def stands_of(design: Design, name: str, day: date | None = None) -> list[Moorin
         return [failed_stand(design, name, given[0].failure)]
     return [
         assess.judged_stand(
-            # where several legs do not stand the reason is of each
+            # a failure of a net is the failure of each leg
             (given[number], *(each[number if len(each) > 1 else 0] for each in changed)),
             leg,
             name,
@@ -88,7 +87,7 @@ def stands_of(design: Design, name: str, day: date | None = None) -> list[Moorin
 
 
 def failed_stand(design: Design, name: str, failure: NoEquilibrium) -> MooringInEnvironment:
-    """The stand of a design that could not be judged, for a reason of its own or of CALM's."""
+    """Stand of a design without equilibrium, or of one that CALM failed to judge."""
     environment, situation = design.environment.name or OWN, Situation(AS_GIVEN, None, failure)
     return assess.judged_stand((situation,), design.legs[0], name, environment)
 
@@ -96,12 +95,12 @@ def failed_stand(design: Design, name: str, failure: NoEquilibrium) -> MooringIn
 def assessment_of(
     name: str, stands: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
-    """Judge how a design is put together, what its breaks leave, and how it is handled.
+    """Judge the composition, the breaks and the handling of a design.
 
     Parameters
     ----------
-    stands : those of `stands_of`, of one environment after the other
-    day : see `check`
+    stands : results of `stands_of`, one environment after the other
+    day : date for the validity of accepts
     """
     if not stands[0].leg.of_several:
         return assess.assessment_of(name, stands, day)
@@ -151,7 +150,7 @@ def assessment_of(
 
 
 def _whole(legs: Sequence[Leg], surface: bool) -> Leg:
-    """All pieces of several legs as one list, a stand-in for an anchor below them."""
+    """Join the pieces of all legs to one leg, with a stand-in for an anchor as the last piece."""
     pieces = [piece for leg in legs for piece in leg.pieces]
     pieces.append(stand_in_anchor(0, len(pieces)))
     listed = tuple(replace(piece, index=index) for index, piece in enumerate(pieces))

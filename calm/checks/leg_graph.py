@@ -1,4 +1,4 @@
-"""What holds what in a design of several legs, and what its breaks leave."""
+"""Connections between the pieces of a net, and the parts that remain after a break."""
 
 from collections.abc import Collection, Hashable, Iterator, Sequence
 from itertools import pairwise, takewhile
@@ -16,12 +16,11 @@ _SEABED, _HELD = object(), object()
 
 
 class LegGraph:
-    """Tell what holds what in a net: pieces by their index in the file, nodes by name, what is
-    fixed.
+    """Connections of a net between pieces, by their index in the file, nodes, and fixed ends.
 
     Parameters
     ----------
-    legs : of a solved net; none of one that does not stand
+    legs : results of the legs; empty for a net without equilibrium
     """
 
     def __init__(self, legs: Sequence[LegResult]) -> None:
@@ -51,11 +50,11 @@ class LegGraph:
 
     @property
     def anchored(self) -> bool:
-        """Return whether an anchor holds any of it."""
+        """Whether the net has an anchor."""
         return any(_SEABED in chain for chain in self.chains)
 
     def parts(self, cut: Collection[tuple[int, int]]) -> list[set[Hashable]]:
-        """Return what still hangs together; `cut` are places of chains, below which it parts."""
+        """Connected parts of the net after it parts below some places of its chains, `cut`."""
         parts: list[set[Hashable]] = []
         for number, chain in enumerate(self.chains):
             for at, one in enumerate(chain):
@@ -69,7 +68,7 @@ class LegGraph:
         return parts
 
     def _free(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
-        """The pieces of each part that nothing holds, down the file."""
+        """Pieces of each part without a fixed end, in the order of the file."""
         return [
             sorted(one for one in part if isinstance(one, int))
             for part in self.parts(cut)
@@ -77,7 +76,7 @@ class LegGraph:
         ]
 
     def _rising(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
-        """The free parts that have a release, once all are opened."""
+        """Free parts with a release, after all releases open."""
         return [
             part
             for part in self._free(self.opened | set(cut))
@@ -86,7 +85,7 @@ class LegGraph:
 
     @property
     def coming_up(self) -> set[int]:
-        """Return the pieces that come up once all releases open; without any, all but anchors."""
+        """Pieces that come up after all releases open; without a release all pieces but anchors."""
         parts = self._rising(()) if self.opened else self.chains
         return {one for part in parts for one in part if isinstance(one, int)}
 

@@ -43,11 +43,11 @@ _NO_CURRENT = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
 Situations = tuple[Situation, ...]
-"""A design in one situation, leg by leg; where it has no equilibrium, the reason alone."""
+"""One situation of a design, leg by leg; a failure of the design is a single entry."""
 
 
 def situations_of(design: Design) -> tuple[Situations, ...]:
-    """The design solved as given, then in every situation that its file asks for.
+    """Solve a design as given, then in every situation that its file asks for.
 
     Still water, high and low water, and still low water where the environment has a `depth_range`,
     profilers at their lower stops and where the wire leans most, growth where it has `fouling`,
@@ -60,7 +60,7 @@ def situations_of(design: Design) -> tuple[Situations, ...]:
     given = solved(AS_GIVEN, design)
     if given[0].result is None:
         return (given,)
-    # what a single line is meant for it stays meant for
+    # a single line keeps its purpose in changed situations
     surface = None if design.several else reaches_the_surface(given[0].result.leg)
     legs = [each.result for each in given if each.result is not None]
     changed = [solved(name, each) for name, each in _changed(design, legs, surface)]
@@ -68,7 +68,7 @@ def situations_of(design: Design) -> tuple[Situations, ...]:
 
 
 def solved(name: str, design: Design) -> Situations:
-    """The situation of that name, with the results or the failure of a design."""
+    """Solve a design in the situation of a name."""
 
     # all environments of a mooring that are as deep and dense have still water in common
     environment = replace(design.environment, name=None)

@@ -357,27 +357,27 @@ def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
 
 
 def refuse_several(file: MooringFile) -> None:
-    """Refuse a file of legs where only a single line is known to go."""
+    """Reject a file of legs for uses of a single line: UsageError."""
     if file.legs:
         raise UsageError(f"{file.path}: {ONE_LEG_ONLY}")
 
 
 def refuse_tow(file: MooringFile) -> None:
-    """Refuse what stands on no anchor where only moorings are known to go."""
+    """Reject a tow for uses of a mooring: UsageError."""
     if file.tow is not None:
         raise UsageError(f"{file.path} is a tow; this is for moorings")
 
 
 def refuse_all_but_moorings(file: MooringFile) -> None:
-    """Refuse tows and files of legs, where only a line that stands on an anchor is known to go."""
+    """Reject tows and files of legs for uses of a single mooring: UsageError."""
     refuse_several(file)
     refuse_tow(file)
 
 
 def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
-    """Return the legs of a file; of a single line one, with its ends.
+    """Legs of a file; a file without `legs` has one.
 
-    A tow is held at the ship, a mooring stands on its anchor.
+    The leg of a mooring is free above and anchored below, the leg of a tow is held at the ship.
     """
     if file.legs:
         return file.legs
