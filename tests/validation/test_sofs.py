@@ -60,7 +60,7 @@ def test_in_a_low_sea_the_period_decides():
     other load cases of the same source 9.6 s (`wave-env.sh`, named for Orcina)."""
     grown = spectrum_of("pierson-moskowitz", 2.5, None, 3.3)
     given = [spectrum_of("bretschneider", 2.5, period, 3.3) for period in (6.1, 9.6)]
-    found = at_the_top(analyse(mooring.leg("SOFS-1"), [given[0], grown, given[1]], 90.0))
+    found = at_the_top(analyse(mooring("SOFS-1"), [given[0], grown, given[1]], 90.0))
     assert found == pytest.approx([161.0, 109.0, 80.0], abs=1.0)
     assert grown.peak_period == pytest.approx(7.93, abs=0.01)
 
@@ -86,7 +86,7 @@ def test_a_float_that_follows_every_wave_as_whoi_cable_has_it(sofs5):
 
 def test_regular_waves_as_whoi_cable_has_them(sofs5):
     """An amplitude of 704 N in waves of 1 m and 8.4 s, the buoy following."""
-    solution = sofs5.leg.equilibrium()
+    solution = sofs5.equilibrium()
     line, buoy = lumped_line(sofs5, solution, 20.0), buoy_of(sofs5, solution, True)
     omega = 2.0 * np.pi / 8.4 * np.array([0.999, 1.0, 1.001])
     sea = spectrum_of("bretschneider", 1.0, 8.4, 3.3)
@@ -111,7 +111,7 @@ def test_sofs1_as_it_was_designed():
     """
     designed = [spectrum_of("bretschneider", height, period, 3.3) for height, period, _ in DESIGNED]
     sofs1 = mooring("SOFS-1")
-    solution = sofs1.leg.equilibrium()
+    solution = sofs1.equilibrium()
     line, buoy = lumped_line(sofs1, solution, 20.0), buoy_of(sofs1, solution, True)
     found, flow = [], None
     for sea in designed:
