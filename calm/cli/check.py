@@ -10,7 +10,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from calm.cli import options, progress, run
+from calm.cli import options, progress
 from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate
 from calm.cli.reading import DesignFile, read_designs
 from calm.errors import InputError, Problem, UsageError, internal_failure
@@ -78,7 +78,7 @@ def check(
     options.from_one(workers=workers)
     if against is not None and (report is None or len(files) > 1):
         raise UsageError("--against compares one mooring with an earlier design in its --report")
-    draws = run.draws_of(uncertainty, samples, seed)
+    draws = options.draws_of(uncertainty, samples, seed)
     if report is not None:
         given = [*files, *map(Path, environment or ()), *(catalog or ()), *filter(None, [against])]
         _check_report(report, json, given)

@@ -11,7 +11,7 @@ import traceback
 import warnings
 from collections.abc import Callable, Sequence
 from inspect import cleandoc
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from cyclopts import App, CycloptsError, Group, Parameter, UnusedCliTokensError
 
@@ -23,7 +23,6 @@ from calm.cli.check import check
 from calm.cli.motion import grid, motion
 from calm.cli.outputs import ExitCode, narrate, prepare, show
 from calm.cli.run import run
-from calm.cli.tow import strumming, tow
 from calm.cli.verify import verify
 from calm.errors import CalmError, InputError, NoEquilibrium
 
@@ -56,7 +55,7 @@ _VALUES = {
     "LENGTH": "diameter streamed length distance",
     "DEPTH": "depth transducer",
     "HEIGHT": "above-seabed height hs swell",
-    "ANGLE": "angle course declination toward phi-a phi-b",
+    "ANGLE": "course declination toward phi-a phi-b",
     "SPEED": "speed ship-speed",
     "RANGE": "speeds",
     "CONDITION": "target",
@@ -76,7 +75,7 @@ _VALUES = {
     "COUNT": "samples workers",
     "N": "every seed",
     "ADDRESS": "scheduler",
-    "DENSITY": "density solid-density",
+    "DENSITY": "density",
     "N/m": "weight",
     "FORCE": "tension-a tension-b",
     "UNITS": "units",
@@ -164,13 +163,8 @@ app = App(
     suppress_keyboard_interrupt=False,
     result_action="return_value",
 )
-_TOW = App(
-    name="tow",
-    usage="Usage: calm tow [OPTIONS] FILE...\n       calm tow strumming [OPTIONS]",
-    help_epilogue=_examples(tow),
-)
-_TOW.default(tow)
-_TOW.command(strumming, help_epilogue=_examples(strumming))
+_SYNONYMS = {"run": ("tow", "solve")}
+"""Other words for commands, which the message about an unknown command answers."""
 
 _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
     "Design": (
@@ -191,7 +185,6 @@ _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
         (starter.schema, ""),
     ),
     "More": (
-        (_TOW, ""),
         (chart, ""),
         (verify, "[OPTIONS] [WORD...]"),
         (starter.docs, "[OPTIONS] [PAGE]"),
@@ -212,18 +205,9 @@ for _number, (_name, _commands) in enumerate(_GROUPS.items()):
         app.command(
             _command, name=_called, group=_group, sort_key=_place,
             usage=f"Usage: calm {_called} {_usage}" if _usage else None,
-            help_epilogue=_examples(_command),
+            help_epilogue=_examples(_command), synonym=_SYNONYMS.get(_called),
         )  # fmt: skip
 app["--help"].group = app["--version"].group = Group("Options", sort_key=len(_GROUPS))
-
-
-@app.command(name="strumming", show=False)
-def _strumming(*words: Annotated[str, Parameter(allow_leading_hyphen=True)]) -> Any:
-    """Run `calm tow strumming`, which was `calm strumming` before."""
-    narrate(
-        "calm strumming is now calm tow strumming; the old name will be removed in the next version"
-    )
-    return app(["tow", "strumming", *words], exit_on_error=False, print_error=False)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

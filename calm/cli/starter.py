@@ -51,8 +51,7 @@ def new(
         show(text)
         return ExitCode.DONE
     _write(output, text.encode(), force)
-    command = "tow" if kind == "tow" else "run"
-    narrate(f"{output} written; solve it with: calm {command} {output}")
+    narrate(f"{output} written; solve it with: calm run {output}")
     return ExitCode.DONE
 
 
