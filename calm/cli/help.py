@@ -49,16 +49,16 @@ _VALUES = {
     "WORD|FILE": "spectrum",
     "NAME=VALUE": "define",
 }
-"""Names of values in `--help`, with the options that take them; other options show their type."""
+"""Names of values in `--help`, with their options. Options that are not listed show their type."""
 
 _VALUE_OF = {f"--{name}": value for value, names in _VALUES.items() for name in names.split()}
 
 
 class HelpAtWidth:
-    """Sets `--help` to the width of the terminal, and says what the value of each option is."""
+    """Formatter of `--help`: as wide as the terminal, with a name for the value of each option."""
 
     def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
-        """Print a panel; texts of options lose their line breaks."""
+        """Print a panel. The texts of options are filled anew, without their line breaks."""
         from cyclopts.help import DefaultFormatter
         from rich.text import Text
 
@@ -73,7 +73,7 @@ class HelpAtWidth:
         DefaultFormatter()(console, options, panel)
 
     def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
-        """Print the line of usage, with what each option wants in place of its type."""
+        """Print the usage, with the name of each value instead of its type."""
         from cyclopts.help import DefaultFormatter
 
         known = re.compile(r"(--[\w-]+) ([A-Z]+)")

@@ -63,7 +63,7 @@ def option(name: str) -> str:
 
 
 def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
-    """Show quantities to people in the units given, else in those that all files ask for.
+    """Choose the units of tables and reports: those given, else those in which all files agree.
 
     UsageError: of a text that names no such dimension or unit.
     """
@@ -93,9 +93,9 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
 
 
 def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
-    """The quantities that were given, in SI and degrees; or all that is wrong with them.
+    """Convert quantities given as options to SI units and degrees.
 
-    They are given as text (None where absent) and dimension by the name of the parameter.
+    Each parameter has its text (None if absent) and its dimension.
     UsageError: with every text that is no quantity of its dimension.
     """
     from calm.units import QuantityError, parse_quantity
@@ -123,7 +123,7 @@ def from_one(**given: int | None) -> None:
 
 
 def span_of(option: str, text: str, between: tuple[float, float], in_words: str) -> np.timedelta64:
-    """A span of time such as ``2 h``, as an option gives it.
+    """Parse an option that is a span of time, such as ``2 h``.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ class FileOutcome:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Those of the result."""
+        """Warnings of the result."""
         return self.result.warnings if self.result else ()
 
     def document(self) -> dict[str, Any]:
@@ -59,7 +59,7 @@ class FileOutcome:
         return document
 
     def parts(self) -> list[TerminalPart]:
-        """The table of the line, with its schematic and its explanation where asked for."""
+        """The table of the line, with its schematic, explanation and uncertainty if requested."""
         parts: list[TerminalPart] = [*self.schematic]
         if self.result is not None:
             from calm.report.explanation import line_facts
@@ -155,9 +155,9 @@ def _explained(result: Result | NetResult) -> Explanation:
 
 
 def _to_draw_often(samples: int, seed: int) -> Callable[[Result], Uncertain]:
-    """Return what says how sure the figures of a mooring that stands are.
+    """Return a function that finds the uncertainty of a result from many samples.
 
-    The sequence is begun now: scipy takes as long to load as the compiled march.
+    The sequence of samples is begun now: scipy takes as long to load as the compiled march.
     """
     from calm.case.draws import normals_of
     from calm.case.uncertain import uncertain

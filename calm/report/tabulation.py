@@ -38,7 +38,7 @@ _KNOTS = replace(QUANTITIES["speed"], display="knot")
 
 @dataclass(frozen=True)
 class TabulationRow:
-    """A speed of the ship over the ground [m/s], and the result at it or why there is none."""
+    """A speed of the ship over the ground [m/s], and the result or the failure at that speed."""
 
     speed: float
     outcome: TowResult | NoEquilibrium

@@ -37,7 +37,7 @@ class Meeting:
 
 @dataclass(frozen=True)
 class Rising:
-    """A line that rises steadily, all of it alike, in water whose current is that over the ground.
+    """A line that rises steadily as a whole, in a current relative to the ground.
 
     Attributes
     ----------
