@@ -158,7 +158,7 @@ def _plan(deck: Deck) -> dict[str, Any]:
 
 def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
     """Return what the sheets cannot show of the names in a file, and where."""
-    from calm.report.folder import lacking
+    from calm.drawing.typesetting import lacking
 
     signs = lacking(text for text, _ in _texts(deck))
     if not signs:

@@ -95,7 +95,7 @@ def locate(
 
     outputs = Outputs((file,), json)
     if plot is not None:
-        check_format(plot, (".png", ".svg", ".pdf"))
+        check_format(plot)
         check_destination(plot)
     given = options.quantities(
         transducer=(transducer, "length"),

@@ -57,9 +57,9 @@ class TabulatedTow:
     def rendered(self, suffix: str) -> bytes:
         """Depth, layback and tension against speed."""
         from calm.drawing.picture import image
-        from calm.report.tabulation import draw_sweep
+        from calm.report.tabulation import sweep_drawing
 
-        return image(draw_sweep(self.tabulation), suffix)
+        return image(sweep_drawing(self.tabulation), suffix)
 
 
 def tabulate(tows: Sequence[Tow], outputs: Outputs, speeds: Sequence[float]) -> ExitCode:
