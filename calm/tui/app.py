@@ -2,7 +2,6 @@
 shown."""
 
 import os
-import sys
 import time
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
@@ -22,7 +21,7 @@ from textual.widgets import OptionList
 from calm.errors import CalmError
 from calm.files import Catalogue, editing
 from calm.tui import builder, dialogs, key_table, saving, workspace
-from calm.tui.painted import Pace, Painted, PlainSigns, shows_all_signs
+from calm.tui.painted import Pace, Painted
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
@@ -86,7 +85,6 @@ class BuildApp(App[int]):
         self.not_kept = ""
         self._painted, self._pace = Painted(), Pace()
         self._offered = kept
-        self._plain = [] if shows_all_signs(environ, sys.__stderr__) else [PlainSigns()]
         self._is_catalogue_read = False
         self._autosaving: Timer | None = None
         self._late: Timer | None = None
@@ -181,12 +179,12 @@ class BuildApp(App[int]):
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Those of textual, and one for legible colours or for none, and one for plain signs."""
+        """Those of textual, and one for legible colours or for none."""
         if self.no_color:
-            return [_COLOURLESS, *self._plain]
+            return [_COLOURLESS]
         theme = self.current_theme
         own = legible(theme.dark, "ansi" in theme.name)
-        return [*super().get_line_filters(), own, *self._plain]
+        return [*super().get_line_filters(), own]
 
     def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
         """Send the terminal what it does not show yet, once it has shown what was sent before."""

@@ -88,11 +88,6 @@ class BuilderScreen(ComparingScreen):
         self.tell(f"The line stands in the file's {which}")
         self.workspace.edited()
 
-    def action_overlay(self) -> None:
-        """Draw the line in all its environments, or in its own alone."""
-        shown = self.pictures.overlay()
-        self.tell("All environments that are judged are drawn" if shown else "One is drawn alone")
-
     def action_verdict(self) -> None:
         """The verdict line by line."""
         self.remove_class("-zoomed", "-searching")

@@ -63,8 +63,6 @@ paste(0) | V | paste above |  | Paste above the cursor.
 edit_column('length') | l | length |  | Edit its length, or where it is clamped.
 edit_column('label') | n | label |  | Edit its label.
 edit_column('count') | equals_sign,asterisk | count |  | Edit its count.
-assemble | k | assembly |  | Make the marked pieces an assembly of the file, to be used again
-  under one name.
 screen.change_component | O | change component |  | Change the component of the row, one of the
   file's own, in its form.
 equipment | N | serial number |  | Serial number, calibration, sampling, battery and termination
@@ -72,10 +70,7 @@ equipment | N | serial number |  | Serial number, calibration, sampling, battery
 find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
 find_next(1) | greater_than_sign,f3 | find next |  | To the next row that has them.
 find_next(-1) | less_than_sign | find last |  | To the one before.
-alike(1) | right_square_bracket | next alike |  | To the next piece of the same kind.
-alike(-1) | left_square_bracket | last alike |  | To the one before.
-least(1) | W | weakest |  | To the piece with the least margin of its strength.
-least(0) | E | lowest margin |  | To the row with the lowest margin of all.
+weakest | W | weakest |  | To the piece with the least margin of its strength.
 column | number_sign | fill column |  | Serial numbers, lengths, labels or codes of the marked rows,
   or of all of the component under the cursor, one below the other or pasted.
 repeat | R | repeat |  | Repeat the piece, or those marked, as often as you say.
@@ -102,10 +97,6 @@ next_environment | e | environment |  | Show the line in the next environment.
 advise | p | advice | 10 | Changes that correct a finding or meet a target; shown before you
   accept them.
 compare | D | compare |  | What has changed since the file was saved.
-compare_file | C | compare with |  | Another file beside this one: differences, and its line in
-  the pictures.
-overlay | 0 | overlay |  | Draw the line in all its environments, in still water dotted; or in its
-  own alone.
 figures | f | missing figures |  | Fill in the figures that are not known, piece by piece, with
   their source.
 verdict | G | verdict |  | The verdict line by line: Enter goes to the row that a line is about,

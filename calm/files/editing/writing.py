@@ -41,15 +41,12 @@ class Wording(NamedTuple):
     ----------
     value : Value
     lines : in a block list that begins in column 1, with its comments
-    above, inline, behind : the comments above it, its text within brackets, and what follows that
-        on its line
+    inline : its text within brackets, without comments
     """
 
     value: Value
     lines: str
-    above: str
     inline: str
-    behind: str
 
 
 class Worded(list[Value]):
