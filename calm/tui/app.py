@@ -5,6 +5,7 @@ import os
 import time
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from typing import Any, ClassVar
 
 from rich.console import RenderableType
@@ -20,7 +21,7 @@ from textual.widgets import OptionList
 
 from calm.errors import CalmError
 from calm.files import Catalogue, editing
-from calm.tui import builder, dialogs, key_table, saving, workspace
+from calm.tui import builder, dialogs, key_table, palette, saving, workspace
 from calm.tui.painted import Pace, Painted
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
@@ -59,7 +60,7 @@ class BuildApp(App[int]):
     """
 
     TITLE = "calm build"
-    COMMANDS: ClassVar[set[Any]] = {*App.COMMANDS, key_table.Actions}
+    COMMANDS: ClassVar[set[Any]] = {*App.COMMANDS, palette.Actions}
     CSS = """
     * { scrollbar-size: 1 1; }
     Input > .input--placeholder { text-style: italic dim; }
@@ -80,7 +81,7 @@ class BuildApp(App[int]):
         self.session = session
         self.workspace = workspace.Workspace(session, self.tell, self._edited)
         self.judging = workspace.Judging(self, self.workspace, self._show_views)
-        self.saving = saving.Saving(self, self.workspace)
+        self.saving = saving.Saving(self, self.workspace, self.taken_over, self.leave)
         self.builder = builder.BuilderScreen(self.workspace)
         self.not_kept = ""
         self._painted, self._pace = Painted(), Pace()
@@ -164,7 +165,7 @@ class BuildApp(App[int]):
         self._read_catalogue()
         self.judging.ask()
         if self._offered is not None:
-            self.saving.offer(self._offered)
+            self.saving.offer(self._offered, partial(self.mend, as_judged=True))
         else:
             self.mend()
         is_unsaved = self.session.file.is_open_elsewhere()
@@ -253,7 +254,7 @@ class BuildApp(App[int]):
     def action_command_palette(self) -> None:
         """Find a command by its name."""
         if not isinstance(self.screen, CommandPalette):
-            self.push_screen(key_table.Commands(id="--command-palette"))
+            self.push_screen(palette.Commands(id="--command-palette"))
 
     def action_help(self) -> None:
         """All keys."""

@@ -1,14 +1,12 @@
 """All actions of the builder and their keys: where they work, as hints, in help and palette."""
 
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import partial
 
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 from textual.binding import Binding, BindingType
-from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.containers import ScrollableContainer
 from textual.keys import key_to_character
 from textual.screen import Screen
@@ -292,50 +290,3 @@ def all_keys() -> RenderableType:
             table.add_row(Text(shown_keys(keys), style="bold"), Text(meaning))
         parts += [Text(f"\n{title}", style="bold underline"), table]
     return Group(*parts)
-
-
-class Commands(CommandPalette):
-    """The palette of textual, in terminals of any height."""
-
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """A list without a line on the screen has no pages."""
-        is_page = action == "command_list" and str(parameters[0]).startswith("page")
-        return not is_page or self.query_one(CommandList).size.height > 0
-
-
-class Actions(Provider):
-    """The actions of the first screen."""
-
-    @property
-    def _offered(self) -> list[Action]:
-        from calm.tui.builder import BuilderScreen
-
-        if not isinstance(self.screen, BuilderScreen):
-            return []
-        return [each for each in (*ACTIONS["line"], *ACTIONS["anywhere"]) if each.palette]
-
-    async def discover(self) -> Hits:
-        """All of them, before a word is typed."""
-        for action in self._offered:
-            yield DiscoveryHit(_shown(action), self._run(action), help=action.meaning)
-
-    async def search(self, query: str) -> Hits:
-        """Return those whose name or meaning is like the words."""
-        matcher = self.matcher(query)
-        for action in self._offered:
-            score = max(matcher.match(action.title), 0.8 * matcher.match(action.meaning))
-            if score > 0:
-                title = matcher.highlight(_shown(action))
-                yield Hit(score, title, self._run(action), help=action.meaning)
-
-    def _run(self, action: Action) -> Callable[[], Awaitable[bool]]:
-        from calm.tui.line_pane import LinePane
-
-        name = action.name.removeprefix("screen.")
-        is_of_line = action.place == "line" and name == action.name
-        owner = self.screen.query_one(LinePane) if is_of_line else self.screen
-        return partial(self.app.run_action, name, owner)
-
-
-def _shown(action: Action) -> str:
-    return f"{action.title}  ({shown_key(action.keys.split(',')[0])})"

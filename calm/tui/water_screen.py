@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from pathlib import Path
 
 from textual import events, on
 from textual.app import ComposeResult
@@ -12,13 +13,20 @@ from textual.events import DescendantFocus
 from textual.widget import Widget
 from textual.widgets import Static
 
-from calm.errors import Problem
+from calm.errors import CalmError, Problem
 from calm.files.editing import Draft, Value
 from calm.tui import cell_editor, checking, dialogs, key_table, pictures, screen, verdict_pane
 from calm.tui.field import Asked, Field
 from calm.tui.water_form import DENSITY_FORMS, FormChoice, Place, WaterForm, fields_of_water
 from calm.tui.water_grid import Grid, GridCells
-from calm.tui.water_tables import CURRENT_COLUMNS, USUAL_DEPTH, Currents
+from calm.tui.water_tables import (
+    CURRENT_COLUMNS,
+    PRESETS,
+    SHARES,
+    USUAL_DEPTH,
+    import_sheet,
+    imported,
+)
 from calm.tui.workspace import Workspace, said
 
 _ELSEWHERE = (
@@ -46,7 +54,6 @@ class WaterScreen(screen.DraftScreen):
 
     def __init__(self, workspace: Workspace) -> None:
         super().__init__(workspace)
-        self._currents = Currents(self)
         # what was written in forms that others took the place of, to be had back
         self._left: dict[tuple[str | None, Place, str], Value | None] = {}
         # to the first value of a form, which leaves the message that is shown
@@ -221,7 +228,7 @@ class WaterScreen(screen.DraftScreen):
         """Give the current or the density in another form: as it was in it, or begun anew."""
         place, form, message = _place(event.choice), event.form, ""
         if form == "file":
-            self._currents.ask_for_file()
+            self.action_load_current()
             return
         if not self.settle():
             return
@@ -309,11 +316,66 @@ class WaterScreen(screen.DraftScreen):
 
     def action_preset(self) -> None:
         """A profile to begin with."""
-        self._currents.offer_presets()
+
+        def take(speed: Callable[[float], float]) -> None:
+            deep = self.water.depth or USUAL_DEPTH
+            rows = [(f"{part * deep:.4g}", f"{speed(part):.2g}", "90") for part in SHARES]
+            self.put_table(CURRENT_COLUMNS, rows, "a preset current")
+
+        if self.settle():
+            depth = self.water.depth
+            down = f"{USUAL_DEPTH:g} m, as no depth is given" if depth is None else f"{depth:g} m"
+            answers = dialogs.numbered(
+                (name, partial(take, each)) for name, each in PRESETS.items()
+            )
+            text = f"A table down to {down}, towards the east, for you to change."
+            dialogs.choose(self.app, dialogs.Question("A current to start from", text, answers))
 
     def action_load_current(self) -> None:
         """A current from CSV or NetCDF: referred to, or its profile copied."""
-        self._currents.ask_for_file()
+
+        def take(texts: dict[str, str] | None) -> None:
+            if texts is None:
+                self.show_draft()
+                return
+            path, time = texts["file"], texts["time"]
+            if texts["how"] == "refer":
+                given = {"file": path} | ({"time": time} if time else {})
+                message = f"current of {path}"
+                self.change(lambda water: water.put_form(("current",), given), message)
+            else:
+                self.workspace.tell(f"Reading {path} …")
+                read = partial(self._read, self.water, path, time)
+                self.run_worker(read, thread=True, exit_on_error=False)
+
+        if self.settle():
+            self.app.push_screen(import_sheet(self._folder), take)
+
+    def _read(self, water: WaterForm, path: str, time: str) -> None:
+        """Read a file for an environment in a thread; what comes of it is taken by the form."""
+        tell = self.workspace.tell
+
+        def put(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+            if water.variant != self.water.variant:
+                tell(f"{path} was read for another environment; read it again", wrong=True)
+            else:
+                self.put_table(columns, rows, f"current of {path}")
+                tell(f"The current of {path} is in the table")
+
+        try:
+            table = imported(self._folder / path, time, water.depth or USUAL_DEPTH)
+        except CalmError as error:
+            self.call_later(tell, str(error).partition("\n")[0], wrong=True)
+        except Exception as error:  # the libraries that read NetCDF raise whatever they like
+            reason = f"{type(error).__name__}: {error}"
+            self.call_later(tell, f"{path} cannot be read: {reason}", wrong=True)
+        else:
+            self.call_later(put, *table)
+
+    @property
+    def _folder(self) -> Path:
+        path = self.session.file.path
+        return Path.cwd() if path is None else path.absolute().parent
 
     def action_undo(self) -> None:
         """Take the last change back, or what is typed where that is bad."""

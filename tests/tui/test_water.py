@@ -638,7 +638,7 @@ def test_a_file_that_no_library_can_read_is_told(drive, small, monkeypatch):
         def fail(*_):
             raise RuntimeError("out of luck")
 
-        monkeypatch.setattr("calm.tui.water_tables.imported", fail)
+        monkeypatch.setattr("calm.tui.water_screen.imported", fail)
         await load(driver)
         assert "bad.nc cannot be read: RuntimeError: out of luck" in driver.screen
         assert driver.text == before
