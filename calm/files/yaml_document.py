@@ -185,6 +185,29 @@ def validate(
         return None
 
 
+def complaint(model: type[BaseModel], name: str, value: object) -> str:
+    """Return why a value cannot stand under a key of a model, by itself; empty where it can."""
+    data = {name: value}
+    try:
+        model.model_validate(data)
+    except ValidationError as error:
+        for details in error.errors(include_url=False):
+            location, inner = _existing(data, details["loc"])
+            if not location or details["type"] == "default_factory_not_called":
+                continue  # of another key, or the consequence of a mistake
+            last = str(details["loc"][-1])
+            if details["type"] == "missing" and isinstance(details["loc"][-1], str):
+                return f"`{last}` is missing"
+            if details["type"] == "extra_forbidden":
+                keys = _models_in(_form(model, details["loc"][:-1]))
+                return _about_key(
+                    last, inner, [key for one in keys for key in one.model_fields], None
+                )
+            key = next(part for part in reversed(location) if isinstance(part, str))
+            return _about_value(details, key, inner, model)
+    return ""
+
+
 def _explain(
     error: ValidationError,
     model: type[BaseModel],

@@ -13,7 +13,7 @@ from calm.errors import CalmError
 from calm.files.editing import Draft
 from calm.tui import checking, line_screen
 from calm.tui.dialogs import Answer, LongText, Question, choose, enter, numbered
-from calm.tui.field import Asked
+from calm.tui.forms import Asked
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

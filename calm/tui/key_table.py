@@ -112,6 +112,7 @@ sheet('document') | M | document |  | Number, revision and what it changed, auth
 sheet('deployed') | L | as deployed |  | Date, position and depth of the deployment; of the row its
   number, length, remark, codes.
 sheet('tow') | T | tow |  | Speed and course of a tow; makes the line one, which hangs from a ship.
+settings | comma | settings |  | Solver, limits of the check, uncertainty and units of output.
 begin | b | begin |  | Begin an empty line with a mooring: deep, shelf, ADCP, taut or slack
   surface; a tow.
 papers | P | papers |  | Bill and totals; write the report of the check, or the sheets for the

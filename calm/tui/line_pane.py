@@ -11,7 +11,7 @@ from calm.tui.catalogue_pane import Purpose
 from calm.tui.cell_editor import Then
 from calm.tui.checking import count
 from calm.tui.dialogs import Answer, Question, ask, choose, enter
-from calm.tui.field import Asked
+from calm.tui.forms import Asked
 from calm.tui.key_table import bindings
 from calm.tui.line_rows import ColumnFilling, LineCell, table_rows
 from calm.tui.line_table import EDITABLE, Column, LineSearch, LineTable
@@ -41,8 +41,8 @@ class LinePane(LineSearch):
 
     def __init__(self, workspace: Workspace, search: Callable[[Purpose], object]) -> None:
         self.table: LineTable = LineTable(id="line")
-        super().__init__(workspace, self.table, id="line-pane")
-        self.session, self._search = workspace.session, search
+        super().__init__(workspace.tell, self.table, id="line-pane")
+        self.workspace, self.session, self._search = workspace, workspace.session, search
         self._cell: LineCell | None = None  # what is edited, or was last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:

@@ -16,8 +16,9 @@ from calm.checks.finding import State
 from calm.checks.strength import strength
 from calm.files import Place
 from calm.quantities import QUANTITIES
-from calm.tui import cell_editor, checking, dialogs, field, theme
+from calm.tui import cell_editor, checking, dialogs, forms, theme
 from calm.tui.scrolled import TableCells, TableColumn
+from calm.tui.workspace import Workspace
 
 _TAIL = 4
 _EMPTY = (
@@ -254,6 +255,7 @@ class LineSearch(cell_editor.EditableTable):
     """A table of the line whose cursor goes to what is looked for, and which tells what it is."""
 
     table: LineTable
+    workspace: Workspace
     words = ""
 
     def action_find(self) -> None:
@@ -264,7 +266,7 @@ class LineSearch(cell_editor.EditableTable):
             self.action_find_next(1)
 
         takes = "id, label, serial, maker"
-        asked = [field.Asked("words", "Words", self.words, checking.needed("a word"), takes)]
+        asked = [forms.Asked("words", "Words", self.words, checking.needed("a word"), takes)]
         dialogs.enter(self.app, "Find in the line", "", asked, take)
 
     def action_find_next(self, by: int) -> None:

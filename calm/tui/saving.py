@@ -16,7 +16,7 @@ from calm.files import editing, read_mooring
 from calm.files.editing.user_state import Presence
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Question, Then, choose, enter
-from calm.tui.field import Asked
+from calm.tui.forms import Asked
 from calm.tui.screen import DraftScreen
 from calm.tui.workspace import Workspace, place_of
 

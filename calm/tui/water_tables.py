@@ -19,9 +19,10 @@ from calm.files.definition import QuantityField
 from calm.records import profile_tables
 from calm.records.headings import heading
 from calm.records.profile_tables import QuantityTable, speed_and_direction
-from calm.tui import field, theme
+from calm.tui import forms, theme
 from calm.tui.checking import Check, Reading, number, quantity
 from calm.tui.dialogs import InputSheet
+from calm.tui.forms import Rows
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 CURRENT_COLUMNS = ("depth m", "speed m/s", "toward deg")
@@ -57,9 +58,9 @@ def import_sheet(folder: Path) -> InputSheet:
         f"CSV or CF NetCDF, from {folder} unless another is named. `refer` keeps the file's "
         "name in the mooring file; `copy` writes its profile as a table.",
         [
-            field.Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
-            field.Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
-            field.Asked("how", "refer or copy", "refer", _how),
+            forms.Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
+            forms.Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
+            forms.Asked("how", "refer or copy", "refer", _how),
         ],
     )
 
@@ -130,8 +131,6 @@ def _how(text: str) -> Reading:
             return Reading(choice)
     return Reading(word, "is refer or copy", "refer")
 
-
-Rows = tuple[tuple[str, ...], ...]
 
 _MOST_SHOWN = 8
 _OF_A_CURRENT = {"u", "v", "w", "speed", "toward"}

@@ -123,8 +123,8 @@ class Page:
         if not known or node is None:
             return ()
         if node.style == "flow":
-            items = [node.children[i] for i in known]
-            return tuple(snippet_of(self.text[one.start : one.end], 0) for one in items)
+            found = [node.children[i] for i in known]
+            return tuple(snippet_of(self.text[one.start : one.end], 0) for one in found)
         items = self.items(location)
         return tuple(snippet_of(items.texts[i], items.column) for i in known)
 
@@ -156,13 +156,13 @@ class Page:
     def _text(self, value: Value, items: Items, *, block: bool = False) -> str:
         return inline(value) if items.is_flow else self.style.item(value, items.column, block=block)
 
-    def rows(self, location: Location, rows: Sequence[Sequence[str | None]]) -> list[Patch]:
-        """Put in the rows of a table; those that are there already stay as they stand."""
+    def rows(self, location: Location, rows: Sequence[Value]) -> list[Patch]:
+        """Put in the items of a list; those that are there already stay as they stand."""
         node = self.node(location)
         if node is None or not node.children or not rows or node.kind != "sequence":
             return self.put(location, rows)
         old = [repr(row) for row in node.data]
-        new = [repr(list(row)) for row in rows]
+        new = [repr(data_of(row)) for row in rows]
         items = self.items(location)
         steps = SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
         for tag, start, end, new_start, new_end in reversed(steps):

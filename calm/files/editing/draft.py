@@ -260,8 +260,11 @@ class Draft:
             for i, j, text in cells:
                 draft = draft.put_at((*place, i, j), text)
             return draft
-        patches = draft._page.rows(place, rows)
-        return draft._changed(patches, place, rows)
+        return draft.put_rows(place, rows)
+
+    def put_rows(self, location: Location, rows: Sequence[Value]) -> Draft:
+        """Put in the items of a list; those that it has already stay as they are written."""
+        return self._changed(self._page.rows(location, rows), location, rows)
 
     def put_component(self, id: str, values: Mapping[str, Value]) -> Draft:
         """Define a component used only here, in place of one of that id."""

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from calm.files.composition import Node
+from calm.files.composition import Node, compose
 from calm.files.environment import Position
 from calm.files.logbook import DocumentKeys
 from calm.files.mooring_file import Solver
@@ -182,6 +182,16 @@ def inline(value: Value) -> str:
     if isinstance(value, Worded):
         return "[" + ", ".join(one.inline for one in value.wordings) + "]"
     return "[" + ", ".join(inline(one) for one in value) + "]"
+
+
+def read_inline(text: str) -> Value:
+    """Read what `inline` writes; a text that is nothing of the kind is itself the value."""
+    composition = compose(text)
+    root = composition.root
+    if root is None or composition.refusals or root.style != "flow":
+        return text
+    value: Value = root.data
+    return value
 
 
 def place_of(name: str, names: Sequence[str]) -> int:
