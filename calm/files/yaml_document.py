@@ -191,20 +191,17 @@ def complaint(model: type[BaseModel], name: str, value: object) -> str:
     try:
         model.model_validate(data)
     except ValidationError as error:
-        for details in error.errors(include_url=False):
-            location, inner = _existing(data, details["loc"])
-            if not location or details["type"] == "default_factory_not_called":
-                continue  # of another key, or the consequence of a mistake
-            last = str(details["loc"][-1])
-            if details["type"] == "missing" and isinstance(details["loc"][-1], str):
-                return f"`{last}` is missing"
+        own = [one for one in error.errors(include_url=False) if one["loc"][:1] == (name,)]
+        for details in sorted(own, key=lambda one: one["type"] == "missing"):
+            _, inner = _existing(data, details["loc"])
+            keys = [part for part in details["loc"] if isinstance(part, str)]
+            if details["type"] == "missing":
+                return f"`{keys[-1]}` is missing"
             if details["type"] == "extra_forbidden":
-                keys = _models_in(_form(model, details["loc"][:-1]))
-                return _about_key(
-                    last, inner, [key for one in keys for key in one.model_fields], None
-                )
-            key = next(part for part in reversed(location) if isinstance(part, str))
-            return _about_value(details, key, inner, model)
+                forms = _models_in(_form(model, details["loc"][:-1]))
+                known = [key for form in forms for key in form.model_fields]
+                return _about_key(keys[-1], inner, known, None)
+            return _about_value(details, keys[-1], inner, model)
     return ""
 
 

@@ -139,8 +139,9 @@ class Form(Screen[T | None]):
 
     @property
     def all_parts(self) -> list[Part]:
-        """Return the fields, and the tables."""
-        return [*self.fields, *self.query(TableField)]
+        """Return the fields and the tables as they follow one another."""
+        found = self.query(f"{Field.__name__}, {TableField.__name__}")
+        return [part for part in found if isinstance(part, Field | TableField)]
 
     @property
     def texts(self) -> dict[str, str]:
@@ -164,7 +165,7 @@ class Form(Screen[T | None]):
 
     @on(Field.Entered)
     def _onward(self, event: Field.Entered) -> None:
-        if event.field is self.fields[-1] and not self.query(TableField):
+        if event.field is self.all_parts[-1]:
             self.action_take()
         else:
             self.focus_next()
@@ -176,6 +177,11 @@ class Form(Screen[T | None]):
     def action_leave(self) -> None:
         """Give nothing."""
         self.dismiss(None)
+
+
+_BELOW = 7
+"""Lines of a sheet around its fields: its margins, a note of two lines, the keys."""
+_TABLE_KEYS = "a adds a row, Enter edits a value, Del deletes the row, ↑ ↓ go on"
 
 
 class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
@@ -190,7 +196,8 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
         " & .field-note { display: none; }"
         " & .above { text-style: bold; margin-top: 1; text-wrap: nowrap;"
         " text-overflow: ellipsis; } & TableField { margin-left: 2; }"
-        " &.-wide > VerticalScroll { width: 110; }"
+        " &.-wide > Vertical { width: 110; }"
+        " & #asked { height: auto; scrollbar-size-vertical: 1; }"
         " &.-wide .field-note { display: block; } &.-wide Field > Input { width: 24; }"
         " &.-wide .field-title { width: 22; }"
         "& #sheet-note { height: auto; min-height: 1; color: $text-muted; margin-top: 1; }"
@@ -203,11 +210,12 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
 
     def compose(self) -> ComposeResult:
         """Return what is asked, and where it is typed."""
-        with VerticalScroll(can_focus=False):
-            yield Static(self._title, classes="title", markup=False)
-            if self._text:
-                yield Static(self._text, classes="text", markup=False)
-            yield from self.parts_of(self._asked)
+        with Vertical():
+            with VerticalScroll(id="asked", can_focus=False):
+                yield Static(self._title, classes="title", markup=False)
+                if self._text:
+                    yield Static(self._text, classes="text", markup=False)
+                yield from self.parts_of(self._asked)
             yield Static(id="sheet-note", markup=False)
             yield Static(
                 "[b]Enter[/b] next, then done   [b]Ctrl+S[/b] done   [b]Esc[/b] go back",
@@ -217,6 +225,10 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
     def on_mount(self) -> None:
         """Type at once."""
         self.all_parts[0].input.focus()
+
+    def on_resize(self) -> None:
+        """What is said below the fields stays in sight."""
+        self.query_one("#asked").styles.max_height = max(self.size.height - _BELOW, 1)
 
     @on(Field.Judged)
     def _judge(self, event: Field.Judged) -> None:
@@ -229,6 +241,10 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
             if field.input.has_focus:
                 reading = field.reading if field.input.value else Reading("")
                 self.tell(field.note(reading), wrong=not reading.is_good)
+        for table in self.query(TableField):
+            if table.cells.has_focus:
+                reading = table.reading
+                self.tell(reading.note or _TABLE_KEYS, wrong=not reading.is_good)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
         """Say something below the fields."""

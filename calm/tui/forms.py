@@ -6,6 +6,7 @@ table, whose text is that YAML, too.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -20,6 +21,8 @@ from calm.files.yaml_document import Location, complaint
 from calm.tui.checking import Check, Reading, anything, one_of, quantity
 
 Rows = tuple[tuple[str, ...], ...]
+
+_EXAMPLE = re.compile(r",? ?e\.g\. [^;]+;? ?")
 
 
 @dataclass(frozen=True)
@@ -95,7 +98,7 @@ def _asked(model: type[BaseModel], name: str, at: str, *, needed: bool) -> Asked
     elif members == (float,):
         check = anything  # what it is depends on another key; all of them are judged together
     example = text_of(_as_texts(field.examples[0])) if field.examples else ""
-    takes = field.description or ""
+    takes = _EXAMPLE.sub("", field.description or "")  # which stands in the field
     return Asked(
         f"{at}{name}",
         name.replace("_", " ") + " *" * (is_needed and needed),
@@ -183,13 +186,18 @@ def value_of(text: str) -> Value | None:
 
 def rows_of(text: str, columns: Sequence[Column]) -> Rows | None:
     """The rows of a table; None of a value that has others, which only the text can show."""
-    value, keys = value_of(text), {column.key for column in columns}
+    return rows_in(value_of(text), columns)
+
+
+def rows_in(value: Value | None, columns: Sequence[Column]) -> Rows | None:
+    """The same of a value of the file; what a row lacks is blank."""
+    keys = {column.key for column in columns}
     rows = []
     for row in value if isinstance(value, list) else [] if value is None else [value]:
         if isinstance(row, Mapping) and "" not in keys and row.keys() <= keys:
             rows.append(tuple(text_of(row.get(column.key)) for column in columns))
-        elif isinstance(row, list) and "" in keys and len(row) == len(columns):
-            rows.append(tuple(map(text_of, row)))
+        elif isinstance(row, list) and keys == {""} and len(row) <= len(columns):
+            rows.append((*map(text_of, row), *[""] * (len(columns) - len(row))))
         else:
             return None
     return tuple(rows)

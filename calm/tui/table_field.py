@@ -188,7 +188,7 @@ class Grid(cell_editor.EditableTable):
     def _edit(self, begun: str | None = None) -> None:
         """Edit the cell under the cursor, beginning with what it has or with what is `begun`."""
         cells = self.cells
-        if not self.settle():
+        if not super().settle():  # the cell: the row may still lack values
             return
         self._place = row, column = cells.cursor, cells.column
         text, check = begun or cells.rows[row][column], self._columns[column].check

@@ -27,16 +27,8 @@ from calm.records.delimited import CopiedTable, NoTableError, copied_table
 from calm.tui import key_table, water_tables
 from calm.tui.checking import quantity
 from calm.tui.field import Cycle, Field
-from calm.tui.forms import Asked, Column, form_of, text_of, value_of
+from calm.tui.forms import Asked, Column, form_of, rows_in, text_of, value_of
 from calm.tui.table_field import Grid
-from calm.tui.water_tables import (
-    NoRows,
-    UnknownColumns,
-    check_of,
-    half_way,
-    offered_headings,
-    rows_in,
-)
 from calm.units import QuantityError, QuantityRange
 
 CURRENT_FORMS = ("still", "uniform", "table", "file")
@@ -114,7 +106,7 @@ class WaterForm:
             return "constant"
         if not isinstance(value, dict) or not value:
             return "still"
-        return "file" if {"file", "time"} & set(value) else "uniform"
+        return "file" if CurrentFile.model_fields.keys() & set(value) else "uniform"
 
     def table(self, *keys: str) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Columns and rows of a table, texts as written, each row of as many as there are columns.
@@ -124,12 +116,12 @@ class WaterForm:
         """
         table = self.value(*keys)
         columns = table.get("columns") if isinstance(table, dict) else None
-        rows = table.get("rows") if isinstance(table, dict) else None
-        if not isinstance(columns, list) or not _is_row(columns, len(columns)):
+        if not isinstance(columns, list) or not all(isinstance(one, str) for one in columns):
             return (), []
-        if not all(_is_row(row, len(columns)) for row in rows or ()):
+        rows = rows_in(table.get("rows"), [Column("", heading) for heading in columns])
+        if rows is None or any(text.startswith(("[", "{")) for row in rows for text in row):
             return (), []
-        return tuple(map(str, columns)), [_filled(row, len(columns)) for row in rows or ()]
+        return tuple(columns), [*rows]
 
     # changes: each gives the file with it
 
@@ -146,7 +138,7 @@ class WaterForm:
         names = [*columns]
         given = self.value(*keys)
         old = given.get("rows") if isinstance(given, dict) and self.table(*keys)[0] else None
-        known = {_filled(row, len(names)): row for row in old or ()}
+        known = dict(zip(self.table(*keys)[1], old or (), strict=False))
         new = [known.get(tuple(row), [text or None for text in row]) for row in rows]
         return self._with_own(keys).put_table(self.at(*keys), names, new)
 
@@ -213,18 +205,6 @@ def _read(kind: QuantityRange, text: str) -> float | None:
         return kind.read(text) if text else None
     except QuantityError:
         return None
-
-
-def _is_row(row: object, most: int) -> bool:
-    return (
-        isinstance(row, list)
-        and len(row) <= most
-        and all(isinstance(each, str | None) for each in row)
-    )
-
-
-def _filled(row: Sequence[str | None], count: int) -> tuple[str, ...]:
-    return tuple([*(text or "" for text in row), *[""] * count][:count])
 
 
 _TAKE_IT = "Enter takes it"
@@ -307,7 +287,9 @@ class ProfileGrid(Grid):
     ) -> None:
         """Show other rows; new ones are not proposed below the `seabed` [m]."""
         self._seabed = seabed
-        self.show([Column("", heading, check_of(heading)) for heading in columns], rows)
+        self.show(
+            [Column("", heading, water_tables.check_of(heading)) for heading in columns], rows
+        )
 
     def new_row(self, at: int) -> tuple[str, ...]:
         """Values half-way between those above and below, where both are numbers.
@@ -325,7 +307,10 @@ class ProfileGrid(Grid):
         if at == len(rows):
             deeper = pairs[0][0] + _STEP
             return (f"{min(deeper, self._seabed or math.inf):g}", *above[1:])
-        halves = (half_way(column, *pair) for column, pair in zip(columns, pairs, strict=True))
+        halves = (
+            water_tables.half_way(column, *pair)
+            for column, pair in zip(columns, pairs, strict=True)
+        )
         return tuple(f"{half:g}" for half in halves)
 
     def ends_at(self, at: int) -> bool:
@@ -343,11 +328,11 @@ class ProfileGrid(Grid):
         columns = self.cells.headings
         try:
             copied = copied_table(text)
-            headings = offered_headings(copied.headings, columns)
-            rows_in(columns, headings, copied.rows)
-        except UnknownColumns:
+            headings = water_tables.offered_headings(copied.headings, columns)
+            water_tables.rows_in(columns, headings, copied.rows)
+        except water_tables.UnknownColumns:
             pass  # the person says what they are
-        except (NoTableError, NoRows) as error:
+        except (NoTableError, water_tables.NoRows) as error:
             self.tell(f"Nothing is pasted: {error}", wrong=True)
             return
         self._preview(self, copied, headings)

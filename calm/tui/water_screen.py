@@ -385,7 +385,7 @@ class WaterScreen(screen.DraftScreen):
                 self.show_draft()
                 return
             path, time = texts["file"], texts["time"]
-            if texts["how"] == "refer":
+            if texts["how"] != "copy":
                 given = {"file": path} | ({"time": time} if time else {})
                 message = f"current of {path}"
                 self.change(lambda water: water.put_form(("current",), given), message)

@@ -20,7 +20,7 @@ from calm.records import profile_tables
 from calm.records.headings import heading
 from calm.records.profile_tables import QuantityTable, speed_and_direction
 from calm.tui import forms, theme
-from calm.tui.checking import Check, Reading, number, quantity
+from calm.tui.checking import Check, Reading, number, one_of, quantity
 from calm.tui.dialogs import InputSheet
 from calm.tui.forms import Rows
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
@@ -60,7 +60,7 @@ def import_sheet(folder: Path) -> InputSheet:
         [
             forms.Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
             forms.Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
-            forms.Asked("how", "refer or copy", "refer", _how),
+            forms.Asked("how", "refer or copy", "refer", one_of(("refer", "copy"))),
         ],
     )
 
@@ -122,14 +122,6 @@ def _existing(folder: Path) -> Check:
         return Reading(tidy) if is_there else Reading(tidy, "no such file")
 
     return check
-
-
-def _how(text: str) -> Reading:
-    word = text.strip().casefold()
-    for choice in ("refer", "copy"):
-        if word and choice.startswith(word):
-            return Reading(choice)
-    return Reading(word, "is refer or copy", "refer")
 
 
 _MOST_SHOWN = 8

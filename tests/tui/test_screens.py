@@ -8,6 +8,7 @@ import pytest
 from calm.checks.finding import State
 from calm.tui.component_screen import ComponentScreen
 from calm.tui.field import Field
+from calm.tui.mooring_sheet import settings
 from calm.tui.table_field import GridCells
 from calm.tui.text_screen import TextScreen
 from tests.tui.conftest import MOORING
@@ -440,3 +441,30 @@ def test_a_tow_is_built_from_nothing(drive, folder):
         assert "Tow point" in driver.screen
 
     drive(story, folder / "tow.yaml")
+
+
+def test_settings_of_the_file_are_entered_in_their_forms(drive, small):
+    async def story(driver):
+        await driver.press("comma")
+        assert "solver: how the line is solved" in driver.screen
+        await driver.press(str(settings().index("checks") + 1))
+        await driver.type("1.8")
+        driver.app.screen.query_one(GridCells).focus()
+        await driver.press("a")
+        for text in ("knockdown", "it is a test", "", "A. Martin"):
+            await driver.type(text)
+            await driver.press("enter")
+        await driver.press("escape", "ctrl+s")
+        await driver.settle()
+        accepted = {"rule": "knockdown", "reason": "it is a test", "by": "A. Martin"}
+        checks = {"anchor_factor": "1.8", "accept": [accepted]}
+        assert driver.session.draft.value(("checks",)) == checks
+        assert driver.view.file.checks.anchor_factor == 1.8
+        await driver.press("comma", str(settings().index("checks") + 1))
+        driver.app.screen.query_one(GridCells).focus()
+        await driver.press("a")
+        await driver.type("tilt")
+        await driver.press("ctrl+s")
+        assert "row 2, reason *: a value is needed" in driver.screen
+
+    drive(story, small)

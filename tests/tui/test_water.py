@@ -852,3 +852,24 @@ def test_enter_takes_a_form_and_goes_on(drive, small):
         assert driver.app.focused is cells(driver)
 
     drive(story, small)
+
+
+def test_every_key_of_an_environment_has_its_field(drive, small):
+    async def story(driver):
+        await driver.press("w")
+        await enter(driver, "depth_range", "[98 m, 104 m]")
+        await enter(driver, "fouling-depth", "50")
+        assert "is needed: of the growth" in driver.screen
+        await enter(driver, "fouling-thickness", "20")
+        await enter(driver, "seabed", "{slope: 3 deg, toward: 120 kg}")
+        assert "is a mass" in driver.screen
+        await driver.press("ctrl+u", "enter")
+        await driver.settle()
+        assert value(driver, "depth_range") == ["98 m", "104 m"]
+        assert value(driver, "fouling") == {"depth": "50 m", "thickness": "20 mm"}
+        assert value(driver, "seabed") is None
+        assert driver.view.file.environment.fouling.thickness == 0.02
+        await enter(driver, "fouling-depth", "")
+        assert value(driver, "fouling") is None
+
+    drive(story, small, size=(140, 50))
