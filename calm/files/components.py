@@ -18,7 +18,7 @@ from calm.files import definition
 from calm.files.definition import (
     CATALOGUE_DENSITY,
     STANDARD_GRAVITY,
-    Heading,
+    ColumnHeading,
     QuantityField,
     optional,
 )
@@ -45,8 +45,8 @@ def _refuse_what_is_no_curve(points: Points) -> Points:
 Elongation = Annotated[
     tuple[
         tuple[
-            Annotated[float, _LOAD, Heading("load / breaking load")],
-            Annotated[float, _STRAIN, Heading("strain")],
+            Annotated[float, _LOAD, ColumnHeading("load / breaking load")],
+            Annotated[float, _STRAIN, ColumnHeading("strain")],
         ],
         ...,
     ],

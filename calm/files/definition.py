@@ -72,7 +72,7 @@ class QuantityField(QuantityRange):
         }
 
 
-class Heading(str):
+class ColumnHeading(str):
     """Annotate a value of a row with the heading of its column, where tables are shown."""
 
     __slots__ = ()

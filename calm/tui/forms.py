@@ -15,7 +15,7 @@ from typing import Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel
 
-from calm.files.definition import Heading, QuantityField, quantity_of
+from calm.files.definition import ColumnHeading, QuantityField, quantity_of
 from calm.files.editing import Draft, Value, inline, read_inline
 from calm.files.yaml_document import Location, complaint
 from calm.tui.checking import Check, Reading, anything, one_of, quantity
@@ -26,7 +26,7 @@ _EXAMPLE = re.compile(r",? ?e\.g\. [^;]+;? ?")
 
 
 @dataclass(frozen=True)
-class Column:
+class FormColumn:
     """A column of a table: the key of the mapping that a row is, none where a row is a list."""
 
     key: str
@@ -54,7 +54,7 @@ class Asked:
     placeholder: str = ""
     takes: str = ""
     above: str = ""
-    columns: tuple[Column, ...] = ()
+    columns: tuple[FormColumn, ...] = ()
     is_needed: bool = False
 
 
@@ -118,22 +118,22 @@ def _judged(model: type[BaseModel], name: str, needed: bool, text: str) -> Readi
     return Reading(tidy, complaint(model, name, value_of(tidy)))
 
 
-def _columns(members: tuple[Any, ...]) -> tuple[Column, ...]:
+def _columns(members: tuple[Any, ...]) -> tuple[FormColumn, ...]:
     """The columns of a list of models, or of rows of as many values each; none of another value."""
     if len(members) != 1 or get_origin(members[0]) is not tuple:
         return ()
     row = get_args(members[0])[0]
     if model := model_in(row):
-        return tuple(Column(each.key, each.title, each.check) for each in form_of(model))
+        return tuple(FormColumn(each.key, each.title, each.check) for each in form_of(model))
     if get_origin(row) is not tuple or ... in get_args(row):
         return ()
     columns = []
     for number, value in enumerate(get_args(row), 1):
         _, *notes = get_args(value) or (value,)
-        heading = next((str(one) for one in notes if isinstance(one, Heading)), str(number))
+        heading = next((str(one) for one in notes if isinstance(one, ColumnHeading)), str(number))
         found = next((one for one in notes if isinstance(one, QuantityField)), None)
         check = anything if found is None else quantity(found, usual_unit=found.usual_unit)
-        columns.append(Column("", heading, check))
+        columns.append(FormColumn("", heading, check))
     return tuple(columns)
 
 
@@ -184,12 +184,12 @@ def value_of(text: str) -> Value | None:
     return None if value in ("", [], {}) else value
 
 
-def rows_of(text: str, columns: Sequence[Column]) -> Rows | None:
+def rows_of(text: str, columns: Sequence[FormColumn]) -> Rows | None:
     """The rows of a table; None of a value that has others, which only the text can show."""
     return rows_in(value_of(text), columns)
 
 
-def rows_in(value: Value | None, columns: Sequence[Column]) -> Rows | None:
+def rows_in(value: Value | None, columns: Sequence[FormColumn]) -> Rows | None:
     """The same of a value of the file; what a row lacks is blank."""
     keys = {column.key for column in columns}
     rows = []
@@ -203,12 +203,12 @@ def rows_in(value: Value | None, columns: Sequence[Column]) -> Rows | None:
     return tuple(rows)
 
 
-def text_of_rows(rows: Iterable[Sequence[str]], columns: Sequence[Column]) -> str:
+def text_of_rows(rows: Iterable[Sequence[str]], columns: Sequence[FormColumn]) -> str:
     """The text of a table, without the rows that say nothing."""
     return text_of([_row(row, columns) for row in rows if any(row)])
 
 
-def _row(row: Sequence[str], columns: Sequence[Column]) -> Value:
+def _row(row: Sequence[str], columns: Sequence[FormColumn]) -> Value:
     cells = [(column.key, value_of(text)) for column, text in zip(columns, row, strict=True)]
     if columns[0].key:
         return {key: value for key, value in cells if value is not None}

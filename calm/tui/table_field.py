@@ -12,7 +12,7 @@ from textual import events, on
 from calm.records.delimited import NoTableError, copied_table
 from calm.tui import cell_editor, key_table, theme
 from calm.tui.checking import Reading
-from calm.tui.forms import Asked, Column, Rows, rows_of, text_of_rows
+from calm.tui.forms import Asked, FormColumn, Rows, rows_of, text_of_rows
 from calm.tui.scrolled import TableCells, TableColumn
 
 _WIDTH = 14
@@ -116,12 +116,12 @@ class Grid(cell_editor.EditableTable):
         self.cells = GridCells()
         super().__init__(tell, self.cells, id=id)
         self._changed = changed
-        self._columns: tuple[Column, ...] = ()
+        self._columns: tuple[FormColumn, ...] = ()
         self._place = 0, 0  # row and column that are edited
         self._new = -1  # the row that was added last and is being filled
         self._before: Rows | None = None  # the rows without the one that Enter has added
 
-    def show(self, columns: Sequence[Column], rows: Sequence[Sequence[str]]) -> None:
+    def show(self, columns: Sequence[FormColumn], rows: Sequence[Sequence[str]]) -> None:
         """Show other rows."""
         self._columns = tuple(columns)
         self.cells.show([column.heading for column in columns], rows)

@@ -27,7 +27,7 @@ from calm.records.delimited import CopiedTable, NoTableError, copied_table
 from calm.tui import key_table, water_tables
 from calm.tui.checking import quantity
 from calm.tui.field import Cycle, Field
-from calm.tui.forms import Asked, Column, form_of, rows_in, text_of, value_of
+from calm.tui.forms import Asked, FormColumn, form_of, rows_in, text_of, value_of
 from calm.tui.table_field import Grid
 from calm.units import QuantityError, QuantityRange
 
@@ -118,7 +118,7 @@ class WaterForm:
         columns = table.get("columns") if isinstance(table, dict) else None
         if not isinstance(columns, list) or not all(isinstance(one, str) for one in columns):
             return (), []
-        rows = rows_in(table.get("rows"), [Column("", heading) for heading in columns])
+        rows = rows_in(table.get("rows"), [FormColumn("", heading) for heading in columns])
         if rows is None or any(text.startswith(("[", "{")) for row in rows for text in row):
             return (), []
         return tuple(columns), [*rows]
@@ -288,7 +288,7 @@ class ProfileGrid(Grid):
         """Show other rows; new ones are not proposed below the `seabed` [m]."""
         self._seabed = seabed
         self.show(
-            [Column("", heading, water_tables.check_of(heading)) for heading in columns], rows
+            [FormColumn("", heading, water_tables.check_of(heading)) for heading in columns], rows
         )
 
     def new_row(self, at: int) -> tuple[str, ...]:
