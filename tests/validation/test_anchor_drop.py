@@ -213,7 +213,7 @@ def test_in_deep_water_it_falls_at_the_terminal_speed(loaded):
     _, drop, _ = dropped(mooring, fineness=Fineness(50, 200))
     line = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
     last = drop.states[-1].velocity
-    weight, drag = mooring.leg.anchor_weight, mooring.anchor_drag
+    weight, drag = mooring.leg.anchor_weight, mooring.leg.anchor_drag
     terminal = falling(line, mooring.water, weight, drag, last[-1])
     # after 2800 m of fall the line has long been plumb
     assert last[-1, 2] == pytest.approx(terminal[2], rel=5e-4)
