@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import prod
 from typing import TYPE_CHECKING, Any
@@ -170,7 +170,6 @@ class Batch:
     """A mooring or a net made ready for many profiles, which may come in several goes."""
 
     mooring: Mooring | Net
-    _starts: Floats | None = field(default=None, init=False, repr=False, compare=False)
 
     @cached_property
     def water(self) -> Water:
@@ -230,7 +229,7 @@ class Batch:
             columns = Results(*(array[block] for array in rows))
             self._solve_block(mooring, mine, columns, status[block])
 
-        solve(slice(0, 0))  # compiles where need be
+        _ = self._starts  # compiles where need be, and by one thread
         with ThreadPoolExecutor(workers or processors()) as pool:
             for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
                 pass
@@ -260,6 +259,19 @@ class Batch:
         for array in rows:
             array[status != 0] = np.nan
 
+    @cached_property
+    def _starts(self) -> Floats:
+        """From where every profile of a line is sought."""
+        assert isinstance(self.mooring, Mooring)
+        line, none = self.mooring.line, np.zeros((0, 1))
+        rows = Results(
+            np.zeros((0, len(OF_PIECE), len(line.length))),
+            np.zeros((0, len(OF_CLAMP), len(line.clamp_piece))),
+            np.zeros((0, len(OF_ENDS))),
+        )
+        current = np.zeros((1, 1)), none, none, none
+        return self._march(self.mooring, current, rows, np.zeros(0, np.int64), MANY_ROOM, None)
+
     def _solve_rows(
         self,
         mooring: Mooring,
@@ -269,6 +281,28 @@ class Batch:
         room: int,
     ) -> None:
         """Solve profiles, with room for so many segments; with more where that is too little."""
+        self._march(mooring, current, rows, endings, room, self._starts)
+        again = np.flatnonzero(endings == LACKS_ROOM)
+        if again.size:
+            depth, *parts = current
+            mine = depth if len(depth) == 1 else depth[again]
+            found, ends = Results(*(array[again] for array in rows)), endings[again]
+            few = (mine, *(np.ascontiguousarray(part[again]) for part in parts))
+            self._solve_rows(mooring, few, found, ends, MORE_ROOM * room)
+            endings[again] = ends
+            for array, solved in zip(rows, found, strict=True):
+                array[again] = solved
+
+    def _march(
+        self,
+        mooring: Mooring,
+        current: tuple[Floats, ...],
+        rows: Results,
+        endings: Integers,
+        room: int,
+        starts: Floats | None,
+    ) -> Floats:
+        """Solve profiles from known starts, or first find these, and return the starts."""
         line, water = mooring.line, self.water
         depth, *parts = current
         on = solving.levels_for(depth.shape[1], water)
@@ -279,29 +313,18 @@ class Batch:
         # a profile without current is told apart from the others
         problem = problem._replace(limits=problem.limits._replace(at_rest=False))
         search, referee = search_of(problem, True), referee_of(line, water, 0.0, True)
-        first = self._starts is None
-        if not first:
-            known: Any = problem.starts
-            known[:] = self._starts
+        found: Any = problem.starts
+        if starts is not None:
+            found[:] = starts
         pieces = mooring.file.pieces[:-1]
         paper = ProfileArrays(
             on=on,
             may_lie=np.array([one.component.kind == "chain" for one in pieces], np.int64),
         )
         find = by_address(find_asked, AskedSearch(search, referee))
-        given = (find, search, referee, paper, first, depth, *parts, rows, endings)
+        given = (find, search, referee, paper, starts is None, depth, *parts, rows, endings)
         outcome(solving.solve_rows, True, *given)
-        if first:
-            vars(self).update(_starts=problem.starts)
-        again = np.flatnonzero(endings == LACKS_ROOM)
-        if again.size:
-            mine = depth if len(depth) == 1 else depth[again]
-            found, ends = Results(*(array[again] for array in rows)), endings[again]
-            few = (mine, *(np.ascontiguousarray(part[again]) for part in parts))
-            self._solve_rows(mooring, few, found, ends, MORE_ROOM * room)
-            endings[again] = ends
-            for array, solved in zip(rows, found, strict=True):
-                array[again] = solved
+        return np.asarray(found)
 
 
 def processors() -> int:

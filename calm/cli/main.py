@@ -38,8 +38,7 @@ _EPILOGUE = """Examples:
   calm run --help
 
 Exit codes: 0 done, 1 a check found something, 2 bad input or usage,
-3 no equilibrium, 70 internal error, 75 a batch incomplete that the same command
-finishes, 130 interrupted."""
+3 no equilibrium, 70 internal error, 130 interrupted."""
 
 _SELDOM = 100_000
 """New objects after which unused circles of them are looked for. Python's own 700 cost a command a

@@ -38,14 +38,12 @@ def motion(
     hold_out: str | None = None,
     cross_validate: bool = False,
     correct: str | None = None,
-    judge: str = "",
     prior: Path | None = None,
     sea_level: Path | None = None,
     flags: str = "1,2",
     gap: str = "2 h",
     declination: options.Declination = None,
     onto: Path | None = None,
-    replace_depth: Annotated[bool, Parameter(name="--replace")] = False,
     json: OutputPath = None,
     report: Path | None = None,
     workers: options.Threads = None,
@@ -61,16 +59,13 @@ def motion(
     label and placed where the line has it. Without currents, they are inferred
     from the pressures of two or more sensors.
 
-    However a run is interrupted, the same command resumes it; the exit code is 75
-    until everything is solved.
-
     Parameters
     ----------
     pressures
         Pressures of sensors on the line, one file or more: NetCDF or CSV with their
         labels, or one sensor each as LABEL=FILE, in RODB or Sea-Bird's .cnv too.
     output
-        The result: a .nc file or a .zarr folder.
+        The result, .nc.
     currents
         Records of the current, one or more: NetCDF, zarr or CSV; one of a single meter
         may be LABEL=FILE.
@@ -87,9 +82,6 @@ def motion(
         What to correct where a sensor is found wrong, separated by commas: clock,
         gain, offset, drift; air, where pressures are absolute. The history of the
         output says what was corrected.
-    judge
-        Label of a suspicious sensor: it is hidden as with --hold-out, and whether its
-        pressures fit the line is said, with the odds: yes, no, or cannot tell.
     prior
         A record of currents near the mooring, of any time, such as a hindcast: without
         --currents the shapes of its profiles are taken, not their strength.
@@ -105,8 +97,6 @@ def motion(
         several instruments, `DEPTH` of one), and the result itself is written
         beside it, with a name ending in .motion.nc. Found by label, serial
         number or nominal depth.
-    replace_depth
-        Replace depths that files of `--onto` already have, in the copy.
     report
         Write a page and a PDF, motion.html and motion.pdf, in this folder.
     json
@@ -120,7 +110,8 @@ def motion(
       calm motion mooring.yaml --pressures two.csv -o depths.nc
     """
 
-    from calm.batch import finished, profiles, work
+    from calm.batch import finished, profiles
+    from calm.batch.compiling import compile_solver
     from calm.case import Tow
     from calm.case.net import load_line
     from calm.motion.instrument_file import read_instruments
@@ -138,19 +129,16 @@ def motion(
     currents = currents or []
     files = [split_label(text)[1] for text in (*currents, *pressures)]
     files += [path for path in (sea_level, onto) if path is not None]
-    check_output(output, file, *files, *filter(None, [prior]))
-    copy = output
+    inputs, copy = [file, *files, *filter(None, [prior])], output
+    if onto is not None and onto.is_dir():
+        check_folder(output)
+        if output.resolve() == onto.resolve():
+            raise UsageError(f"{output} is an input; it is kept")
+    else:
+        check_output(output, *inputs)
     if onto is not None:
-        if onto.is_dir():
-            check_folder(output)
-            if output.resolve() == onto.resolve():
-                raise UsageError(f"{output} is an input; it is kept")
-        elif output.suffix != ".nc":
-            raise UsageError(f"cannot write {output}: the name of a copy must end in .nc")
         output = output.with_suffix(".motion.nc")
-        check_output(output, file, *files)
-    elif replace_depth:
-        raise UsageError("--replace needs --onto")
+        check_output(output, *inputs)
     mooring = load_line(file, environment, catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm motion is for moorings")
@@ -160,28 +148,24 @@ def motion(
     apart = options.span_of("--gap", gap, (0.0, _LONGEST_GAP), "0 and three years")
     instruments = None
     if onto is not None:
-        instruments, matched = read_instruments(onto, places_of(mooring), replacing=replace_depth)
+        instruments, matched = read_instruments(onto, places_of(mooring))
         for line in matched:
             narrate(line)
 
     recovery = RecoveredMooring(
         mooring, pressures, currents, match, _separated(fit), _separated(hold_out),
-        cross_validate, _separated(correct), judge, sea_level, flags, apart, turned, prior,
+        cross_validate, _separated(correct), sea_level, flags, apart, turned, prior,
     )  # fmt: skip
     for note in recovery.notes:
         narrate(note)
     teller = ProgressTeller()
-    with stopped_by_a_signal() as stop:
-        work.compile_solver(profiles.Batch(mooring), teller.note)
+    with stopped_by_a_signal():
+        compile_solver(profiles.Batch(mooring), teller.note)
         try:
-            outcome = recovery.estimate(
-                output, workers=workers, progress=teller, tell=teller.note, stop=stop
-            )
+            counts = recovery.estimate(output, workers=workers, progress=teller, tell=teller.note)
         finally:
             teller.clear()
-        code = ended(outcome, output, len(recovery.measured.time))
-        if not outcome.done:
-            return code
+        code = ended(counts, output)
         with finished.open_result(output) as result, finished.readable(output):
             study = recovery.study(result, narrate, workers)
             series = series_of(study, recovery.measured)
@@ -301,8 +285,6 @@ def grid(
         if step is None
         else options.span_of("--step", step, (1.0, 366 * 86_400.0), "a second and a year")
     )
-    if output.suffix != ".nc":
-        raise UsageError(f"cannot write {output}: its name must end in .nc")
     files = files_given(values)
     check_output(output, depths, *(path for _, path in files))
     if report is not None:

@@ -76,13 +76,12 @@ _HEIGHT = 6.5  # inches
 def draw_shape(dataset: xr.Dataset, time: str | np.datetime64) -> Figure:
     """Elevation and plan of the line in the profile nearest to a time.
 
-    The line is drawn through the nodes of a result that has them (`--shape`), else straight from
-    the upper end of one component to that of the next. The elevation is in the vertical plane of
-    the anchor and the top. UsageError: the profile has no equilibrium.
+    The line is drawn straight from the upper end of one component to that of the next. The
+    elevation is in the vertical plane of the anchor and the top. UsageError: the profile has no
+    equilibrium.
     """
     row = dataset.sel(time=np.datetime64(time), method="nearest")
-    prefix, end = ("shape_", "") if "shape_depth" in row else ("", "_top")
-    names = (f"{prefix}{name}{end}" for name in ("depth", "x", "y"))
+    names = ("depth_top", "x_top", "y_top")
     depth, x, y = (np.asarray(row[name].values, np.float64) for name in names)
     moment = when(row["time"].values)
     if np.isnan(depth).any():

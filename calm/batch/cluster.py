@@ -1,0 +1,86 @@
+"""The blocks of a batch on the workers of a dask scheduler, on this machine or on many."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator
+from functools import lru_cache
+
+from calm.batch.blocks import AHEAD, BlockTask, Promise, SolvedBlock, in_order, solve_block
+from calm.batch.profiles import Batch
+from calm.case import Mooring
+from calm.case.net import Net
+from calm.errors import UsageError
+from calm.version import __version__
+
+PATIENCE = "20s"
+"""How long the scheduler may take to answer."""
+
+
+def on_cluster(
+    address: str,
+    mooring: Mooring | Net,
+    tasks: Iterator[BlockTask],
+    tell: Callable[[str], None],
+) -> Generator[SolvedBlock]:
+    """The blocks solved, in their order; those of a worker that is lost are solved by another.
+
+    Workers may come and go; where there is none yet, the first is waited for.
+
+    Parameters
+    ----------
+    address : of the scheduler, such as ``tcp://10.0.0.1:8786``
+    tell : called when there is no worker
+
+    Raises
+    ------
+    UsageError
+        `distributed` is not installed, no scheduler answers, CALM is missing there, or the
+        scheduler or a block's workers, time and again, are lost.
+    """
+    try:
+        from distributed import CancelledError, Client, KilledWorker
+    except ImportError:
+        raise UsageError(
+            "--scheduler needs dask: pip install 'calm-mooring[cluster]', here, for the scheduler "
+            "and on the workers"
+        ) from None
+    try:
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise UsageError(f"no scheduler answers at {address}: {error}") from None
+
+    def submit(task: BlockTask) -> Promise[SolvedBlock]:
+        # a block goes with its task, so that it can be solved again wherever that is
+        promise: Promise[SolvedBlock] = client.submit(
+            solve_there, mooring, task, pure=False, retries=3
+        )
+        return promise
+
+    def ahead() -> int:
+        threads: dict[str, int] = client.nthreads()
+        return AHEAD * sum(threads.values())
+
+    with client:
+        if not client.nthreads():
+            tell(f"the scheduler at {address} has no worker yet: waiting for the first")
+        try:
+            yield from in_order(submit, tasks, ahead)
+        except (CancelledError, KilledWorker, OSError) as error:
+            raise UsageError(f"the scheduler or its workers were lost: {error}") from None
+        except (ImportError, AttributeError, RuntimeError) as error:
+            # what dask makes of modules that are not there
+            raise UsageError(
+                f"the scheduler or a worker cannot take the work: {error}; "
+                f"calm-mooring {__version__} is needed there too"
+            ) from None
+
+
+def solve_there(mooring: Mooring | Net, task: BlockTask) -> SolvedBlock:
+    """Solve a block: the work of one worker."""
+    return solve_block(_ready(mooring), task)
+
+
+@lru_cache(maxsize=2)
+def _ready(mooring: Mooring | Net) -> Batch:
+    """Return the same for every block: the mooring comes anew with each, and is long in making."""
+    return Batch(mooring)
