@@ -1,4 +1,4 @@
-"""Blocks of times, solved in threads and written one after another; and how far that is."""
+"""Solve blocks of times in threads, and write the blocks one after another."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from calm.dataset.netcdf import Chunks, ResultLayout, packed, write_netcdf
 from calm.records.record import Levels
 
 AHEAD = 2
-"""Blocks that are under way for each worker: no more are in memory."""
+"""Blocks in progress for each worker. This bounds the memory of a batch."""
 
 Task = TypeVar("Task")
 Done = TypeVar("Done", covariant=True)
@@ -27,12 +27,12 @@ Done = TypeVar("Done", covariant=True)
 
 @dataclass(frozen=True)
 class Progress:
-    """Count how far a batch is, in profiles.
+    """Count the profiles that a batch has solved.
 
     Attributes
     ----------
-    done, total : those solved, and all
-    endings : how those done ended
+    done, total : solved profiles, and all profiles
+    endings : number of solved profiles by ending
     """
 
     done: int
@@ -41,14 +41,14 @@ class Progress:
 
 
 class SolvedBlock(NamedTuple):
-    """A block as it is written, and the statuses (n,) of its profiles."""
+    """Hold a solved block: its chunks for the file, and the status (n,) of each profile."""
 
     status: NDArray[np.int8]
     chunks: Chunks
 
 
 class BlockTask(NamedTuple):
-    """The profiles of a block, and how they are laid out in the result.
+    """Hold the profiles of a block and the layout of their result.
 
     Attributes
     ----------
@@ -72,22 +72,22 @@ def solve_block(batch: Batch, task: BlockTask) -> SolvedBlock:
 
 
 class Promise(Protocol[Done]):
-    """What is under way, in a thread or on another machine."""
+    """Stand for work in progress, in a thread or on another machine."""
 
     def result(self) -> Done:
-        """Wait for it."""
+        """Wait for the work, and return its result."""
         ...
 
 
 def in_order(
     submit: Callable[[Task], Promise[Done]], tasks: Iterable[Task], ahead: Callable[[], int]
 ) -> Iterator[Done]:
-    """What comes of tasks, in their order.
+    """Yield the results of tasks, in the order of the tasks.
 
     Parameters
     ----------
-    submit : begins a task
-    ahead : how many may be under way
+    submit : starts a task
+    ahead : returns the number of tasks that may be in progress
     """
     under_way: deque[Promise[Done]] = deque()
     for task in tasks:
@@ -101,11 +101,13 @@ def in_order(
 def in_threads(
     solve: Callable[[Task], Done], tasks: Iterable[Task], workers: int | None
 ) -> Generator[Done]:
-    """What is solved of tasks, in their order; those under way are ended before it is left.
+    """Solve tasks in threads, and yield the results in the order of the tasks.
+
+    A consumer that stops early cancels the waiting tasks and waits for the running ones.
 
     Parameters
     ----------
-    workers : threads; one for each processor that may be used where not given
+    workers : number of threads; by default one for each processor
     """
     count = workers or processors()
     pool = ThreadPoolExecutor(count)
@@ -123,7 +125,7 @@ def write_solved(
     progress: Callable[[Progress], None] | None = None,
     last: Callable[[], Mapping[str, str]] = dict,
 ) -> dict[str, int]:
-    """Write blocks as they are solved, and return how many profiles ended with each status.
+    """Write solved blocks to a file, and return the number of profiles with each status.
 
     Parameters
     ----------

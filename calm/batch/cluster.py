@@ -1,4 +1,4 @@
-"""The blocks of a batch on the workers of a dask scheduler, on this machine or on many."""
+"""Solve the blocks of a batch on the workers of a dask scheduler, on one machine or many."""
 
 from __future__ import annotations
 
@@ -22,20 +22,21 @@ def on_cluster(
     tasks: Iterator[BlockTask],
     tell: Callable[[str], None],
 ) -> Generator[SolvedBlock]:
-    """The blocks solved, in their order; those of a worker that is lost are solved by another.
+    """Solve blocks on the workers of a scheduler, and yield the results in order.
 
-    Workers may come and go; where there is none yet, the first is waited for.
+    Workers may join and leave. Another worker solves the blocks of a lost one, and the call waits
+    for the first worker.
 
     Parameters
     ----------
     address : of the scheduler, such as ``tcp://10.0.0.1:8786``
-    tell : called when there is no worker
+    tell : called with a message when the scheduler has no worker
 
     Raises
     ------
     UsageError
-        `distributed` is not installed, no scheduler answers, CALM is missing there, or the
-        scheduler or a block's workers, time and again, are lost.
+        `distributed` is not installed; no scheduler answers; the workers have no CALM; the
+        scheduler is lost, or one block loses its worker again and again.
     """
     try:
         from distributed import CancelledError, Client, KilledWorker
@@ -50,7 +51,7 @@ def on_cluster(
         raise UsageError(f"no scheduler answers at {address}: {error}") from None
 
     def submit(task: BlockTask) -> Promise[SolvedBlock]:
-        # a block goes with its task, so that it can be solved again wherever that is
+        # the task carries its block, so that any worker can solve it again
         promise: Promise[SolvedBlock] = client.submit(
             solve_there, mooring, task, pure=False, retries=3
         )
@@ -76,11 +77,11 @@ def on_cluster(
 
 
 def solve_there(mooring: Mooring | Net, task: BlockTask) -> SolvedBlock:
-    """Solve a block: the work of one worker."""
+    """Solve a block on a worker."""
     return solve_block(_ready(mooring), task)
 
 
 @lru_cache(maxsize=2)
 def _ready(mooring: Mooring | Net) -> Batch:
-    """Return the same for every block: the mooring comes anew with each, and is long in making."""
+    """Return the batch of a mooring, which every block brings: a batch is slow to make."""
     return Batch(mooring)

@@ -1,4 +1,4 @@
-"""Compiling the solver of many profiles before the first of them, and reporting it."""
+"""Compile the solver of many profiles before the first profile, and report it."""
 
 from collections.abc import Callable
 from time import perf_counter
@@ -34,7 +34,7 @@ class _Notice(event.Listener):
 
 
 def compile_solver(batch: Batch, report: Callable[[str], None]) -> None:
-    """Let the solver be compiled, or fetched, and report when it has to be compiled."""
+    """Compile the solver or load it from the cache; report only when it is compiled."""
     notice, started = _Notice(report), perf_counter()
     with event.install_listener("numba:compile", notice):
         batch.solve(np.zeros((0, 1)), np.zeros((0, 1)), np.zeros(1), workers=1)

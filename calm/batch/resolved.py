@@ -1,4 +1,4 @@
-"""All that the figures of a result follow from: the whole input as JSON, and the hash of it."""
+"""Describe the complete input of a result as JSON, and hash it with the measured values."""
 
 import hashlib
 import json
@@ -16,7 +16,7 @@ from calm.dataset.netcdf import Attributes
 from calm.version import __version__
 
 RESOLVED, HASH = "input_resolved", "input_sha256"
-"""Attributes of a result: its input, and the hash of that and of all that was measured."""
+"""Attributes of a result: its input as JSON, and the SHA-256 of the input and the measurements."""
 
 _NO_MATTER = frozenset(
     {"path", "line", "column", "checks", "notices", "variants", "description", "current"}
@@ -26,32 +26,32 @@ _NO_MATTER = frozenset(
 
 
 class InputHash:
-    """The SHA-256 of an input: of its text, then of all that was measured."""
+    """Compute the SHA-256 of an input: of its text, then of the measured values."""
 
     def __init__(self, text: str) -> None:
         self._digest = hashlib.sha256(text.encode("utf-8", "surrogateescape"))
 
     def add(self, arrays: Iterable[NDArray[Any] | None]) -> None:
-        """Take in what was measured."""
+        """Add measured values to the hash."""
         for array in arrays:
             if array is not None:
                 self._digest.update(str(array.shape).encode())
                 self._digest.update(array.tobytes())
 
     def attributes(self) -> dict[str, str]:
-        """Return the attribute of a result that holds the hash."""
+        """Return the attribute of a result with the hash."""
         return {HASH: self._digest.hexdigest()}
 
 
 def resolved_input(
     mooring: Mooring | Net, time: NDArray[np.datetime64], options: Mapping[str, Any]
 ) -> str:
-    """Return the input of a result as JSON, with components of the catalogue and defaults.
+    """Return the input of a result as JSON, including catalogue components and defaults.
 
     Parameters
     ----------
     time : (n,) of the record
-    options : of the command that change figures
+    options : options of the command that change figures
     """
     first, last = (str(one.astype("datetime64[s]")) for one in (time[0], time[-1]))
     known = {
@@ -64,7 +64,7 @@ def resolved_input(
 
 
 def with_input(text: str) -> Attributes:
-    """Return the attributes of a result with an input, and with room for its hash."""
+    """Return the attributes of an input; the hash keeps its length when it is completed."""
     return {RESOLVED: text, **InputHash(text).attributes()}
 
 

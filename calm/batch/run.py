@@ -1,4 +1,4 @@
-"""Every profile of a record, in one pass: solved in blocks, written as one file or not at all."""
+"""Solve every profile of a record in blocks, and write one file, whole or not at all."""
 
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -18,7 +18,7 @@ from calm.errors import UsageError
 from calm.records.record import Record
 
 BLOCK, BLOCK_OF_NET = 4096, 64
-"""Profiles to a block, whose solving takes a moment."""
+"""Profiles in a block: one thread solves them in less than a second, usually."""
 
 
 def run_batch(
@@ -32,28 +32,32 @@ def run_batch(
     progress: Callable[[Progress], None] | None = None,
     tell: Callable[[str], None] = lambda _: None,
 ) -> dict[str, int]:
-    """Solve a mooring in every profile of a record, write the result, and return how many profiles
-    ended with each status that occurs.
+    """Solve a mooring in every profile of a record, and write the result.
 
-    The result has its name only once it is whole; whatever ends the work before leaves none.
+    The file gets its name when it is complete. If the work ends earlier, no file is left, and an
+    older result stays.
 
     Parameters
     ----------
-    output : a .nc file; one that is there is replaced
-    workers : threads; one for each processor that may be used where not given
-    block : profiles solved and written at a time, which are the chunks of the result; as many as
-        take a moment where not given
-    scheduler : address of a dask scheduler, whose workers then solve the blocks
+    output : a .nc file; an existing one is replaced
+    workers : number of threads; by default one for each processor
+    block : profiles in a block, which is a chunk of the result; by default `BLOCK`, or
+        `BLOCK_OF_NET`
+    scheduler : address of a dask scheduler whose workers solve the blocks
     progress : called before the first block, and after each
-    tell : called with what is worth knowing meanwhile
+    tell : called with messages for the user
+
+    Returns
+    -------
+    The number of profiles with each status that occurs.
 
     Raises
     ------
     UsageError
-        The record has no profile; the result cannot be written; there is nobody at the address of
-        the scheduler, or it was lost.
+        The record has no profile; the result cannot be written; no scheduler answers, or it is
+        lost.
     NoEquilibrium
-        Where a piece is to be cut to fit, and no length does.
+        A piece is to be cut to fit, and no length does.
     """
     if record.count == 0:
         raise UsageError("the record has no profile in the period asked for")

@@ -29,7 +29,7 @@ LEVEL = 1
 """Of the compression; more takes twice the time for 3 % less."""
 
 Chunks = Mapping[str, bytes]
-"""The bytes of a block of each variable that goes with time, by its name."""
+"""The bytes of one block, by the names of the variables that go with time."""
 
 _OF_A_CHUNK, _OF_A_VARIABLE = 512, 65_536  # bytes at most that HDF5 needs to keep account of them
 _LONG = 4096  # all attributes of a variable have 64 kB unless they are strings
@@ -51,12 +51,12 @@ def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
 
 
 def packed(layout: ResultLayout, block: int, arrays: Mapping[str, NDArray[Any]]) -> Chunks:
-    """Return the values of a block as HDF5 keeps them: a whole chunk each, shuffled and deflated.
+    """Return a block as HDF5 stores it: one chunk for each variable, shuffled and deflated.
 
     Parameters
     ----------
-    block : times to a chunk
-    arrays : (n, ...) of each variable that goes with time; n is less than a block in the last one
+    block : times in a chunk
+    arrays : (n, ...) values of each variable that goes with time; the last block may be shorter
     """
     chunks = {}
     for variable in layout.in_blocks:
@@ -76,19 +76,19 @@ def write_netcdf(
     path: Path,
     last: Callable[[], Mapping[str, str]] = dict,
 ) -> None:
-    """Write a file block by block, in the memory of one; it has its name only once it is whole.
+    """Write a file block by block; it gets its name when it is complete.
 
     Parameters
     ----------
-    block : times to a block
-    blocks : one after another, as `packed` gives them
-    last : gives attributes that are known only after the last block; those of the layout have room
-        for them, as they are as long
+    block : times in a block
+    blocks : the results of `packed`, in order; one is in memory at a time
+    last : returns attributes that are known after the last block; the layout has them already,
+        with values of the same length
 
     Raises
     ------
     UsageError
-        The system refuses, e.g. because the disk is full; what was there is untouched.
+        The system refuses, e.g. because the disk is full; an older file stays.
     """
     import h5py
 

@@ -1,4 +1,4 @@
-"""Correction of a mooring, in blocks of times."""
+"""Estimate the depths of a mooring in blocks of times, and lay out the result."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ _OF_DOCUMENT = {
 
 
 def solve_times(task: Task, layout: ResultLayout, start: int) -> SolvedBlock:
-    """Estimate the times of a block, from one on."""
+    """Estimate the times of the block that begins at `start`."""
     stop = start + BLOCK
     profiles, more = task.columns(start, stop)
     flags = depth_flags(task.measured.at(slice(start, stop)), profiles)

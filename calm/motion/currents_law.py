@@ -1,4 +1,4 @@
-"""Currents as they are read, the line near them, and the law of speeds that nobody measured."""
+"""Currents as read, the depths of the line near them, and the prior law of unmeasured speeds."""
 
 from __future__ import annotations
 

@@ -281,3 +281,10 @@ def test_no_record_at_all(tmp_path: Path, name: str) -> None:
     (tmp_path / "folder").mkdir()
     with pytest.raises(InputError, match=r"no such file|is a folder, and not a zarr store"):
         opened(tmp_path / name)
+
+
+def test_zarr_that_is_not_installed_is_named(tmp_path: Path, monkeypatch) -> None:
+    path = write("glorys", tmp_path, "zarr")
+    monkeypatch.setattr("calm.records.cf_files.find_spec", lambda name: None)
+    with pytest.raises(InputError, match=r"glorys.zarr: is zarr; to read it: pip install"):
+        opened(path)
