@@ -20,7 +20,8 @@ from calm.cli.batch import batch
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import check
-from calm.cli.motion import grid, motion
+from calm.cli.grid import grid
+from calm.cli.motion import motion
 from calm.cli.outputs import ExitCode, narrate, prepare, show
 from calm.cli.run import run
 from calm.cli.tow import strumming, tow
