@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.profiles import Profiles
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring
+from calm.case.columns import terms
 from calm.case.net import Net
 from calm.dataset import netcdf
 from calm.dataset.netcdf import CLAMPS, ResultLayout, Variable, labels, numbers, station
@@ -18,7 +20,8 @@ from calm.files.legs import leg_numbers
 from calm.files.mooring_file import clamps_down
 from calm.records.record import Record
 
-_ALONG = {"component": netcdf.OF_COMPONENT, "clamp": netcdf.OF_CLAMP}
+_BESIDE = {"component": "component_label depth_top", "clamp": "clamp_label clamp_depth"}
+"""Label and depth of what goes along a dimension, the coordinates of its variables."""
 _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 
 
@@ -49,13 +52,14 @@ def layout_of(mooring: Mooring | Net, record: Record) -> ResultLayout:
     if clamps:
         sizes["clamp"] = len(clamps)
         variables.append(labels("clamp_label", "clamp", clamps, CLAMPS))
-    for dimension, quantities in _ALONG.items():
+    entered = Profiles.columns()
+    for dimension, beside in _BESIDE.items():
         if dimension in sizes:
-            beside = f"{dimension}_label {next(iter(quantities))}{where}"
-            variables += numbers(("time", dimension), quantities, beside)
+            columns = terms(entered[dimension])
+            variables += numbers(("time", dimension), columns, f"{beside}{where}")
     legs = mooring.file.legs
     along = ("time", "leg") if legs else ("time",)
-    variables += numbers(along, netcdf.OF_ENDS, where.strip())
+    variables += numbers(along, terms(entered[""]), where.strip())
     if legs:
         sizes["leg"], own = len(legs), leg_numbers(mooring.file)
         of_clamps = [own[piece.index] for piece in pieces for _ in piece.clamps]
