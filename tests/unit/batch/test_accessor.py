@@ -76,9 +76,9 @@ def test_a_result_is_opened_without_loading_it(dataset, tmp_path):
 
 
 def test_the_shape_is_drawn_at_the_nearest_time(dataset):
-    figure = dataset.calm.plot_shape(time="2001-01-01T01:10")
-    assert "2001-01-01 01:00" in figure.get_suptitle()
-    assert figure.axes[0].lines[1].get_ydata().tolist() == [101.0, 111.0, 121.0, 131.0, 141.0]
+    axes = dataset.calm.plot_shape(time="2001-01-01T01:10")
+    assert "2001-01-01 01:00" in axes.get_title()
+    assert axes.lines[1].get_ydata().tolist() == [101.0, 111.0, 121.0, 131.0, 141.0]
 
 
 def test_no_shape_of_a_profile_without_equilibrium():
