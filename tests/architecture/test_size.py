@@ -7,7 +7,7 @@ from pathlib import Path
 import grimp
 
 PACKAGE = Path(__file__).resolve().parents[2] / "calm"
-MOST_CYCLES, MOST_MODULES_IN_CYCLES = 8, 50
+MOST_CYCLES, MOST_MODULES_IN_CYCLES = 5, 22
 """To be lowered whenever a cycle is broken, never raised."""
 
 
