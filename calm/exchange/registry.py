@@ -1,8 +1,7 @@
 """The register of file formats: how each is recognised, read and written.
 
-CALM's own formats and those that other packages add stand in the same register, by name. A format
-is a module that calls `register_format` when it is imported; it is imported when it is first asked
-for. Other packages name their module under the entry point ``calm.formats``.
+A format is a module that calls `register_format`. The module is imported when the format is first
+used. Other packages add formats by the entry point ``calm.formats``, which names their modules.
 """
 
 from __future__ import annotations
@@ -38,7 +37,14 @@ the last that reads, since it takes any text in columns."""
 
 @dataclass(frozen=True)
 class Exported:
-    """Hold the content of a file for another program, what it cannot hold, and files beside it."""
+    """A file for another program.
+
+    Attributes
+    ----------
+    content : of the file
+    lost : features of the design that the format cannot represent
+    beside : content of further files, by their names in the same folder
+    """
 
     content: bytes
     lost: tuple[str, ...]
@@ -116,7 +122,7 @@ def file_format(name: str) -> FileFormat:
                 f"the format `{name}` of {module} cannot be loaded ({reason})"
             ) from error
         if name not in _registered:
-            raise CalmError(f"{module} registers no format `{name}`, which its entry point names")
+            raise CalmError(f"{module} registers no format `{name}`")
     return _registered[name]
 
 
