@@ -18,8 +18,8 @@ from calm.case.net import Net
 from calm.dataset import netcdf
 from calm.dataset.netcdf import CLAMPS, OF_CLAMP, ResultLayout, Variable, labels, numbers, station
 from calm.files import Clamp
-from calm.files.legs import leg_numbers
-from calm.files.mooring_file import clamps_down
+from calm.files.mooring_file import leg_numbers
+from calm.files.pieces import clamps_down
 from calm.files.rigid import Body
 from calm.physics.line import Floats
 from calm.records.record import Record

@@ -22,7 +22,7 @@ from calm.case.measure import clamps_of, components_of
 from calm.case.net import Net
 from calm.dataset import netcdf
 from calm.files import CurrentTable
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import Floats, Integers, Water
 from calm.solve import Status

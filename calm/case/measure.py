@@ -15,7 +15,7 @@ from calm.case.result_tables import ClampRow, Clamps, ComponentRow, Components, 
 from calm.case.strumming import strumming_of
 from calm.case.warnings import warnings_of
 from calm.files import Clamp, Piece
-from calm.files.mooring_file import clamps_down, clamps_in, parts_of
+from calm.files.pieces import clamps_down, clamps_in, parts_of
 from calm.physics.line import Floats, Water
 from calm.physics.seabed import required_weight
 from calm.physics.seawater import REFERENCE_DENSITY

@@ -16,7 +16,7 @@ import numpy as np
 from calm.case.result_tables import Clamps, Components, Shape
 from calm.case.strumming import Strumming, StrummingBand, band_of
 from calm.files import Clamp, MooringFile, Piece
-from calm.files.legs import leg_numbers
+from calm.files.mooring_file import leg_numbers
 from calm.physics.line import Floats
 from calm.solve.solution import OtherEquilibrium
 

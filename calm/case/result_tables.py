@@ -13,7 +13,7 @@ import numpy as np
 
 from calm.errors import unknown
 from calm.files import Clamp, Piece, Place
-from calm.files.mooring_file import STAND_IN
+from calm.files.pieces import STAND_IN
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES
 

@@ -11,7 +11,7 @@ from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Anchor, Component, Flexible, Outline
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.logbook import MOST_PIECES
-from calm.files.mooring_file import Clamp, Piece, Place, placed
+from calm.files.pieces import Clamp, Piece, Place, placed
 from calm.files.rigid import Profiler, Rigid
 from calm.files.yaml_document import SourceMapping, unknown_key, validate
 from calm.units import QuantityError

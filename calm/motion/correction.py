@@ -21,7 +21,7 @@ from calm.batch.work_store import Store
 from calm.case import Mooring
 from calm.dataset.discovery import coverage, with_flags, written
 from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
 from calm.motion.line_response import Forward, LineResponse, forwards_of, labels_of, points

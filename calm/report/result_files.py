@@ -14,7 +14,7 @@ from calm.case.result import AnyResult, NetResult
 from calm.case.result_tables import ClampRow, ComponentRow, Components, rows_down
 from calm.dataset import netcdf
 from calm.dataset.netcdf import CLAMPS, OF_CLAMP, OF_COMPONENT, OF_ENDS, Attributes, labels, numbers
-from calm.files.legs import leg_numbers
+from calm.files.mooring_file import leg_numbers
 from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
 

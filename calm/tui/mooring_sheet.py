@@ -11,7 +11,7 @@ from calm.checks.finding import State
 from calm.files import Clamp, Flexible, MooringFile, Piece, Place
 from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, EditError, Value
-from calm.files.mooring_file import parts_of
+from calm.files.pieces import parts_of
 from calm.files.rule_texts import RULES
 from calm.files.yaml_document import Location
 from calm.tui.checking import Reading, anything, day, moment, quantity
