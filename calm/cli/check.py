@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from calm.case import Mooring, uncertain
     from calm.case.net import Net
     from calm.checks.assessment import Assessment, MooringInEnvironment
-    from calm.report.blocks import Section
+    from calm.report.check_report import CheckedSection
 
 
 def check(
@@ -150,7 +150,7 @@ def _read(
 class DrawnSection(NamedTuple):
     """A mooring's part of the report: what a summary takes of it, and what each form shows."""
 
-    section: Section
+    section: CheckedSection
     html: str
     pdf: str
 
@@ -162,7 +162,7 @@ class CheckedMooring(NamedTuple):
     drawn: DrawnSection | None
 
 
-def _drawn(section: Section, number: int) -> DrawnSection:
+def _drawn(section: CheckedSection, number: int) -> DrawnSection:
     """The `number`th section of a report."""
     from calm.report.folder import pdf_leaf
     from calm.report.html import leaf

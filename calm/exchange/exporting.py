@@ -10,7 +10,13 @@ import numpy as np
 from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.net import Net, load
 from calm.errors import NoEquilibrium, UsageError, unknown
-from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow, Levels
+from calm.exchange.exported_parts import (
+    ExportedDesign,
+    ExportedLine,
+    ExportedPart,
+    ExportedTow,
+    Levels,
+)
 from calm.exchange.registry import Exported, FileFormat, file_format, file_formats
 from calm.physics.line import Water
 from calm.physics.seawater import REFERENCE_DENSITY
@@ -40,15 +46,16 @@ def export_file(
     assert chosen.write is not None
     read = load(path, environment, list(catalogs))
     if not isinstance(read, Net):
-        return chosen.write([_exported_line(read, read.solve)])
+        line = _exported_line(read, read.solve)
+        return chosen.write(ExportedDesign(line.name, (line,)))
     if not chosen.writes_nets:
         others = ", ".join(f"`--to {one.name}`" for one in file_formats() if one.writes_nets)
         raise UsageError(f"{path} is a net of legs; {others} takes it, {to} single lines")
-    lines = []
-    for keys, line, leg in zip(read.file.legs, read.lines, read.solve().legs, strict=True):
-        lines.append(replace(_exported_line(line, partial(_known, leg)), ends=keys.ends))
-    lines[0] = replace(lines[0], name=read.file.name)
-    return chosen.write(lines)
+    legs = tuple(
+        replace(_exported_line(line, partial(_known, leg)), ends=keys.ends)
+        for keys, line, leg in zip(read.file.legs, read.lines, read.solve().legs, strict=True)
+    )
+    return chosen.write(ExportedDesign(read.file.name, legs))
 
 
 def _format_of(to: str) -> FileFormat:

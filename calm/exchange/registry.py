@@ -6,7 +6,7 @@ used. Other packages add formats by the entry point ``calm.formats``, which name
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import entry_points
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from calm.errors import CalmError
 
 if TYPE_CHECKING:
-    from calm.exchange.exported_parts import ExportedLine
+    from calm.exchange.exported_parts import ExportedDesign
     from calm.exchange.model import ImportedDesign, ImportOptions
 
 ENTRY_POINTS = "calm.formats"
@@ -57,8 +57,8 @@ Detect = Callable[[bytes], bool]
 Read = Callable[[Path, "ImportOptions"], "ImportedDesign"]
 """Read a file as a design; `calm.errors.refused` makes the error for a file that it cannot read."""
 
-Write = Callable[[Sequence["ExportedLine"]], Exported]
-"""Write a line, or the legs of a net, as a file of the format."""
+Write = Callable[["ExportedDesign"], Exported]
+"""Write a design as a file of the format."""
 
 
 @dataclass(frozen=True)
@@ -94,10 +94,10 @@ def register_format(
     name : for `--format` and `--to`; the name of the entry point, too
     detect : recognises a file by its first bytes; without it, `--format` must name the format
     read : makes a design of a file; None if the format is only written
-    write : makes a file of a line; None if the format is only read
+    write : makes a file of a design; None if the format is only read
     program : that the format belongs to, for messages; by default `name`
     takes_elements : whether `read` uses `ImportOptions.elements`, a library of elements
-    writes_nets : whether `write` takes the legs of a net; else it is given one line
+    writes_nets : whether `write` takes designs of several legs
     """
     if name in _registered:
         raise ValueError(f"there is a format `{name}` already")

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 from calm.errors import unknown
 from calm.files.components import Component
-from calm.files.logbook import NO_EQUIPMENT, Equipment
+from calm.files.item_keys import NO_EQUIPMENT, Equipment
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping
 

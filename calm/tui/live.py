@@ -23,7 +23,7 @@ from calm.checks.assessment import MooringInEnvironment, Situation
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.strength import strength
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
-from calm.files import MooringFile, Piece, Place, editing, read_mooring, yaml_document
+from calm.files import MooringFile, Piece, Place, editing, pieces, read_mooring, yaml_document
 from calm.quantities import show_in
 
 UNNAMED = "unnamed.yaml"

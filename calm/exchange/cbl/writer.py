@@ -1,12 +1,12 @@
 """Write a mooring or a tow as a problem of WHOI Cable, for its statics and its dynamics."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import atan2, degrees, hypot, pi, sqrt
 
 from calm.exchange.exported_parts import (
     AS_A_POINT,
+    ExportedDesign,
     ExportedLine,
     ExportedPart,
     PartLoad,
@@ -73,9 +73,9 @@ class _Problem:
         self.layout.append(f"    connector = {name}")
 
 
-def write_cbl(lines: Sequence[ExportedLine]) -> Exported:
+def write_cbl(exported: ExportedDesign) -> Exported:
     """Write a line as a problem."""
-    (design,) = lines
+    (design,) = exported.legs
     lost: list[str] = []
     if design.tow is not None:
         design = _along_the_heading(design, lost)

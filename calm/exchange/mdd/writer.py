@@ -2,11 +2,10 @@
 
 import io
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
-from calm.exchange.exported_parts import ExportedLine, ExportedPart
+from calm.exchange.exported_parts import ExportedDesign, ExportedLine, ExportedPart
 from calm.exchange.registry import Exported
 from calm.files import Chain, Cylinder, Sphere
 from calm.physics.seawater import REFERENCE_DENSITY
@@ -17,9 +16,9 @@ _LONGEST = 32  # characters of a name
 _LEAST_USED = 1e-3  # share of the buoyancy, for a float that hardly any is used of
 
 
-def write_mdd(lines: Sequence[ExportedLine]) -> Exported:
+def write_mdd(exported: ExportedDesign) -> Exported:
     """Write a line as a file of MATLAB 5."""
-    (design,) = lines
+    (design,) = exported.legs
     from scipy.io import savemat
 
     lost: list[str] = []

@@ -1,6 +1,5 @@
 """Write a mooring as an input file of MoorDyn 2, its points where they stand in equilibrium."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import groupby
 from math import pi, sqrt
@@ -9,6 +8,7 @@ from calm.errors import UsageError
 from calm.exchange.exported_parts import (
     AS_A_POINT,
     Coordinates,
+    ExportedDesign,
     ExportedLine,
     ExportedPart,
     PartLoad,
@@ -122,7 +122,7 @@ class _System:
         )
 
 
-def write_moordyn(lines: Sequence[ExportedLine]) -> Exported:
+def write_moordyn(exported: ExportedDesign) -> Exported:
     """Write a line, or the legs of a net, with the current in a file beside the input.
 
     Raises
@@ -132,8 +132,9 @@ def write_moordyn(lines: Sequence[ExportedLine]) -> Exported:
     NoEquilibrium
         There is none: its points have no places.
     """
+    lines = exported.legs
     deepest = max(lines, key=lambda line: line.depth)
-    first = replace(lines[0], depth=deepest.depth)
+    first = replace(lines[0], name=exported.name, depth=deepest.depth)
     if first.tow is not None:
         raise UsageError("a tow has no anchor; MoorDyn is given moorings alone")
     system = _System(first.mean_density, first.gravity)

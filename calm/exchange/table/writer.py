@@ -1,8 +1,6 @@
 """Write a line as a list in CSV: a row for each piece and each clamp."""
 
-from collections.abc import Sequence
-
-from calm.exchange.exported_parts import ExportedLine, ExportedPart
+from calm.exchange.exported_parts import ExportedDesign, ExportedPart
 from calm.exchange.registry import Exported
 from calm.records.delimited import table_csv
 
@@ -12,9 +10,9 @@ _HEADER = (
 )  # fmt: skip
 
 
-def write_list(lines: Sequence[ExportedLine]) -> Exported:
+def write_list(exported: ExportedDesign) -> Exported:
     """Write a line as a list in CSV."""
-    (design,) = lines
+    (design,) = exported.legs
     lost = ["the water", "hulls and wind: floats drag in full at the surface"]
     if design.tow is not None:
         lost.append("the speed of the ship: a list is a mooring's")
