@@ -5,7 +5,7 @@ from pathlib import Path
 
 from calm.case import Tow
 from calm.case.net import Net, load
-from calm.case.result import AnchorLoad, EndLoad
+from calm.case.result_tables import AnchorLoad, EndLoad
 from calm.errors import CalmError
 from calm.exchange import model
 from calm.exchange.design_writer import mooring_text
