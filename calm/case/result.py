@@ -81,7 +81,7 @@ class ResultForms:
     `iterations` counts marches, `segments` the cuts of the final one, `miss` is how far the end of
     a line, the worst of a net's, is from where it is held: in height, of a single line [m];
     `closure` the relative force residual recomputed from the final coordinates. `notebook_form`
-    makes HTML of a result, `netcdf_form` a file; the packages above set them.
+    makes HTML of a result, `netcdf_form` a file, `plot_form` draws it; the packages above set them.
     """
 
     name: str
@@ -96,12 +96,22 @@ class ResultForms:
 
     notebook_form: ClassVar[Callable[[Any], str] | None] = None
     netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
+    plot_form: ClassVar[Callable[[Any, Any], Any] | None] = None
 
     if TYPE_CHECKING:
 
         @property
         def components(self) -> Components:
             """Return the pieces."""
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the line from the side on axes of matplotlib, and return them.
+
+        Without `ax` the axes are those of a new figure. UsageError: matplotlib is not installed.
+        """
+        form = type(self).plot_form
+        assert form is not None, "a mooring is read by calm.load"
+        return form(self, ax)
 
     def to_pandas(self) -> Any:
         """Return the components as a pandas data frame."""
