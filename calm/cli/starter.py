@@ -4,7 +4,6 @@ import json
 import os
 import sys
 from importlib.util import find_spec
-from math import inf
 from pathlib import Path, PurePosixPath
 from typing import Annotated
 
@@ -176,7 +175,6 @@ def _open(name: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
 
 
 PORT = 8000
-IDLE = 120.0  # minutes
 
 _NO_TERMINAL = (
     "calm build needs a terminal and a keyboard; `calm build --serve` opens it in a "
@@ -195,8 +193,6 @@ def build(
     catalog: options.CatalogFiles = None,
     serve: bool = False,
     port: int = PORT,
-    allow_host: list[str] | None = None,
-    idle_timeout: float = IDLE,
 ) -> ExitCode:
     """Build or edit a mooring or a tow, and see it bend at every change.
 
@@ -217,11 +213,6 @@ def build(
     port
         Port of --serve, by default 8000. The address of the page is printed
         with its token; a tunnel may lead to it from any port.
-    allow_host
-        A host name under which a proxy forwards the page of --serve. Repeatable.
-    idle_timeout
-        Minutes without a key after which a page of --serve is closed and its
-        work kept; 0 for never.
 
     Examples
     --------
@@ -231,9 +222,7 @@ def build(
       calm build mooring.yaml --serve
     """
     if serve:
-        if not 0.0 <= idle_timeout < inf:
-            raise UsageError(f"--idle-timeout: {idle_timeout} is not a number of minutes from 0")
-        return _serve(file, environment, catalog or [], port, allow_host or [], 60.0 * idle_timeout)
+        return _serve(file, environment, catalog or [], port)
     # it draws and reads keys in a terminal, or in the browser that started it
     terminal = all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr))
     if not (terminal or os.environ.get("TEXTUAL_DRIVER")):
@@ -243,14 +232,7 @@ def build(
     return ExitCode(build(file, environment, catalog or []))
 
 
-def _serve(
-    file: Path | None,
-    environment: str | None,
-    catalogs: list[Path],
-    port: int,
-    hosts: list[str],
-    idle: float,
-) -> ExitCode:
+def _serve(file: Path | None, environment: str | None, catalogs: list[Path], port: int) -> ExitCode:
     if not 1 <= port <= 65535:
         raise UsageError(f"--port: {port} is not a port; give one from 1024 to 65535")
     if find_spec("textual_serve") is None:
@@ -264,5 +246,5 @@ def _serve(
         words += ["--environment", environment]
     for path in catalogs:
         words += ["--catalog", str(path.absolute())]
-    serve(words, port, narrate, hosts=hosts, idle=idle)
+    serve(words, port, narrate)
     return ExitCode.DONE

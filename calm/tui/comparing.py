@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from calm.errors import CalmError
-from calm.files.editing import Draft, WorkingFile
+from calm.files.editing import Draft
 from calm.tui import checking, line_screen
 from calm.tui.dialogs import Answer, LongText, Question, choose, enter, numbered
-from calm.tui.field import Asked
+from calm.tui.forms import Asked
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -30,64 +30,39 @@ _PAPERS = {"report": ("check", "--report"), "deck": ("deck", "--output")}
 
 
 class ComparingScreen(line_screen.LineScreen):
-    """The line and what it is compared with: what was saved, other files, changes that help.
+    """The line and what it is compared with: what was saved, and changes that help.
 
     All of it is judged in a thread; what comes of it is asked about or told.
     """
 
     def action_compare(self) -> None:
-        """Show what has changed since the file was saved."""
-        if self.settle():
-            if self.session.changed:
-                self._judge_beside(self.session.history.saved_text, None)
-            else:
-                self.pictures.put_beside(None)
-                self.tell("Nothing has changed since it was saved")
-
-    def action_compare_file(self) -> None:
-        """Ask for another file; draw its line beside this one, and show the differences."""
-
-        def take(texts: dict[str, str]) -> None:
-            if not texts["file"]:
-                self.pictures.put_beside(None)
-                return
-            file = Path(texts["file"])
-            try:
-                text = WorkingFile(file).read()
-            except (CalmError, OSError) as error:
-                self.tell(str(error), wrong=True)
-            else:
-                self._judge_beside(text, file)
-
-        if self.settle():
-            asked = [Asked("file", "File", placeholder="e.g. other.yaml")]
-            text = "Its line is drawn dashed beside this one; no name takes it away again."
-            enter(self.app, "Compare with another file", text, asked, take)
-
-    def _judge_beside(self, text: str, file: Path | None) -> None:
-        """Judge a text beside the line's: of another file, or of its own as it was saved."""
+        """Show what has changed since the file was saved, and draw the line as it was."""
+        if not self.settle():
+            return
+        if not self.session.changed:
+            self.pictures.put_beside(None)
+            self.tell("Nothing has changed since it was saved")
+            return
         view = self.workspace.judged("The line is still being judged; ask again")
         if view is None:
             return
-        path, environment = (view.path, view.environment) if file is None else (file, None)
+        text, catalogs = self.session.history.saved_text, self.session.catalogs
 
         def work() -> None:
             from calm.tui.live import judge
 
-            keep = view if file is None else None
-            before = judge(text, path, environment, self.session.catalogs, keep=keep)
+            before = judge(text, view.path, view.environment, catalogs, keep=view)
             effects = self._effects(before, view)
             self.call_later(show, before, [*effects, "", *changed_lines(text, view.text)])
 
         def show(before: View, lines: list[str]) -> None:
             self.workspace.tell("")
-            name = "what was saved" if file is None else str(file)
             now = self.workspace.view
             shape = getattr(before.result, "shape", None)  # a net has one for each leg
             if shape is not None and now and type(before.result) is type(now.result):
-                self.pictures.put_beside((name, shape))
+                self.pictures.put_beside(shape)
             answers = [Answer("b", "back to the line")]
-            choose(self.app, Question(f"Beside {name}", "\n".join(lines), answers))
+            choose(self.app, Question("Beside what was saved", "\n".join(lines), answers))
 
         self.tell("Comparing …")
         self.run_worker(work, thread=True, group="advice", exclusive=True)

@@ -124,10 +124,9 @@ class Pictures(Vertical):
         super().__init__(id=id)
         self._view: View | None = None
         self._note = ""
-        self._overlaid = False
-        self._other: tuple[str, Shape] | None = None
+        self._saved: Shape | None = None
         self._tabs, self._picture = Static(id="tabs"), Picture()
-        self._caption = Static(id="beside", markup=False)
+        self._caption = Static("dashed: what was saved", id="beside", markup=False)
 
     def compose(self) -> ComposeResult:
         """The names, and the picture."""
@@ -144,39 +143,20 @@ class Pictures(Vertical):
         self._view, self._note = view, note
         self._show()
 
-    def overlay(self) -> bool:
-        """Draw the line in all its environments, or no more; whether it is drawn so."""
-        self._overlaid = not self._overlaid
+    def put_beside(self, saved: Shape | None) -> None:
+        """Draw the line as it was saved beside it; None takes it away."""
+        self._saved = saved
         self._show()
-        return self._overlaid
-
-    def put_beside(self, other: tuple[str, Shape] | None) -> None:
-        """Draw another design beside the line, by the name of its file; None takes it away."""
-        self._other = other
-        self._show()
-
-    def _beside(self) -> tuple[list[Shape], str]:
-        """The shapes that are drawn beside the line, and what they are."""
-        view, shapes, named = self._view, [], []
-        if self._overlaid and view is not None:
-            results = [stand.result for stand in view.stands if stand.environment != view.here]
-            shapes = [result.shape for result in results if result is not None]
-            named = ["all environments"] if shapes else []
-        if self._other is not None:
-            shapes.append(self._other[1])
-            named.append(self._other[0])
-        return shapes, " and ".join(named)
 
     def watch_tab(self) -> None:
         """Draw the other picture."""
         self._show()
 
     def _show(self) -> None:
-        shapes, named = self._beside()
+        saved = () if self._saved is None else (self._saved,)
         self._show_tabs()
-        self._caption.update(f"dashed: {named}")
-        self._caption.display = bool(named) and self.tab in ("elevation", "plan")
-        self._picture.show(self._view, self.tab, shapes)
+        self._caption.display = bool(saved) and self.tab in ("elevation", "plan")
+        self._picture.show(self._view, self.tab, saved)
 
     @on(events.DescendantFocus)
     @on(events.DescendantBlur)

@@ -1,34 +1,25 @@
-"""A small table of numbers whose columns carry their units: edited, pasted, filled row by row."""
+"""A table of some rows that is edited cell by cell: of the water, of a form."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, ClassVar
 
 from rich.segment import Segment
 from rich.style import Style
 from textual import events, on
 
-from calm.records.delimited import CopiedTable, NoTableError, copied_table
-from calm.tui import cell_editor, checking, dialogs, field, key_table, theme
+from calm.records.delimited import NoTableError, copied_table
+from calm.tui import cell_editor, key_table, theme
+from calm.tui.checking import Reading
+from calm.tui.forms import Asked, FormColumn, Rows, rows_of, text_of_rows
 from calm.tui.scrolled import TableCells, TableColumn
-from calm.tui.water_tables import (
-    NoRows,
-    Rows,
-    UnknownColumns,
-    check_of,
-    half_way,
-    offered_headings,
-    previewed,
-    rows_in,
-)
-from calm.tui.workspace import Workspace
 
 _WIDTH = 14
 _LEAD = 2
 _AS_TEXT = "this table is edited in the text of the file (t)"
+_NO_ROWS = "a  adds a row"
 _DIGITS = frozenset("0123456789.-+")
-_STEP = 10.0
-"""How much deeper [m] a row below the last is."""
 
 
 class GridCells(TableCells, can_focus=True):
@@ -46,16 +37,25 @@ class GridCells(TableCells, can_focus=True):
         self.headings = tuple(headings)
         self.set_reactive(TableCells.column, self.validate_column(self.column))
         self.take_rows(tuple(tuple(row) for row in rows))
-        self.styles.height = len(rows) + self.HEADING
+        self.styles.height = max(len(rows), 1) + self.HEADING
 
     @property
     def columns(self) -> list[TableColumn]:
         """The columns, named by their numbers: a file may have two of one heading."""
-        width = _WIDTH - self.GAP
-        return [
-            TableColumn(str(number), heading, _LEAD + number * _WIDTH, width)
+        return [*self._columns()] or [TableColumn("", _AS_TEXT, _LEAD, len(_AS_TEXT))]
+
+    def _columns(self) -> Iterator[TableColumn]:
+        widths = [
+            max(_WIDTH - self.GAP, len(heading), *(len(row[number]) for row in self.rows))
             for number, heading in enumerate(self.headings)
-        ] or [TableColumn("", _AS_TEXT, _LEAD, len(_AS_TEXT))]
+        ]
+        room = self.scrollable_content_region.width - _LEAD - self.GAP * len(widths)
+        while sum(widths) > room and max(widths) > _WIDTH:  # the widest are cut
+            widths[widths.index(max(widths))] -= 1
+        start = _LEAD
+        for number, (heading, width) in enumerate(zip(self.headings, widths, strict=True)):
+            yield TableColumn(str(number), heading, start, width)
+            start += width + self.GAP
 
     @property
     def editable(self) -> Sequence[str]:
@@ -71,6 +71,12 @@ class GridCells(TableCells, can_focus=True):
         here = number == self.cursor and self.has_focus
         return [Segment(f"{theme.CURSOR} " if here else "  ", style)]
 
+    def below(self, y: int) -> list[Segment]:
+        """Return how an empty table is begun."""
+        is_empty = y == self.HEADING and self.headings and not self.rows
+        cursor = theme.CURSOR if self.has_focus else " "
+        return [Segment(f"{cursor} {_NO_ROWS}", Style(dim=True))] if is_empty else []
+
     def go_on(self, by: int) -> bool:
         """Go to the next value or the one before, over the rows; whether there is one."""
         count = len(self.headings)
@@ -81,10 +87,10 @@ class GridCells(TableCells, can_focus=True):
 
 
 class Grid(cell_editor.EditableTable):
-    """Edit the cells and the rows of a table of the water.
+    """Edit the cells and the rows of a table.
 
-    Values are texts as the file has them: numbers where the heading of their column has a unit,
-    else quantities with their own. Without columns nothing is shown and nothing can be edited.
+    Values are texts as the file has them. Without columns nothing is shown and nothing can be
+    edited.
 
     Parameters
     ----------
@@ -96,24 +102,29 @@ class Grid(cell_editor.EditableTable):
     Grid { height: auto; min-height: 3; max-height: 16; }
     Grid GridCells { height: auto; min-height: 3; max-height: 16; }
     """
+    LEAST_ROWS: ClassVar[int] = 0
+    EDITS_ON: ClassVar[bool] = True
+    """Whether Enter edits the next value of a row that was added: where no digit begins one."""
 
     def __init__(
-        self, workspace: Workspace, changed: Callable[[Grid, str], object], *, id: str
+        self,
+        tell: Callable[..., object],
+        changed: Callable[[Any, str], object],
+        *,
+        id: str | None = None,
     ) -> None:
         self.cells = GridCells()
-        super().__init__(workspace, self.cells, id=id)
+        super().__init__(tell, self.cells, id=id)
         self._changed = changed
-        self._seabed: float | None = None
+        self._columns: tuple[FormColumn, ...] = ()
         self._place = 0, 0  # row and column that are edited
         self._new = -1  # the row that was added last and is being filled
         self._before: Rows | None = None  # the rows without the one that Enter has added
 
-    def show(
-        self, columns: Sequence[str], rows: Sequence[Sequence[str]], seabed: float | None = None
-    ) -> None:
-        """Show other rows; new ones are not proposed below the `seabed` [m]."""
-        self._seabed = seabed
-        self.cells.show(columns, rows)
+    def show(self, columns: Sequence[FormColumn], rows: Sequence[Sequence[str]]) -> None:
+        """Show other rows."""
+        self._columns = tuple(columns)
+        self.cells.show([column.heading for column in columns], rows)
 
     def change(self, rows: Rows, label: str) -> None:
         """Show other rows, and tell what was done to them."""
@@ -126,6 +137,14 @@ class Grid(cell_editor.EditableTable):
         if row < len(rows) and column < len(self.cells.headings):
             values = (*rows[row][:column], text, *rows[row][column + 1 :])
             self.change((*rows[:row], values, *rows[row + 1 :]), "a value")
+
+    def new_row(self, at: int) -> tuple[str, ...]:
+        """The values that a row begins with, which is added at a place among the others."""
+        return ("",) * len(self._columns)
+
+    def ends_at(self, at: int) -> bool:
+        """Return whether no row is proposed at a place."""
+        return False
 
     # keys
 
@@ -144,13 +163,13 @@ class Grid(cell_editor.EditableTable):
 
     def action_move_cell(self, by: int) -> None:
         """Go to the next value; what is typed after the last goes into no other field."""
-        has_columns = bool(self.cells.headings)
-        if has_columns and self.cells.go_on(by):
+        has_rows = bool(self.cells.headings) and bool(self.cells.rows)
+        if has_rows and self.cells.go_on(by):
             return
         if by < 0:
             self.screen.focus_previous()
-        elif has_columns:
-            self.workspace.tell("The table ends here: a adds a row, ↓ leaves it", wrong=True)
+        elif has_rows:
+            self.tell("The table ends here: a adds a row, ↓ leaves it", wrong=True)
         else:
             self.screen.focus_next()
 
@@ -169,39 +188,28 @@ class Grid(cell_editor.EditableTable):
     def _edit(self, begun: str | None = None) -> None:
         """Edit the cell under the cursor, beginning with what it has or with what is `begun`."""
         cells = self.cells
-        if not self.settle():
+        if not super().settle():  # the cell: the row may still lack values
             return
         self._place = row, column = cells.cursor, cells.column
-        text, check = begun or cells.rows[row][column], check_of(cells.headings[column])
+        text, check = begun or cells.rows[row][column], self._columns[column].check
         self.open_editor(text, check, least_width=12, begun=begun is not None)
 
     def action_add_row(self, below: int) -> None:
-        """A row beside this one, its values between those of its neighbours."""
+        """Add a row beside this one."""
         cells, rows = self.cells, self.cells.rows
         if not cells.headings:
             return
         at = cells.cursor + below if rows else 0
-        at = min(at, len(rows) - 1) if self._ends_at_the_seabed(at) else at
-        new = _between(cells.headings, rows, at, self._seabed)
-        self.change((*rows[:at], new, *rows[at:]), "a row more")
+        at = min(at, len(rows) - 1) if self.ends_at(at) else at
+        self.change((*rows[:at], self.new_row(at), *rows[at:]), "a row more")
         cells.cursor, cells.column = at, 0
         self._new = at
         self._edit()
 
-    def _ends_at_the_seabed(self, at: int) -> bool:
-        """Return whether a row at a place would be of a depth below the seabed."""
-        rows = self.cells.rows
-        if self._seabed is None or not rows or at < len(rows):
-            return False
-        try:
-            return float(rows[-1][0]) >= self._seabed
-        except ValueError:
-            return False
-
     def action_drop_row(self) -> None:
-        """Take the row out; the last one stays."""
+        """Take the row out."""
         rows, here = self.cells.rows, self.cells.cursor
-        if len(rows) > 1:
+        if len(rows) > self.LEAST_ROWS:
             self.change((*rows[:here], *rows[here + 1 :]), "a row less")
 
     # what is typed
@@ -220,7 +228,9 @@ class Grid(cell_editor.EditableTable):
                 self.action_edit()
         elif cells.column < len(cells.headings) - 1:
             cells.go_on(1)
-        elif cells.cursor == self._new and not self._ends_at_the_seabed(cells.cursor + 1):
+            if cells.cursor == self._new and self.EDITS_ON:
+                self.action_edit()
+        elif cells.cursor == self._new and not self.ends_at(cells.cursor + 1):
             before = cells.rows
             self.action_add_row(1)
             self._before = before
@@ -240,63 +250,61 @@ class Grid(cell_editor.EditableTable):
         self.take_text(event.text)
 
     def take_text(self, text: str) -> None:
-        """Take the rows of a text in the place of all rows.
-
-        They are read by their headings, and shown with their columns before they are taken.
-        """
-        columns = self.cells.headings
+        """Take the rows of a text, of as many columns, in the place of all rows."""
         try:
-            copied = copied_table(text)
-            headings = offered_headings(copied.headings, columns)
-            rows_in(columns, headings, copied.rows)
-        except UnknownColumns:
-            pass  # the person says what they are
-        except (NoTableError, NoRows) as error:
-            self.workspace.tell(f"Nothing is pasted: {error}", wrong=True)
+            copied = copied_table(text).rows
+        except NoTableError as error:
+            self.tell(f"Nothing is pasted: {error}", wrong=True)
             return
-        self._preview(copied, headings)
-
-    def _preview(self, copied: CopiedTable, headings: Sequence[str]) -> None:
-        """Show what would be taken, under which columns; these can be corrected."""
-        columns = self.cells.headings
-
-        def taken(text: str) -> Rows:
-            return rows_in(columns, [one.strip() for one in text.split(",")], copied.rows)
-
-        def check(text: str) -> checking.Reading:
-            try:
-                return checking.Reading(text, comes_to=previewed(columns, taken(text)))
-            except NoRows as error:
-                return checking.Reading(text, str(error))
-
-        def take(answers: dict[str, str]) -> None:
-            rows, chosen = taken(answers["columns"]), answers["columns"]
-            self.change(rows, f"{len(rows)} rows pasted: {chosen}")
-            self.call_after_refresh(self.cells.focus)  # a table may not be shown yet
-
-        text = "It takes the place of all rows."
-        if copied.headings is None:
-            text += " It has no headings: are these its columns?"
-        first = "   ".join(copied.rows[0])
-        text += f" Its first row reads  {first}"
-        asked = field.Asked("columns", "Columns", ", ".join(headings), check)
-        dialogs.enter(self.app, "A table is pasted", text, [asked], take)
+        rows = []
+        for number, row in enumerate(copied, 1):
+            cells = zip(self._columns, row, strict=False)
+            readings = [column.check(value) for column, value in cells]
+            bad = [each.note for each in readings if not each.is_good]
+            if len(row) != len(self._columns):
+                bad = [f"{len(row)} values for {len(self._columns)} columns"]
+            if bad:
+                self.tell(f"Nothing is pasted: row {number}: {bad[0]}", wrong=True)
+                return
+            rows.append(tuple(reading.text for reading in readings))
+        self.change(tuple(rows), f"{len(rows)} rows pasted")
 
 
-def _between(columns: Sequence[str], rows: Rows, at: int, seabed: float | None) -> tuple[str, ...]:
-    """Values half-way between those above and below, where both are numbers.
+class TableField(Grid):
+    """A table of a form, which is entered together with the other fields."""
 
-    Below the last row they are its own, a step deeper but not below the `seabed` [m].
-    """
-    if not rows:
-        return ("0",) * len(columns)
-    above, below = rows[max(at - 1, 0)], rows[min(at, len(rows) - 1)]
-    try:
-        pairs = [(float(one), float(other)) for one, other in zip(above, below, strict=True)]
-    except ValueError:
-        return above
-    if at == len(rows):
-        deeper = pairs[0][0] + _STEP
-        return (f"{deeper if seabed is None else min(deeper, seabed):g}", *above[1:])
-    halves = (half_way(column, *pair) for column, pair in zip(columns, pairs, strict=True))
-    return tuple(f"{half:g}" for half in halves)
+    def __init__(self, asked: Asked, tell: Callable[..., object]) -> None:
+        super().__init__(tell, lambda *_: None)
+        self.key, self.begun, self.asked = asked.key, asked.text, asked
+        rows = rows_of(asked.text, asked.columns)
+        self._shown = rows or ()
+        self.show(asked.columns if rows is not None else (), self._shown)
+
+    @property
+    def text(self) -> str:
+        """Return the rows as they are to be written; as they were, where nothing was typed."""
+        rows = self.cells.rows
+        return self.begun if rows == self._shown else text_of_rows(rows, self._columns)
+
+    @property
+    def reading(self) -> Reading:
+        """Return what the rows come to: a cell that was left blank may be needed."""
+        for number, row in enumerate(self.cells.rows, 1):
+            for column, text in zip(self._columns, row, strict=True):
+                reading = column.check(text)
+                if any(row) and not reading.is_good:
+                    return Reading(text, f"row {number}, {column.heading}: {reading.note}")
+        return Reading(self.text)
+
+    @property
+    def input(self) -> GridCells:
+        """Return where the keys go to."""
+        return self.cells
+
+    def settle(self) -> bool:
+        """Take what is typed; a row that lacks something stays to be completed."""
+        if not super().settle():
+            return False
+        if complaint := self.reading.complaint:
+            self.tell(complaint, wrong=True)
+        return not complaint
