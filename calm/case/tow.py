@@ -11,14 +11,13 @@ from typing import Any
 from calm.assemble import assemble_line, assemble_water
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, cut_like, naming_the_piece
+from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, naming_the_piece
 from calm.case.result import Solved, line_document
 from calm.case.result_tables import Accuracy, TowedBody, TowPoint
 from calm.case.strumming import StrummingBand, band_of, strumming_of
 from calm.case.warnings import warnings_of
-from calm.errors import NoEquilibrium, UsageError, or_why_not
+from calm.errors import NoEquilibrium, or_why_not
 from calm.files import MooringFile, TowKeys
-from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.physics.line import Line, Water
 from calm.records.profile_tables import components
 from calm.solve import Settings, Solution, Status, Towing, fit_tow_length, solve_tow
@@ -202,27 +201,6 @@ def _body(solution: Solution) -> TowedBody:
 SOLVES = 3.0
 """About how many equilibria one speed takes."""
 
-CHANGE = 0.1
-"""Share by which `sensitivity` changes a coefficient, down and up."""
-
-_COEFFICIENTS = ("a1", "b1", "c1")
-
-
-@dataclass(frozen=True)
-class Variation:
-    """A tow with one coefficient of its strumming changed.
-
-    Attributes
-    ----------
-    coefficient : ``"a1"``, ``"b1"`` or ``"c1"``; empty for the tow as its file gives it
-    change : relative, e.g. -0.1
-    outcome : the result, or why there is none
-    """
-
-    coefficient: str
-    change: float
-    outcome: TowResult | NoEquilibrium
-
 
 def sweep(tow: Tow, speeds: Iterable[float]) -> list[TowResult | NoEquilibrium]:
     """Return the result at each speed of the ship [m/s], > 0, or the reason why there is none.
@@ -231,24 +209,3 @@ def sweep(tow: Tow, speeds: Iterable[float]) -> list[TowResult | NoEquilibrium]:
     NoEquilibrium: no length of that reaches its depth at the tow's own speed.
     """
     return [or_why_not(tow.at_speed(speed).solve) for speed in speeds]
-
-
-def sensitivity(tow: Tow) -> list[Variation]:
-    """Return a tow as it is, then with A₁, B₁ and C₁ each smaller and greater by `CHANGE`.
-
-    UsageError: the tow does not strum by Bourget & Marichal. NoEquilibrium: as in `sweep`.
-    """
-    keys = tow.file.solver.strumming
-    if not isinstance(keys, BourgetMarichalKeys):
-        raise UsageError(
-            f"{tow.file.name} has no coefficients to change; they belong to "
-            "`solver: {strumming: bourget-marichal}`"
-        )
-    variations = [Variation("", 0.0, or_why_not(tow.solve))]
-    for name in _COEFFICIENTS:
-        for change in (-CHANGE, CHANGE):
-            changed = keys.model_copy(update={name: getattr(keys, name) * (1.0 + change)})
-            solver = tow.file.solver.model_copy(update={"strumming": changed})
-            other = Tow(replace(cut_like(tow.file, tow), solver=solver))
-            variations.append(Variation(name, change, or_why_not(other.solve)))
-    return variations

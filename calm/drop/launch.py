@@ -14,12 +14,11 @@ from calm.assemble import with_axial_clamps
 from calm.case import Mooring
 from calm.drop.fall import Fineness, Motion, Ship, fall, nothing_limits, towed
 from calm.drop.fall_record import piece_tensions
-from calm.drop.motion import NoStep
+from calm.drop.motion import FallingAnchor, NoStep
 from calm.errors import UsageError
 from calm.physics.line import Floats, Line, Water
 from calm.physics.track import head_count
 from calm.quantities import bearing_of
-from calm.solve import FallingAnchor
 
 AXIAL_DRAG_BAND = 2.0
 """Factor by which the drag along the line and of the anchor may be more, or less, than given."""

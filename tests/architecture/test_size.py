@@ -9,7 +9,7 @@ from importlinter import cli
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "calm"
-MOST_CYCLES, MOST_MODULES_IN_CYCLES = 3, 20
+MOST_CYCLES, MOST_MODULES_IN_CYCLES = 2, 14
 """To be lowered whenever a cycle is broken, never raised."""
 
 

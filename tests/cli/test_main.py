@@ -44,8 +44,6 @@ def test_no_words_show_the_help(calm):
     "command",
     [
         "run",
-        "tow",
-        "tow strumming",
         "new",
         "schema",
         "docs",

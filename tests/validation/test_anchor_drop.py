@@ -14,11 +14,12 @@ from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Ship, fall, settle, towed
 from calm.drop.fall_record import rest_difference
 from calm.drop.launch import IN_SHORT, launch_of
-from calm.drop.motion import ChainState
+from calm.drop.motion import ChainState, FallingAnchor
 from calm.errors import UsageError
 from calm.shipped import shipped_folder
-from calm.solve import FallingAnchor, Towing, solve_fall, solve_tow
+from calm.solve import Towing, solve_tow
 from tests.validation import drop_dynamics
+from tests.validation.drifting import falling
 
 COARSE = Fineness(bars=50, steps=50)
 FEW = Fineness(bars=20, steps=20)
@@ -211,13 +212,13 @@ def test_the_design_check_and_the_plan_tell_of_one_fall(name):
 def test_in_deep_water_it_falls_at_the_terminal_speed(loaded):
     mooring = loaded(LEAN.format(depth=3000, length=100, current=0.0))
     _, drop, _ = dropped(mooring, fineness=Fineness(50, 200))
-    anchor = FallingAnchor(mooring.anchor_weight, mooring.anchor_drag)
     line = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
-    terminal = -solve_fall(line, mooring.water, anchor).velocity[2]
-    last = drop.states[-1]
-    # after 2800 m of fall the line has long been plumb; the terminal speed's own accuracy is 1e-4
-    assert -last.velocity[-1, 2] == pytest.approx(terminal, rel=5e-4)
-    assert -last.velocity[0, 2] == pytest.approx(terminal, rel=5e-4)
+    last = drop.states[-1].velocity
+    weight, drag = mooring.anchor_weight, mooring.anchor_drag
+    terminal = falling(line, mooring.water, weight, drag, last[-1])
+    # after 2800 m of fall the line has long been plumb
+    assert last[-1, 2] == pytest.approx(terminal[2], rel=5e-4)
+    assert last[0, 2] == pytest.approx(terminal[2], rel=5e-4)
 
 
 def test_a_heavy_sphere_on_a_thin_line_falls_as_if_alone(loaded):

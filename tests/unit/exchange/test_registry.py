@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from calm.case import load
-from calm.cli.exchange import export, import_
+from calm.cli.export import export
+from calm.cli.import_ import import_
 from calm.errors import CalmError, InputError, UsageError
 from calm.exchange import registry
 from calm.exchange.exporting import export_file

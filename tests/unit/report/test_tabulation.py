@@ -1,15 +1,13 @@
-"""A tow at several speeds, or with a coefficient changed, as a table, as data and drawn."""
+"""A tow at several speeds, as a table, as data and drawn."""
 
 import io
 
 import pytest
 from rich.console import Console
 
-from calm.case.tow import Variation
 from calm.drawing.line_drawing import LINE_COLOUR
 from calm.errors import NoEquilibrium
 from calm.report.tabulation import (
-    by_coefficient,
     by_speed,
     sweep_drawing,
     tabulation_part,
@@ -85,17 +83,6 @@ def test_csv(swept):
     )
     assert failed == "Survey,0.5144,grounded,,,,,,"
     assert converged == "Survey,1.0289,converged,120,140,3000.4,35.26,1500,3.559"
-
-
-def test_coefficients(make_tow_result):
-    result = make_tow_result()
-    variations = [Variation("", 0.0, result), Variation("a1", -0.1, result)]
-    tabulation = by_coefficient(result.tow, variations)
-    lines = text(tabulation)
-    assert lines[5].startswith("nothing  120.0")
-    assert lines[6].startswith("A1 -10%  120.0")
-    (_, changed) = to_document(tabulation)["sensitivity"]
-    assert (changed["coefficient"], changed["change"]) == ("a1", -0.1)
 
 
 def test_drawing_leaves_a_gap_where_there_is_no_equilibrium(swept):

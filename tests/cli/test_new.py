@@ -39,7 +39,7 @@ def test_new_is_a_good_design(calm, environment):
 def test_each_kind_stands_and_no_rule_fails(calm, kind):
     calm("new", kind, "-o", "m.yaml")
     if kind == "tow":
-        body = json.loads(calm("tow", "m.yaml", "--json", "-").out)["body"]
+        body = json.loads(calm("run", "m.yaml", "--json", "-").out)["body"]
         assert body["depth"] == pytest.approx(70.0, abs=0.2)
         return
     done = calm("check", "m.yaml", "--json", "-")
