@@ -16,8 +16,8 @@ from calm.case.columns import terms
 from calm.case.net import Net
 from calm.dataset import netcdf
 from calm.dataset.netcdf import CLAMPS, ResultLayout, Variable, labels, numbers, station
-from calm.files.legs import leg_numbers
-from calm.files.mooring_file import clamps_down
+from calm.files.mooring_file import leg_numbers
+from calm.files.pieces import clamps_down
 from calm.records.record import Record
 
 _BESIDE = {"component": "component_label depth_top", "clamp": "clamp_label clamp_depth"}

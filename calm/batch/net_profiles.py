@@ -26,7 +26,7 @@ from calm.case.result_tables import MOORED_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.files.legs import nodes_of
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import BETTER, Floats, Water
 from calm.physics.profile import Sea

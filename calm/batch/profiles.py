@@ -24,7 +24,7 @@ from calm.case.measure import clamps_of, components_of
 from calm.case.net import Net
 from calm.case.result_tables import MOORED_ENDS, Clamps, Columnar, Components
 from calm.files import Clamp, CurrentTable, Piece
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import Floats, Integers, Water
 from calm.solve import Status

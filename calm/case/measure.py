@@ -27,7 +27,7 @@ from calm.case.result_tables import (
 from calm.case.strumming import strumming_of
 from calm.case.warnings import warnings_of
 from calm.files import Clamp, Piece
-from calm.files.mooring_file import clamps_down, parts_of
+from calm.files.pieces import clamps_down, parts_of
 from calm.physics.line import Water
 from calm.physics.seabed import required_weight
 from calm.physics.seawater import REFERENCE_DENSITY

@@ -15,7 +15,7 @@ from calm.case.memory import Forgetful, Memory
 from calm.case.result import Result
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, MooringFile, Place, Profiler
-from calm.files.mooring_file import clamps_in
+from calm.files.pieces import clamps_in
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water
 from calm.physics.materials import STEEL_DENSITY

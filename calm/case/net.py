@@ -23,8 +23,9 @@ from calm.case.tow import Tow
 from calm.errors import InputError, NoEquilibrium, Problem
 from calm.files import MooringFile, Piece
 from calm.files.environment import Environment
-from calm.files.legs import EndKeys, Leg, leg_numbers, nodes_of
-from calm.files.mooring_file import STAND_IN
+from calm.files.legs import EndKeys, Leg, nodes_of
+from calm.files.mooring_file import leg_numbers
+from calm.files.pieces import STAND_IN
 from calm.files.reader import MooringReader
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
@@ -77,7 +78,7 @@ class Net(ReadFromFile):
     @cached_property
     def lines(self) -> tuple[Mooring, ...]:
         """The legs, each as a mooring of its own."""
-        return tuple(Mooring(leg.line_of(self.file)) for leg in self.file.legs)
+        return tuple(Mooring(self.file.leg_alone(leg)) for leg in self.file.legs)
 
     @cached_property
     def legs(self) -> tuple[NetLeg, ...]:

@@ -30,7 +30,7 @@ from calm.case.columns import (
 from calm.case.line_figures import catalogue_figures
 from calm.errors import unknown
 from calm.files import Clamp, MooringFile, Piece, Place
-from calm.files.mooring_file import STAND_IN
+from calm.files.pieces import STAND_IN
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES
 

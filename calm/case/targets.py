@@ -10,7 +10,7 @@ from calm.case.result import NetResult, Result, legs_of
 from calm.case.result_tables import AnchorLoad, ClampRow, ComponentRow, EndLoad, rows_by_place
 from calm.errors import UsageError, unknown
 from calm.files import MooringFile, Place
-from calm.files.mooring_file import STAND_IN, parts_of
+from calm.files.pieces import STAND_IN, parts_of
 from calm.units import DIMENSIONS, QuantityError, parse_quantity
 
 QUANTITIES = {

@@ -10,7 +10,7 @@ import numpy as np
 
 from calm.case.parts import below_the_seabed
 from calm.files import Cable, Component
-from calm.files.mooring_file import clamps_in, parts_of
+from calm.files.pieces import clamps_in, parts_of
 from calm.physics.materials import fibre_of, published_stiffnesses
 from calm.quantities import say
 from calm.solve import Solution

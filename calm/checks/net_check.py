@@ -26,7 +26,7 @@ from calm.checks.recovery import Break, Loss, lifts_of, losses_among, required_m
 from calm.errors import NoEquilibrium, or_why_not
 from calm.files import Flexible, Piece
 from calm.files.legs import stand_in_anchor
-from calm.files.mooring_file import STAND_IN
+from calm.files.pieces import STAND_IN
 from calm.physics.line import Floats
 from calm.solve import Status, expect_many
 

@@ -15,7 +15,7 @@ from calm.files.components import Anchor
 from calm.files.definition import Model, QuantityField, Text, described, optional
 from calm.files.environment import Position
 from calm.files.line_items import LineReader
-from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered, placed
+from calm.files.pieces import STAND_IN, Piece, Place, numbered, placed
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
 from calm.positions import HEMISPHERES, Frame
@@ -141,32 +141,6 @@ class Leg:
     end: int
     top: EndKeys
     bottom: EndKeys
-
-    def line_of(self, file: MooringFile) -> MooringFile:
-        """Return the leg as the file of a single line: its pieces, counted from its upper end.
-
-        One without an anchor has a stand-in for it, of the id `STAND_IN`.
-        """
-        own = file.pieces[self.first : self.end]
-        pieces = [replace(piece, index=index) for index, piece in enumerate(own)]
-        if self.bottom.anchor is None:
-            pieces.append(stand_in_anchor(len(pieces), own[-1].place.item + 1))
-        environment, anchor = file.environment, self.bottom.anchor
-        if anchor is not None and anchor.depth is not None:
-            environment = replace(environment, depth=anchor.depth)
-        elif anchor is not None and environment.seabed is not None and environment.depth:
-            deeper = float(environment.seabed.deeper(np.array([anchor.at]))[0])
-            environment = replace(environment, depth=environment.depth + deeper)
-        if anchor is not None and environment.seabed is not None:
-            environment = replace(environment, seabed=environment.seabed.at(*anchor.at))
-        return replace(
-            file,
-            name=self.name,
-            environment=environment,
-            pieces=tuple(pieces),
-            legs=(self,),
-            notices=(),
-        )
 
     def grown(self, index: int, more: int) -> Leg:
         """Return the leg where there are more pieces after that of an index in the file."""
@@ -352,12 +326,6 @@ def _check_held(legs: Sequence[Leg], section: SourceMapping) -> None:
         if leg.name not in held:
             message = f"nothing holds leg `{leg.name}`: no anchor, no held end"
             section.refuse((leg.name,), message, key=True)
-
-
-def leg_numbers(file: MooringFile) -> list[int]:
-    """Return the number of the leg that each piece of a file is in; a single line is one."""
-    numbers = [n for n, leg in enumerate(file.legs) for _ in range(leg.first, leg.end)]
-    return numbers or [0] * len(file.pieces)
 
 
 def nodes_of(legs: Sequence[Leg]) -> Mapping[str, int]:

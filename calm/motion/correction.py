@@ -18,7 +18,7 @@ from calm.batch.statuses import STATUSES
 from calm.case import Mooring
 from calm.dataset.discovery import coverage, with_flags, written
 from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers, packed
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
 from calm.motion.line_response import Forward, LineResponse, forwards_of, labels_of, points

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Mooring
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.currents_law import Linear, ReadCurrents

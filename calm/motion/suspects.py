@@ -15,7 +15,7 @@ from itertools import combinations
 import numpy as np
 
 from calm.case import Mooring
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.motion import line_response
 from calm.motion.correction import Task
 from calm.motion.currents_law import Linear, ReadCurrents

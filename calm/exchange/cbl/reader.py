@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, refused
 from calm.exchange import model
-from calm.exchange.cable_components import ComponentMaker
-from calm.exchange.cable_formulas import UnknownNameError
-from calm.exchange.cable_grammar import (
+from calm.exchange.cbl.components import ComponentMaker
+from calm.exchange.cbl.formulas import UnknownNameError
+from calm.exchange.cbl.grammar import (
     CableBranch,
     CableProblem,
     CableTerminal,
@@ -22,7 +22,7 @@ from calm.exchange.cable_grammar import (
     KeyValues,
     read_problem,
 )
-from calm.exchange.cable_layout import CableLayout
+from calm.exchange.cbl.layout import CableLayout
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.quantities import bearing_of
 from calm.whole_file import read_text
@@ -71,7 +71,7 @@ def is_cbl(content: bytes) -> bool:
     return b"\0" not in content and len(set(_HEADS.findall(text))) >= 2
 
 
-def read_cbl(path: Path, options: model.ImportOptions) -> model.Design:
+def read_cbl(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     """Read a mooring or a tow.
 
     InputError: the file cannot be read, or holds what CALM cannot represent. All undefined names
@@ -97,11 +97,13 @@ def read_cbl(path: Path, options: model.ImportOptions) -> model.Design:
     raise InputError(missing)
 
 
-def _read(path: Path, options: model.ImportOptions) -> model.Design:
+def _read(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     problem = read_problem(path, options)
     _refuse_other_shapes(problem)
     title, environment = problem.description.get("title"), problem.environment
-    design = model.Design("WHOI Cable", title.text if title and title.text else path.stem, [], None)
+    design = model.ImportedDesign(
+        "WHOI Cable", title.text if title and title.text else path.stem, [], None
+    )
     design.notes.append(_NOTE)
     design.water = _water_of(problem, design.dropped)
     if problem.analysis:

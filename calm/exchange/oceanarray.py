@@ -16,9 +16,12 @@ import numpy as np
 from calm.assemble.catalogue_search import Index
 from calm.errors import InputError, Problem, refused
 from calm.exchange import model
-from calm.exchange.list_cells import number, unit_called
-from calm.exchange.list_reader import Library, complete_rows, key_of, read_library
-from calm.exchange.list_rows import ListRow, component_of
+from calm.exchange.part_names import is_called
+from calm.exchange.registry import register_format
+from calm.exchange.table.cells import number, unit_called
+from calm.exchange.table.components import component_of
+from calm.exchange.table.library import Library, complete_rows, key_of, read_library
+from calm.exchange.table.rows import ListRow
 from calm.files import Anchor, Catalogue
 from calm.files.components import FLEXIBLE_KINDS, Component
 from calm.files.yaml_document import Document, read_document
@@ -39,7 +42,7 @@ def is_oceanarray(content: bytes) -> bool:
     return re.search(rb"^waterdepth *:", content, re.M) is not None and bool(_MARKS.search(content))
 
 
-def read_oceanarray(path: Path, options: model.ImportOptions) -> model.Design:
+def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     """Read such a configuration.
 
     InputError: it lists no line, a height or length is missing or wrong, or nothing is known of a
@@ -62,7 +65,9 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.Design:
     if problems:
         raise InputError(problems)
     parts = _Parts(reading, options.defines, library)
-    design = model.Design("oceanarray", str(document.data.get("name") or path.stem), [], None)
+    design = model.ImportedDesign(
+        "oceanarray", str(document.data.get("name") or path.stem), [], None
+    )
     _hang(beside, _strung(line, parts, design), parts)
     design.water = model.ImportedWater(depth, guesses={"current": "the file has none: still water"})
     design.heading = _heading(reading)
@@ -106,7 +111,7 @@ class _Entry:
     @property
     def is_anchor(self) -> bool:
         """Return whether it is called an anchor."""
-        return model.is_called(" ".join(self.names), "anchor")
+        return is_called(" ".join(self.names), "anchor")
 
     def lower_end(self, extent: float) -> float | None:
         """Return the height of its lower end, so long as it is [m]."""
@@ -220,7 +225,7 @@ class _Parts:
                 reading = self.reading
                 reading.problems += refused(reading.document.path, *row.problems).problems
                 return component, ""
-        if model.is_called(" ".join(names), "anchor"):
+        if is_called(" ".join(names), "anchor"):
             return self._anchor(names), ""
         for name in names:
             if self.catalogue.entry(name) is not None:
@@ -255,7 +260,7 @@ class _Strung:
     height: list[float]
 
 
-def _strung(line: list[_Entry], parts: _Parts, design: model.Design) -> _Strung:
+def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> _Strung:
     """Return the pieces from the anchor up, ropes between them, and put them into the design."""
     items: list[model.ImportedPiece] = []
     nominal, height = [0.0], [0.0]  # of lower ends; the last is that of the piece to come
@@ -371,3 +376,8 @@ def _heading(reading: _Reading) -> dict[str, str]:
         text = ", ".join(f"{key}: {quoted(str(value))}" for key, value in known.items() if value)
         lines["document"] = f"{{{text}}}"
     return lines
+
+
+register_format(
+    "oceanarray", is_oceanarray, read_oceanarray, program="oceanarray", takes_elements=True
+)

@@ -59,7 +59,7 @@ class _File:
     at: dict[str, list[_Row]]
     depth: float
     gravity: float
-    design: model.Design
+    design: model.ImportedDesign
 
     def piece(self, line: _Row) -> model.ImportedPiece:
         """Return a line as a piece (InputError: it has no type, or no length)."""
@@ -100,7 +100,7 @@ class _File:
         return items
 
 
-def read_moordyn(path: Path) -> model.Design:
+def read_moordyn(path: Path) -> model.ImportedDesign:
     """Read a file: a single line from an anchor up to a float, or a net of legs.
 
     InputError: it cannot be read, or holds a body or a rod.
@@ -130,7 +130,7 @@ def read_moordyn(path: Path) -> model.Design:
     kind, beside = options.get("currents", "0"), path.with_name(_CURRENTS)
     current = _currents(beside) if kind in _STEADY and beside.is_file() else ()
     water = model.ImportedWater(depth, density, gravity, current)
-    design = model.Design("MoorDyn", path.stem, [], water, notes=[_NOTE])
+    design = model.ImportedDesign("MoorDyn", path.stem, [], water, notes=[_NOTE])
     if kind not in ("0", "none") and not current:
         lacks = f"without {_CURRENTS} beside the file" if kind in _STEADY else "which vary in time"
         design.dropped.append(
