@@ -8,6 +8,7 @@ balance: see `calm.solve.leg_marches`.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from math import sqrt
 from typing import Any, TypeVar
 
 import numpy as np
@@ -35,8 +36,9 @@ from calm.solve.solution import (
 
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
-LOOSE = 1e-3, 1e-5, 1e-7
-"""Pulls of slack legs, as shares of their scales, to find a net that nothing else holds."""
+LOOSE, TIGHTEST, FALL = 1e-2, 1e-8, 0.1
+"""Pulls of slack legs, as shares of their scales, with which a net that nothing else holds is first
+and last sought, and by what they fall between."""
 
 
 @dataclass(frozen=True)
@@ -255,7 +257,8 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
     """The unknowns of a net closed to the last digits.
 
     Where nothing but slack legs holds it at first, in still water, nothing says which way leads on.
-    It is then sought with legs that pull a little after all, by less and less.
+    It is then sought with slack legs that pull a little after all, and less and less: by a tenth,
+    or in smaller steps where that leads nowhere.
 
     Raises
     ------
@@ -265,10 +268,12 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
         return net.settled(about(net, near))
     except NoEquilibrium as failure:
         try:
-            x = about(net, None, LOOSE[0])
-            for loose in LOOSE[1:]:
-                closer = net.closed(x, 4.0 * net.settings.angle_step, leg_closing.NEAR, loose)
-                x = x if closer is None else closer
+            x, loose, fall = about(net, None, LOOSE), LOOSE, FALL
+            while loose > TIGHTEST and fall < 0.6:
+                less, step = fall * loose, 4.0 * net.settings.angle_step
+                closer = net.closed(x, step, leg_closing.NEAR, less)
+                x, loose = (x, loose) if closer is None else (closer, less)
+                fall = fall if closer is not None else sqrt(fall)
             return net.settled(x)
         except NoEquilibrium:
             raise failure from None
