@@ -1,7 +1,8 @@
-"""A net of legs closed, as laws: Newton's method on segments that stay.
+"""Newton's method for a net of legs on given segments, as compiled laws.
 
-Slopes are kept by Broyden's rule while they lead on. A net with a single unknown is closed by
-secants, and in a bracket where these do not lead on.
+The Jacobian (`slopes`) is updated by Broyden's rule as long as each step reduces the residual
+(`found`) enough. A net with a single unknown is closed by secants, or by bisection of a bracket if
+these do not converge.
 """
 
 from collections.abc import Callable, MutableSequence, Sequence
@@ -34,33 +35,36 @@ from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 from calm.solve.solution import FOUND, NO_SHAPE_NEAR
 
 MOST_STEPS, HALVINGS = 60, 9
-"""Newton steps towards a shape, and how often one is halved that leads nowhere."""
+"""Most Newton steps towards a shape; most halvings of a step that does not reduce the residual."""
 NEAR, CLOSED = 1e-4, 1e-10
-"""What is left of lengths and forces, as shares of the longest leg and of a typical force: before
-segments are kept, and in a shape."""
+"""Residual of lengths and forces, as shares of the longest leg and of a typical force: before the
+segments are kept, and of a finished shape."""
 BEFORE_CHOICE = 1e-7
-"""As `CLOSED`, of a shape in which segments are chosen that are to depend on the net alone."""
+"""As `CLOSED`, of the shape in which segments are chosen: close enough that they depend on the net
+alone, and not on the way to it."""
 MOST_LEFT = 10.0
-"""How many times `enough` may be left where no step leads on."""
+"""Residual, as a multiple of `enough`, that is accepted if no step reduces it further."""
 LEADS_ON = 0.25
-"""What a step leaves of the sum of squares, at most, for slopes to be kept."""
+"""Factor by which a step must reduce the sum of squares for the slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
 """Slope of a single unknown, in shares, at which a secant is held; the most steps it may take."""
 SINGULAR = 1e-14
-"""Slope, in shares, below which an unknown is left as it is."""
+"""Pivot, in shares, below which an unknown keeps its value."""
 NO_HOLD = 1e-5
-"""Pull at a touchdown, as a share of the weight of a leg, that holds nothing in place: more than
-the drag in a breath of current."""
+"""Pull at a touchdown, as a share of the weight of a leg, that is too small to hold the net in its
+place. It is more than the drag in the weak current that stirs still water."""
 NEEDS_ROOM = -1
-"""How a net ends, besides FOUND and NO_SHAPE_NEAR: more segments than there is room for."""
+"""How a search ends that needs more segments than there is room for; else `FOUND` or
+`NO_SHAPE_NEAR`."""
 
 DEPTH_ERROR, TENSION_ERROR = range(2)
 
 
 def find_way(net: NetProblem, found: Sequence[float]) -> float:
-    """Write the step that brings to nothing what is left, by its slopes; its size, in shares.
+    """Solve the linear equations of a Newton step for a residual; the size of the step, in shares.
 
-    By elimination, column by column. Unknowns of which the slopes say nothing stay.
+    The step goes to `net.way`. Gaussian elimination with partial pivoting; an unknown without a
+    pivot keeps its value.
     """
     size, paper, row = len(found), net.paper, 0
     for r in range(size):
@@ -99,15 +103,15 @@ def squares(values: Sequence[float]) -> float:
 
 
 def keep(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
-    """Copy values."""
+    """Copy values to where they are kept."""
     for k in range(len(values)):
         kept[k] = values[k]
 
 
 def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough: float) -> int:
-    """`close_net` of a net with one unknown, of which what is left falls.
+    """`close_net` of a net with one unknown, whose residual falls as the unknown grows.
 
-    By secants, and by halving a bracket where these do not halve what is left.
+    By secants, and by bisection if a secant does not halve the residual.
     """
     above, below, scale, slope = -inf, inf, net.scale[0], net.slopes[0][0]
     slope, halved = slope if slope < 0.0 else -1.0, True
@@ -137,13 +141,13 @@ def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough:
 def close_net(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """Newton's method; the last march is that of the unknowns that it ends with.
+    """Close a net by Newton's method; its last march is that of the unknowns it ends with.
 
     Parameters
     ----------
-    x : the unknowns, where they about are; then those found
-    enough : what may be left, in shares
-    known : whether the slopes are about right already, and need not be found first
+    x : approximate unknowns, replaced by those found
+    enough : the residual that is small enough, in shares
+    known : whether the slopes are good already, and need not be found first
     """
     if len(x) == 1:
         return close_one(net, x, how, enough)
@@ -156,7 +160,7 @@ def close_net(
 def close_on(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """`close_net` from unknowns that were marched last, on these segments."""
+    """`close_net` from unknowns that were the last to be marched, on the same segments."""
     if len(x) == 1:
         return close_one(net, x, how, enough)
     size, trial, fresh, plain, left = len(x), net.trial, not known, known, net.kept
@@ -206,10 +210,8 @@ def close_on(
 
 
 def drifts(net: NetProblem) -> bool:
-    """Return whether no end is held and every leg to an anchor lies on the seabed unpulled.
-
-    Where such a net is depends on nothing but where it was put.
-    """
+    """Return whether nothing holds a net in its place: no end is held, and every leg to an anchor
+    lies on the seabed without pull."""
     anchored = False
     for i in range(len(net.legs)):
         leg, state = net.legs[i], net.state[i]
@@ -237,7 +239,8 @@ def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
 def close_coarsely(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Choose segments of twice a step [rad] and close a net that about is on them."""
+    """Choose segments of twice an angle step [rad] near approximate unknowns; close the net on
+    them."""
     choosing = Marching(sea, 2.0 * step, CHOSEN, False, False, COARSE, 0.0)
     failure = left_over(net, x, choosing, False)
     if failure != GOES_ON:
@@ -247,8 +250,9 @@ def close_coarsely(
 
 
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
-    """Close a net that about is to the last digits, on segments that are short enough."""
-    # the root of a single unknown is known well; else segments are chosen anew where these lead
+    """Close a net to the last digits from approximate unknowns, on fine enough segments."""
+    # segments chosen near rough unknowns depend on these, so that they are chosen again in the
+    # closed shape; a single unknown is known well enough at once
     if len(x) > 1 and net.lines.limits.near == 0.0:
         ending = close_coarsely(net, sea, x, step, max(enough, BEFORE_CHOICE))
         if ending != FOUND:
@@ -267,7 +271,7 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
 def close_both(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Close a net near its unknowns on the segments chosen at twice a step, and on their halves."""
+    """Close a net near its unknowns on segments of twice an angle step, and on their halves."""
     ending = close_coarsely(net, sea, x, step, enough)
     if ending != FOUND:
         return ending
@@ -285,7 +289,7 @@ def close_both(
 
 
 def segments_of(net: NetProblem) -> int:
-    """Number of the halves of all segments that were chosen."""
+    """Number of segments in the fine shape: the halves of all chosen ones."""
     segments = 0
     for i in range(len(net.legs)):
         for k in range(net.legs[i].cables):
@@ -294,7 +298,7 @@ def segments_of(net: NetProblem) -> int:
 
 
 def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
-    """Extrapolate all legs and the places of nodes; their errors."""
+    """Extrapolate the shapes of all legs and the places of the nodes; return the errors."""
     records, near = net.lines.work.records, net.lines.limits.near
     deep = taut = moved = relative = 0.0
     for k in range(len(x)):
@@ -321,11 +325,13 @@ def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
 
 
 class AskedNet(NamedTuple):
-    """Hold what `ask_net` is asked: to march a net, with the slopes or without, to close it or to
-    settle it, from unknowns that it changes; or whether the net as it was settled drifts.
+    """One task for `ask_net`, the single entry to the compiled laws of a net.
 
     Attributes
     ----------
+    task : MARCH or SLOPES marches the net, without its slopes or with them; CLOSE is `close_net`,
+        SETTLE is `settle`, DRIFTS is `drifts` of the net that was settled last
+    x : the unknowns, which CLOSE and SETTLE replace
     enough, known : as of `close_net`
     """
 
@@ -341,7 +347,7 @@ MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
 def ask_net(asked: AskedNet, _: float) -> float:
-    """Do what is asked; how it ended."""
+    """Do a task; return how it ended, or of DRIFTS 1 for yes."""
     net, x, how = asked.net, asked.x, asked.how
     if asked.task == DRIFTS:
         return 1.0 if drifts(net) else 0.0
@@ -356,5 +362,5 @@ def ask_net(asked: AskedNet, _: float) -> float:
 
 
 def ask_now(ask: Callable[[AskedNet, float], float], asked: AskedNet) -> float:
-    """Call `ask_net` by its address."""
+    """Call `ask_net` by the address of its compiled form."""
     return ask(asked, 0.0)

@@ -1,7 +1,8 @@
-"""A net of legs as laws: its legs marched, and what is left at its ends and nodes.
+"""Residual and Jacobian of a net of legs, as compiled laws.
 
-Unknown are the depths of free ends, the pulls on ends that are not free, and the places of nodes;
-slopes are differences of marches on the same segments.
+The unknowns are the depths of free ends, the pulls on other ends, and the places of nodes. The
+residual (`found`) is the distance by which each leg misses its end, and the sum of the pulls at
+each node. The Jacobian (`slopes`) is made of differences between marches on the same segments.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -47,7 +48,7 @@ how often a leg is marched for it, and the slope at which its secants are held."
 
 
 def begun(net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]) -> tuple[float, float]:
-    """Load a leg with what is unknown of it.
+    """Load a leg with its unknowns.
 
     Returns
     -------
@@ -67,11 +68,11 @@ def begun(net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]) -> 
 
 
 def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg from what is unknown of it; how that ended, see `calm.physics.line`.
+    """March a leg from its unknowns; return how that ended, see `calm.physics.line`.
 
-    One that strums until it does at the frequency of the vortices at its end. That falls as the
-    frequency assumed rises, since more drag lifts the line: it is found by secants, and by halving
-    a bracket where these do not lead on.
+    A leg that strums is marched until it vibrates at the frequency of the vortices at its end. This
+    falls as the assumed frequency rises, since more drag lifts the line. It is found by secants,
+    and by bisection of a bracket if these do not converge.
     """
     leg, state = net.legs[i], net.state[i]
     failure = march_once(net, i, x, how)
@@ -98,7 +99,7 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
 
 
 def march_once(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg, at the frequency at which it was marched last where it strums."""
+    """March a leg once; one that strums at its last frequency."""
     net.state[i][SHARE] = 1.0
     if net.legs[i].kind == ANCHORED:
         return march_up(net, i, x, how)
@@ -147,7 +148,7 @@ def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
 
 
 def row_of(net: NetProblem, i: int, k: int) -> int:
-    """Where a result of a leg's march counts among what is left; -1 for nowhere."""
+    """Row of the residual for the result k of a leg's march, see `OUT`; -1 for none."""
     leg = net.legs[i]
     pulled = leg.own > 1
     if k < 2:
@@ -161,7 +162,7 @@ def row_of(net: NetProblem, i: int, k: int) -> int:
 
 
 def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, column: int) -> None:
-    """Add a share of what a leg came out with to what is left, or to a column of its slopes."""
+    """Add a share of the results of a leg's march to the residual, or to a column of its slopes."""
     for k in range(OUT):
         row = row_of(net, i, k)
         if row < 0:
@@ -174,8 +175,8 @@ def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, colu
 
 
 def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes: bool) -> int:
-    """Write what is left to be closed and balanced to `found`, and its slopes where asked for, in
-    scales that are taken anew.
+    """March all legs and write the residual to `found`; if asked, also its slopes, for which the
+    scales of forces are taken anew.
 
     Returns how the marches ended.
     """
@@ -215,12 +216,12 @@ def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes:
 
 
 def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: Marching) -> int:
-    """Add what a leg has in the slopes of what is left."""
+    """Add the share of a leg to the slopes of the residual."""
     leg, nodes, at, passed = net.legs[i], net.nodes_at, net.legs[i].first, net.passed[i]
     start, end = nodes + 3 * leg.start, nodes + 3 * leg.end
     if leg.kind == ANCHORED and leg.start >= 0:
         net.slopes[at + 2][start + 2] -= net.scale[start + 2] / net.rows[at + 2]
-        for k in range(2):  # where its upper end is changes what it misses, not its march
+        for k in range(2):  # the place of its upper end changes what it misses, not its march
             before = x[start + k]
             add_passed(net, i, passed, -1.0 / JUMP, start + k)
             x[start + k] = before + JUMP * net.scale[start + k]

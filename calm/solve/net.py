@@ -54,7 +54,7 @@ class NetSolution:
     miss : the worst distance of a leg's end from where it is held [m]
     depth_error, tension_error : own estimate of the worst errors [m], [N]
     marches : done for it
-    unknowns : what it was found by, for nets that stand about alike
+    unknowns : of the solution, from which similar nets are sought
     """
 
     legs: tuple[Solution, ...]
@@ -72,7 +72,8 @@ class LacksRoom(Exception):
 
 
 class NetSearch:
-    """All legs, and what is unknown of them: of each leg its own, then the places of the nodes."""
+    """The search for a net: its legs laid out, and its unknowns, those of each leg and then the
+    places of the nodes."""
 
     def __init__(
         self, legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
@@ -85,12 +86,12 @@ class NetSearch:
         self.put_in(water)
 
     def put_in(self, water: Water) -> None:
-        """Put the same net in other water, of the same depth and density."""
+        """Give the net other water, of the same depth and density."""
         profile = Profile(water)
         self.water, self.sea = water, profile.packed if self.compiled else profile.sea
 
     def begin(self, start: NetStart) -> Floats:
-        """The unknowns of a start."""
+        """Return the unknowns of a start."""
         x, first = np.zeros(len(self.net.found)), 0
         x[self.net.nodes_at :] = start.nodes.ravel()
         for i, each in enumerate(self.laid):
@@ -110,7 +111,7 @@ class NetSearch:
         return x
 
     def asked(self, task: int, x: Floats, how: Marching, enough: float = 0.0) -> tuple[int, Floats]:
-        """Ask about unknowns, see `AskedNet`; how it ended, and the unknowns then."""
+        """Do a task of `AskedNet`; return how it ended, and the unknowns after it."""
         own: Any = x.copy() if self.compiled else x.tolist()
         asked = AskedNet(task, self.net, own, how, enough, False)
         if self.compiled:
@@ -130,18 +131,22 @@ class NetSearch:
         return Marching(self.sea, float(step), cuts, given, given, record, loose)
 
     def closed(self, x: Floats, step: float, enough: float, loose: float = 0.0) -> Floats | None:
-        """Newton's method; None where it leads nowhere. `loose` is as in `Marching`."""
+        """Return the unknowns closed by Newton's method, None if it does not converge.
+
+        `loose` is as in `Marching`.
+        """
         how = self.marching(step, CHOSEN, FINE, given=False, loose=loose)
         ending, found = self.asked(leg_closing.CLOSE, x, how, enough)
         return found if ending == FOUND else None
 
     def settled(self, x: Floats) -> Floats:
-        """The unknowns closed to the last digits, on segments that are short enough.
+        """Return the unknowns closed to the last digits, on segments that are fine enough.
 
-        NoEquilibrium: they cannot be.
+        NoEquilibrium: Newton's method does not converge.
         """
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=False)
-        for enough in (leg_closing.CLOSED, 100.0 * leg_closing.CLOSED):  # slack ones; audited too
+        # slack legs may miss the first limit; the audit judges what meets the second alone
+        for enough in (leg_closing.CLOSED, 100.0 * leg_closing.CLOSED):
             ending, found = self.asked(leg_closing.SETTLE, x, how, enough)
             if ending == FOUND:
                 return found
@@ -153,14 +158,15 @@ class NetSearch:
         return x[first + 3 * end.node :] if end.place is None else np.array(end.place)
 
     def shape(self, i: int, x: Floats) -> Trace:
-        """The shape of a leg as it was marched last, where it is."""
+        """Return the shape of a leg as it was marched last, in the frame of the net."""
         nodes = int(self.net.state[i][leg_numbers.COUNT])
         trace = Trace.of(self.net.lines.work.records[i][FINE], nodes)
         trace.position[:, :2] += self.end(i, x)[:2] - trace.position[-1, :2]
         return trace
 
     def told(self, x: Floats) -> NetSolution:
-        """The solution that was settled, every leg audited and every node in balance.
+        """Return the solution that was settled last, with every leg audited and every node in
+        balance.
 
         NoEquilibrium: it does not pass the checks.
         """
@@ -244,7 +250,7 @@ def with_room(
     solve: Callable[[NetSearch], Answer],
     legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
 ) -> Answer:  # fmt: skip
-    """Return what becomes of a search, with room for as many segments as it takes."""
+    """Return the outcome of a search, repeated with more room until all segments fit."""
     room = ROOM
     while True:
         try:
@@ -254,11 +260,11 @@ def with_room(
 
 
 def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
-    """The unknowns of a net closed to the last digits.
+    """Return the unknowns of a net closed to the last digits.
 
-    Where nothing but slack legs holds it at first, in still water, nothing says which way leads on.
-    It is then sought with slack legs that pull a little after all, and less and less: by a tenth,
-    or in smaller steps where that leads nowhere.
+    If slack legs alone hold a net in still water, no force says which way it drifts. Newton's
+    method then begins with slack legs that pull a little, towards their anchors, and this pull is
+    lowered to a tenth at a time, or by less if that does not converge.
 
     Raises
     ------
@@ -280,8 +286,11 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
 
 
 def about(net: NetSearch, near: NetSolution | None, loose: float = 0.0) -> Floats:
-    """The unknowns of a net about closed: near another, else from still water on, which of several
-    equilibria leads to the highest; where that leads nowhere, from where it comes to rest.
+    """Return roughly closed unknowns of a net.
+
+    They are sought near another solution if there is one. Else the current is raised from still
+    water in steps, which leads to the highest of several equilibria. If that does not converge,
+    they are sought from where lumps let go in the current come to rest (`calm.solve.net_start`).
 
     `loose` is as in `Marching`.
 
