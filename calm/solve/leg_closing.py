@@ -15,7 +15,7 @@ from calm.physics.referee import RefereeShape, find_ends
 from calm.solve.accuracy import Errors, Extent, extrapolate
 from calm.solve.fineness import MOST_ROUNDS, finer
 from calm.solve.leg_from_below import record_down
-from calm.solve.leg_marches import left_over
+from calm.solve.leg_marches import write_residual
 from calm.solve.leg_numbers import (
     ANCHORED,
     COARSE_COUNT,
@@ -60,7 +60,7 @@ NEEDS_ROOM = -1
 DEPTH_ERROR, TENSION_ERROR = range(2)
 
 
-def find_way(net: NetProblem, found: Sequence[float]) -> float:
+def newton_step(net: NetProblem, found: Sequence[float]) -> float:
     """Solve the linear equations of a Newton step for a residual; the size of the step, in shares.
 
     The step goes to `net.way`. Gaussian elimination with partial pivoting; an unknown without a
@@ -102,7 +102,7 @@ def squares(values: Sequence[float]) -> float:
     return total
 
 
-def keep(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
+def copy_values(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
     """Copy values to where they are kept."""
     for k in range(len(values)):
         kept[k] = values[k]
@@ -115,7 +115,7 @@ def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough:
     """
     above, below, scale, slope = -inf, inf, net.scale[0], net.slopes[0][0]
     slope, halved = slope if slope < 0.0 else -1.0, True
-    failure = left_over(net, x, how, False)
+    failure = write_residual(net, x, how, False)
     for _ in range(MOST_HALVED):
         value, left = x[0], net.found[0]
         if failure != GOES_ON or abs(left) <= enough:
@@ -129,7 +129,7 @@ def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough:
             x[0] = 0.5 * (above + below)
         if x[0] == value:
             break
-        failure = left_over(net, x, how, False)
+        failure = write_residual(net, x, how, False)
         slope = (net.found[0] - left) / (x[0] - value) * scale
         halved = abs(net.found[0]) < 0.5 * abs(left)
     net.slopes[0][0] = slope
@@ -151,7 +151,7 @@ def close_net(
     """
     if len(x) == 1:
         return close_one(net, x, how, enough)
-    failure = left_over(net, x, how, not known)
+    failure = write_residual(net, x, how, not known)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NO_SHAPE_NEAR
     return close_on(net, x, how, enough, known)
@@ -164,17 +164,17 @@ def close_on(
     if len(x) == 1:
         return close_one(net, x, how, enough)
     size, trial, fresh, plain, left = len(x), net.trial, not known, known, net.kept
-    keep(net.found, left)
+    copy_values(net.found, left)
     for _ in range(MOST_STEPS):
         if squares(left) <= enough * enough:
             break
         before = squares(left)
-        share = min(1.0, 0.5 / max(find_way(net, left), 1e-300))
+        share = min(1.0, 0.5 / max(newton_step(net, left), 1e-300))
         now = inf
         for _ in range(HALVINGS if fresh else 1):
             for k in range(size):
                 trial[k] = x[k] + share * net.way[k] * net.scale[k]
-            failure = left_over(net, trial, how, False)
+            failure = write_residual(net, trial, how, False)
             if failure == NO_ROOM:
                 return NEEDS_ROOM
             now = squares(net.found) if failure == GOES_ON else inf
@@ -188,24 +188,24 @@ def close_on(
                 return NO_SHAPE_NEAR
             break
         if plain:
-            keep(trial, x)
+            copy_values(trial, x)
             whole = share * share * squares(net.way)
             for k in range(size):
                 off = (net.found[k] - (1.0 - share) * left[k]) * share / max(whole, 1e-300)
                 for m in range(size):
                     net.slopes[k][m] += off * net.way[m]
-            keep(net.found, left)
+            copy_values(net.found, left)
         fresh = not now < LEADS_ON * before
         if fresh and (not plain or squares(left) > enough * enough):
-            failure = left_over(net, x, how, True)
+            failure = write_residual(net, x, how, True)
             if failure != GOES_ON:
                 return NO_SHAPE_NEAR
-            keep(net.found, left)
+            copy_values(net.found, left)
             plain = False
     if squares(left) > MOST_LEFT * MOST_LEFT * enough * enough:
         return NO_SHAPE_NEAR
     if not plain:
-        left_over(net, x, how, False)
+        write_residual(net, x, how, False)
     return FOUND
 
 
@@ -242,7 +242,7 @@ def close_coarsely(
     """Choose segments of twice an angle step [rad] near approximate unknowns; close the net on
     them."""
     choosing = Marching(sea, 2.0 * step, CHOSEN, False, False, COARSE, 0.0)
-    failure = left_over(net, x, choosing, False)
+    failure = write_residual(net, x, choosing, False)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NO_SHAPE_NEAR
     coarse = Marching(sea, 2.0 * step, CHOSEN, True, True, COARSE, 0.0)
@@ -276,7 +276,7 @@ def close_both(
     if ending != FOUND:
         return ending
     record_shapes(net, x, Marching(sea, 2.0 * step, CHOSEN, True, True, COARSE, 0.0))
-    keep(x, net.coarse)
+    copy_values(x, net.coarse)
     for i in range(len(net.legs)):
         state = net.state[i]
         state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
@@ -318,14 +318,14 @@ def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
         pieces = net.legs[i].pieces
         first, last = net.first[i][:pieces], net.last[i][:pieces]
         find_ends(RefereeShape(record, nodes, nodes - 1, first, last))
-        keep(first, net.first[i])
-        keep(last, net.last[i])
+        copy_values(first, net.first[i])
+        copy_values(last, net.last[i])
     net.errors[DEPTH_ERROR], net.errors[TENSION_ERROR] = deep + moved, taut
     return Errors(deep + moved, taut, relative, taut, taut)
 
 
-class AskedNet(NamedTuple):
-    """One task for `ask_net`, the single entry to the compiled laws of a net.
+class NetTask(NamedTuple):
+    """One task for `do_task`, the single entry to the compiled laws of a net.
 
     Attributes
     ----------
@@ -346,7 +346,7 @@ class AskedNet(NamedTuple):
 MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
-def ask_net(asked: AskedNet, _: float) -> float:
+def do_task(asked: NetTask, _: float) -> float:
     """Do a task; return how it ended, or of DRIFTS 1 for yes."""
     net, x, how = asked.net, asked.x, asked.how
     if asked.task == DRIFTS:
@@ -355,12 +355,12 @@ def ask_net(asked: AskedNet, _: float) -> float:
         return float(settle(net, how.sea, x, how.step, asked.enough))
     if asked.task == CLOSE:
         return float(close_net(net, x, how, asked.enough, asked.known))
-    failure = left_over(net, x, how, asked.task == SLOPES)
+    failure = write_residual(net, x, how, asked.task == SLOPES)
     if asked.task == MARCH and failure == GOES_ON:
         record_shapes(net, x, how)
     return float(failure)
 
 
-def ask_now(ask: Callable[[AskedNet, float], float], asked: AskedNet) -> float:
-    """Call `ask_net` by the address of its compiled form."""
+def do_by_address(ask: Callable[[NetTask, float], float], asked: NetTask) -> float:
+    """Call `do_task` by the address of its compiled form."""
     return ask(asked, 0.0)

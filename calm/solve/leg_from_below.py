@@ -170,7 +170,7 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
         end, state[COUNT], state[GROUNDED] = lay(net, i, how.sea, height, how.record, False)
         down = end[2] - height
         state[LIES] = sqrt(end[0] * end[0] + end[1] * end[1] + down * down)
-    meet(net, i, x, how.loose)
+    write_anchor_miss(net, i, x, how.loose)
     return GOES_ON
 
 
@@ -294,7 +294,7 @@ def turn_round(record: Record, nodes: int) -> None:
 
 
 @within
-def meet(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
+def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
     """Write the distance by which a leg misses its anchor, east and north, and the height above the
     seabed at which it begins.
 

@@ -13,7 +13,7 @@ from calm.physics.line import GOES_ON
 from calm.physics.passing import FAILURE, HANGING, LANDED, NODES, How, Z, pass_line
 from calm.physics.passing import GROUNDED as LIES
 from calm.solve.closing import place
-from calm.solve.leg_from_below import march_up, meet, pull_of
+from calm.solve.leg_from_below import march_up, pull_of, write_anchor_miss
 from calm.solve.leg_numbers import (
     ANCHORED,
     COUNT,
@@ -47,7 +47,9 @@ ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-2, 1e-9, 50, -0.3
 how often a leg is marched for it, and the slope at which its secants are held."""
 
 
-def begun(net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]) -> tuple[float, float]:
+def load_leg(
+    net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]
+) -> tuple[float, float]:
     """Load a leg with its unknowns.
 
     Returns
@@ -110,7 +112,7 @@ def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
     """March a leg from its upper end, or from a free lower one."""
     leg, state, problem = net.legs[i], net.state[i], leg_of(net, how.sea, i)
     course, work = problem.course, problem.work
-    depth, out = begun(net, problem, i, x)
+    depth, out = load_leg(net, problem, i, x)
     cuts, counts = work.chosen, work.counts
     record, left = work.records[how.record], work.left
     reach = degrees(how.step) * leg.longest
@@ -174,7 +176,7 @@ def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, colu
             net.slopes[row][column] += change
 
 
-def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes: bool) -> int:
+def write_residual(net: NetProblem, x: MutableSequence[float], how: Marching, slopes: bool) -> int:
     """March all legs and write the residual to `found`; if asked, also its slopes, for which the
     scales of forces are taken anew.
 
@@ -225,10 +227,10 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
             before = x[start + k]
             add_passed(net, i, passed, -1.0 / JUMP, start + k)
             x[start + k] = before + JUMP * net.scale[start + k]
-            meet(net, i, x, how.loose)
+            write_anchor_miss(net, i, x, how.loose)
             add_passed(net, i, passed, 1.0 / JUMP, start + k)
             x[start + k] = before
-            meet(net, i, x, how.loose)
+            write_anchor_miss(net, i, x, how.loose)
     moved = Marching(how.sea, how.step, how.cuts, True, how.exact, OTHER, how.loose)
     free = leg.own + (1 if leg.kind == PULLED and leg.start >= 0 else 0)
     for m in range(free):
@@ -272,4 +274,4 @@ def take_scale(net: NetProblem, i: int, x: Sequence[float], loose: float) -> Non
     for k in range(3):
         net.scale[leg.first + k] = min(max(pull, LEAST_PULL * leg.weight), net.force)
     if leg.kind == ANCHORED:
-        meet(net, i, x, loose)
+        write_anchor_miss(net, i, x, loose)

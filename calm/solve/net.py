@@ -19,7 +19,7 @@ from calm.physics.line import FAILURES, GOES_ON, NO_ROOM, Floats, Line, Trace, W
 from calm.physics.profile import Profile
 from calm.solve import leg_closing, leg_numbers
 from calm.solve.finish import refuse_unbalanced
-from calm.solve.leg_closing import AskedNet, ask_net, ask_now, keep
+from calm.solve.leg_closing import NetTask, copy_values, do_by_address, do_task
 from calm.solve.leg_layout import LaidLeg, NetLeg, lay_net, leg_found, refuse_misplaced, unsettled
 from calm.solve.leg_numbers import Marching
 from calm.solve.mooring import BREATH, stirred
@@ -110,15 +110,15 @@ class NetSearch:
             first += each.unknowns
         return x
 
-    def asked(self, task: int, x: Floats, how: Marching, enough: float = 0.0) -> tuple[int, Floats]:
-        """Do a task of `AskedNet`; return how it ended, and the unknowns after it."""
+    def do(self, task: int, x: Floats, how: Marching, enough: float = 0.0) -> tuple[int, Floats]:
+        """Do a task of `NetTask`; return how it ended, and the unknowns after it."""
         own: Any = x.copy() if self.compiled else x.tolist()
-        asked = AskedNet(task, self.net, own, how, enough, False)
+        asked = NetTask(task, self.net, own, how, enough, False)
         if self.compiled:
-            ask = by_address(ask_net, asked)
-            ending = outcome(ask_now, True, ask, asked)
+            ask = by_address(do_task, asked)
+            ending = outcome(do_by_address, True, ask, asked)
         else:
-            ending = ask_net(asked, 0.0)
+            ending = do_task(asked, 0.0)
         closing = task in (leg_closing.CLOSE, leg_closing.SETTLE)
         if ending == (leg_closing.NEEDS_ROOM if closing else NO_ROOM):
             raise LacksRoom
@@ -136,7 +136,7 @@ class NetSearch:
         `loose` is as in `Marching`.
         """
         how = self.marching(step, CHOSEN, FINE, given=False, loose=loose)
-        ending, found = self.asked(leg_closing.CLOSE, x, how, enough)
+        ending, found = self.do(leg_closing.CLOSE, x, how, enough)
         return found if ending == FOUND else None
 
     def settled(self, x: Floats) -> Floats:
@@ -147,7 +147,7 @@ class NetSearch:
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=False)
         # slack legs may miss the first limit; the audit judges what meets the second alone
         for enough in (leg_closing.CLOSED, 100.0 * leg_closing.CLOSED):
-            ending, found = self.asked(leg_closing.SETTLE, x, how, enough)
+            ending, found = self.do(leg_closing.SETTLE, x, how, enough)
             if ending == FOUND:
                 return found
         raise unsettled("its legs do not come together to the last digits")
@@ -164,7 +164,7 @@ class NetSearch:
         trace.position[:, :2] += self.end(i, x)[:2] - trace.position[-1, :2]
         return trace
 
-    def told(self, x: Floats) -> NetSolution:
+    def solution(self, x: Floats) -> NetSolution:
         """Return the solution that was settled last, with every leg audited and every node in
         balance.
 
@@ -174,7 +174,7 @@ class NetSearch:
         water = self.water
         slow = float(np.hypot(water.u, water.v).max(initial=0.0)) <= BREATH
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=True)
-        if slow and self.asked(leg_closing.DRIFTS, x, how)[0]:
+        if slow and self.do(leg_closing.DRIFTS, x, how)[0]:
             raise Status.SLACK.because(
                 "Nothing holds the net sideways: every leg to an anchor lies on the seabed and is "
                 "slack, so that the net may be anywhere between its anchors.",
@@ -230,7 +230,7 @@ def solve_net(
     expect_many(4.0 * len(legs))
 
     def solved(net: NetSearch) -> NetSolution:
-        found = net.told(settled_from(net, near))
+        found = net.solution(settled_from(net, near))
         before = 0
         for each, leg in zip(net.laid, found.legs, strict=True):
             refuse_misplaced(each, leg, found.depth_error, before)
@@ -271,10 +271,10 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
     NoEquilibrium
     """
     try:
-        return net.settled(about(net, near))
+        return net.settled(roughly_closed(net, near))
     except NoEquilibrium as failure:
         try:
-            x, loose, fall = about(net, None, LOOSE), LOOSE, FALL
+            x, loose, fall = roughly_closed(net, None, LOOSE), LOOSE, FALL
             while loose > TIGHTEST and fall < 0.6:
                 less, step = fall * loose, 4.0 * net.settings.angle_step
                 closer = net.closed(x, step, leg_closing.NEAR, less)
@@ -285,7 +285,7 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
             raise failure from None
 
 
-def about(net: NetSearch, near: NetSolution | None, loose: float = 0.0) -> Floats:
+def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0) -> Floats:
     """Return roughly closed unknowns of a net.
 
     They are sought near another solution if there is one. Else the current is raised from still
@@ -344,13 +344,13 @@ class NearbyNet:
         step = settings.angle_step
         self._how = net.marching(step, CHOSEN, FINE, given=True)
         chosen = net.marching(step, CHOSEN, FINE, given=False)
-        _, x = net.asked(leg_closing.MARCH, about(net, near), chosen)
-        ending, self._x = net.asked(leg_closing.CLOSE, x, self._how, leg_closing.CLOSED)
+        _, x = net.do(leg_closing.MARCH, roughly_closed(net, near), chosen)
+        ending, self._x = net.do(leg_closing.CLOSE, x, self._how, leg_closing.CLOSED)
         if ending != FOUND:
             raise unsettled("its legs do not come together to the last digits")
-        net.asked(leg_closing.SLOPES, self._x, self._how)
+        net.do(leg_closing.SLOPES, self._x, self._how)
         self._slopes = np.array(net.net.slopes)
-        net.asked(leg_closing.MARCH, self._x, self._how)
+        net.do(leg_closing.MARCH, self._x, self._how)
 
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
         """The node at the top of a piece of a leg, or at a clamp, in every one of these shapes."""
@@ -375,15 +375,15 @@ class NearbyNet:
         legs = [each.leg for each in net.laid]
         legs[number] = replace(legs[number], line=line)
         other = NetSearch(legs, net.nodes, net.water, net.settings, net.room)
-        keep(net.net.scale, other.net.scale)
+        copy_values(net.net.scale, other.net.scale)
         mine, its = other.net.lines.work, net.net.lines.work
         for i in range(len(legs)):
             mine.chosen[i][:], mine.counts[i][:] = its.chosen[i], its.counts[i]
         for _ in range(2):
-            other.asked(leg_closing.MARCH, x, self._how)
+            other.do(leg_closing.MARCH, x, self._how)
             left = np.array(other.net.found)
             x = x - np.linalg.lstsq(self._slopes, left, rcond=1e-14)[0] * np.array(net.net.scale)
-        failure, _ = other.asked(leg_closing.MARCH, x, self._how)
+        failure, _ = other.do(leg_closing.MARCH, x, self._how)
         if failure != GOES_ON:
             raise unsettled(FAILURES[failure])
         return other.shape(leg, x).position, float(other.net.state[leg][leg_numbers.SHARE])
