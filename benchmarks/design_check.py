@@ -62,7 +62,7 @@ def main() -> None:
     """Print all figures."""
     words = ["2", "2"] if sys.argv[1:] == ["--smoke"] else sys.argv[1:]
     moorings, environments = (int(word) for word in (*words, 20, 10)[:2])
-    print(describe("calm-mooring", "numpy", "matplotlib", "typst"))
+    print(describe("calm-mooring", "numpy", "typst"))
     print(f"\n{moorings} moorings in {environments} environments, whole process with its report")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

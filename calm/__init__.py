@@ -10,7 +10,7 @@ The names below are loaded when first used, so that `import calm` costs next to 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from calm.version import __version__ as __version__
 
@@ -64,7 +64,7 @@ def __getattr__(name: str) -> object:
 
 
 def _give_results_their_forms() -> None:
-    """Tell results how a notebook shows them, and how they become a dataset."""
+    """Tell results how a notebook shows them, how they are plotted and become a dataset."""
     from calm.case.result import ResultForms
 
     def html(result: AnyResult) -> str:
@@ -78,7 +78,14 @@ def _give_results_their_forms() -> None:
 
         return result_netcdf(result)
 
+    def plot(result: AnyResult, ax: Any) -> Any:
+        from calm.drawing.line_picture import elevation_of
+        from calm.drawing.plot import plot_elevation
+
+        return plot_elevation(elevation_of(result), ax)
+
     ResultForms.notebook_form = staticmethod(html)
+    ResultForms.plot_form = staticmethod(plot)
     ResultForms.netcdf_form = staticmethod(netcdf)
 
 

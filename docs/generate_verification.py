@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from calm.drawing.picture import image
+from calm.drawing.plot import figure_svg
 from calm.physics.reynolds import cylinder_coefficient, sphere_coefficient
 from calm.report.verification import COLUMNS, by_kind, figures
 from calm.verification import (
@@ -249,4 +249,4 @@ if __name__ == "__main__":
         for path, text in written.items():
             path.write_text(text, encoding="utf-8")
         for name, draw in PICTURES.items():
-            (IMAGES / f"{name}.svg").write_bytes(image(draw(), ".svg"))
+            (IMAGES / f"{name}.svg").write_text(figure_svg(draw()), encoding="utf-8")

@@ -22,6 +22,7 @@ from urllib.parse import unquote
 from pages import api, components, gallery, keys, pictures, results
 
 from calm.drawing.picture import image
+from calm.drawing.plot import figure_svg
 
 _ID = re.compile(r'\bid="([^"]+)"')
 _LINK = re.compile(r'<(\w+)\b[^>]*?\s(?:href|src)="([^"]*)"')
@@ -52,7 +53,7 @@ def make(folder: Path) -> None:
     for name, content in gallery.pages().items():
         data = content if isinstance(content, bytes) else content.encode()
         (folder / "gallery" / name).write_bytes(data)
-    (folder / "images" / "hero.png").write_bytes(image(pictures.hero(), ".png"))
+    (folder / "images" / "hero.png").write_bytes(image(figure_svg(pictures.hero()), ".png"))
 
 
 def build(target: Path) -> None:

@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 from calm.batch.profiles import Profiles
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring
+from calm.case.columns import Output, terms
 from calm.case.net import Net
+from calm.case.result_tables import Shape
 from calm.dataset import netcdf
-from calm.dataset.netcdf import CLAMPS, OF_CLAMP, ResultLayout, Variable, labels, numbers, station
+from calm.dataset.netcdf import CLAMPS, ResultLayout, Variable, labels, numbers, station
 from calm.files import Clamp
 from calm.files.legs import leg_numbers
 from calm.files.mooring_file import clamps_down
@@ -24,8 +26,12 @@ from calm.files.rigid import Body
 from calm.physics.line import Floats
 from calm.records.record import Record
 
-_ALONG = {"component": netcdf.OF_COMPONENT, "clamp": OF_CLAMP, "node": netcdf.OF_NODE}
-_LABELLED = {"component": "component_label", "clamp": "clamp_label", "node": "node_distance"}
+_BESIDE = {
+    "component": "component_label depth_top",
+    "clamp": "clamp_label clamp_depth",
+    "node": "node_distance shape_depth",
+}
+"""Label and depth of what goes along a dimension, the coordinates of its variables."""
 _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 
 
@@ -41,7 +47,8 @@ def arrays_of(
     """
     columns = dict(vars(profiles))
     if shape is not None:
-        columns |= {name: columns[name][:, list(shape.clamps)] for name in OF_CLAMP}
+        held = (one.variable for one in profiles.columns()["clamp"])
+        columns |= {name: columns[name][:, list(shape.clamps)] for name in held}
         columns |= {f"shape_{name}": array for name, array in shape.columns(profiles).items()}
     return laid_out(layout, time, columns)
 
@@ -76,13 +83,14 @@ def layout_of(mooring: Mooring | Net, record: Record, shape: ShapeNodes | None) 
     if shape is not None:
         sizes["node"] = len(shape.distance)
         variables += _nodes(shape)
-    for dimension, quantities in _ALONG.items():
+    entered = {**Profiles.columns(), "node": Shape.columns(Output.BATCH)}
+    for dimension, beside in _BESIDE.items():
         if dimension in sizes:
-            beside = f"{_LABELLED[dimension]} {next(iter(quantities))}{where}"
-            variables += numbers(("time", dimension), quantities, beside)
+            columns = terms(entered[dimension])
+            variables += numbers(("time", dimension), columns, f"{beside}{where}")
     legs = mooring.file.legs
     along = ("time", "leg") if legs else ("time",)
-    variables += numbers(along, netcdf.OF_ENDS, where.strip())
+    variables += numbers(along, terms(entered[""]), where.strip())
     if legs:
         sizes["leg"], own = len(legs), leg_numbers(mooring.file)
         of_clamps = [own[piece.index] for piece in pieces for _ in piece.clamps]

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from calm.batch import solving
 from calm.batch.solving import sea_of  # by name: what a compiled law calls
 from calm.batch.statuses import OF_PROFILES, STATUSES
-from calm.case.measure import leaning_of
+from calm.case.line_figures import leaning_of
 from calm.case.net import Net, net_result
 from calm.case.result import NetResult
-from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS
+from calm.case.result_tables import MOORED_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.files.legs import nodes_of
@@ -306,7 +306,7 @@ class NetProfiles:
         pieces, clamps, legs = (row.shape[1] for row in rows)
         place, tilt = np.zeros((count, pieces, 3)), np.zeros((count, pieces))
         above, below = np.zeros((count, pieces)), np.zeros((count, pieces))
-        columns = {name: np.full((count, legs), np.nan) for name in OF_ENDS}
+        columns = {one.name: np.full((count, legs), np.nan) for one in MOORED_ENDS}
         of_clamps, leans, held = rows.clamps, np.zeros((count, clamps)), 0
         for i, (leg, line) in enumerate(zip(file.legs, self.net.legs, strict=True)):
             own = slice(leg.first, leg.first + len(line.line.length))
@@ -386,7 +386,8 @@ class NetProfiles:
         except NoEquilibrium as failure:
             status[case] = STATUSES.index(failure.status)
             return
-        found = {name: getattr(result.components, name) for name in OF_COMPONENT} | result.ends
-        found |= {name: getattr(result.clamps, name.removeprefix("clamp_")) for name in OF_CLAMP}
-        for name, column in found.items():
-            columns[name][case] = column
+        found = result.ends
+        for table in (result.components, result.clamps):
+            found |= {one.variable: getattr(table, one.name) for one in table.columns()}
+        for name, column in columns.items():
+            column[case] = found[name]

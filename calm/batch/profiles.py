@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import prod
 from typing import TYPE_CHECKING, Any
@@ -18,10 +19,11 @@ from calm.batch.net_profiles import NetProfiles
 from calm.batch.solving import LACKS_ROOM, OF_CLAMP, OF_ENDS, OF_PIECE, ProfileArrays, Results
 from calm.batch.statuses import STATUSES, implausible, status_of
 from calm.case import Mooring
+from calm.case.columns import Output, ResultColumn, derive, shown_in
 from calm.case.measure import clamps_of, components_of
 from calm.case.net import Net
-from calm.dataset import netcdf
-from calm.files import CurrentTable
+from calm.case.result_tables import MOORED_ENDS, Clamps, Columnar, Components
+from calm.files import Clamp, CurrentTable, Piece
 from calm.files.mooring_file import clamps_down
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import Floats, Integers, Water
@@ -43,46 +45,59 @@ _ANCHOR_LIFTS = STATUSES.index(Status.ANCHOR_LIFTS.label)
 _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
-@dataclass(frozen=True, repr=False)
-class Profiles:
+class Profiles(Columnar):
     """A mooring in n profiles: NaN where `status` is not 0.
 
     Where the profiles came in an array of more dimensions, n stands for all of these. Depths,
     offsets and knockdown [m], tensions and forces [N], tilt [degrees]; the p components
     are in the order of the file, the anchor last, the m clamps down the line.
 
+    Further attributes are the batch columns: those of `Components` have the shape (n, p), those of
+    `Clamps`, such as ``clamp_depth``, (n, m), and those of the ends (n,), or (n, l) for the legs of
+    a net. `Profiles.columns` lists them.
+
     Attributes
     ----------
     component_label, clamp_label : (p,), (m,)
-    depth_top, x_top, y_top, tension_top, tension_bottom, tilt, knockdown : (n, p)
-    clamp_depth, clamp_x, clamp_y, clamp_tension, clamp_tilt, clamp_knockdown : (n, m)
-    top_depth, anchor_vertical, anchor_horizontal, used_buoyancy : (n,), or (n, l) of the legs of a
-        net: NaN where one has no free upper end or no anchor
-    other_used_buoyancy : (n,) or (n, l) in another equilibrium at the surface; NaN without one
     status : (n,) index in `STATUSES`
     """
 
     component_label: tuple[str, ...]
     clamp_label: tuple[str, ...]
-    depth_top: Floats
-    x_top: Floats
-    y_top: Floats
-    tension_top: Floats
-    tension_bottom: Floats
-    tilt: Floats
-    knockdown: Floats
-    clamp_depth: Floats
-    clamp_x: Floats
-    clamp_y: Floats
-    clamp_tension: Floats
-    clamp_tilt: Floats
-    clamp_knockdown: Floats
-    top_depth: Floats
-    anchor_vertical: Floats
-    anchor_horizontal: Floats
-    used_buoyancy: Floats
-    other_used_buoyancy: Floats
     status: NDArray[np.int8]
+
+    @classmethod
+    def names(cls) -> list[str]:
+        """Return the names of the columns, in their order."""
+        own = (one.variable for columns in cls.columns().values() for one in columns)
+        return ["component_label", "clamp_label", *own, "status"]
+
+    @classmethod
+    def columns(cls) -> dict[str, list[ResultColumn]]:
+        """The batch columns by dimension: `component`, `clamp`, and none for the ends."""
+        return {
+            "component": Components.columns(Output.BATCH),
+            "clamp": Clamps.columns(Output.BATCH),
+            "": shown_in(MOORED_ENDS, Output.BATCH),
+        }
+
+    @classmethod
+    def made(
+        cls, pieces: Sequence[Piece], status: NDArray[np.int8], columns: Mapping[str, Floats]
+    ) -> Profiles:
+        """Make the profiles of a line, with labels and derived columns."""
+        parts: dict[str, Sequence[Piece | Clamp]] = {
+            "component": pieces,
+            "clamp": clamps_down(pieces),
+        }
+        labels = {f"{one}_label": tuple(part.label for part in own) for one, own in parts.items()}
+        known: dict[str, Any] = {**columns}
+        for dimension, own in parts.items():
+            entered = cls.columns()[dimension]
+            given = {one.name: known[one.variable] for one in entered if one.variable in known}
+            found = derive(entered, {"part": own, **given})
+            known |= {one.variable: found[one.name] for one in entered if one.name in found}
+        return cls(**labels, **known, status=status)
 
     def __repr__(self) -> str:
         """Return how many profiles, components and clamps there are."""
@@ -98,17 +113,13 @@ class Profiles:
 
         many = self.status.ndim > 1
         profile = tuple(f"profile_{n}" if many else "profile" for n in range(self.status.ndim))
-        kinds = (
-            (netcdf.OF_COMPONENT, ("component",)),
-            (netcdf.OF_CLAMP, ("clamp",)),
-            (netcdf.OF_ENDS, ("leg",) * (self.top_depth.ndim - self.status.ndim)),
-        )
+        legs = ("leg",) * (self.top_depth.ndim - self.status.ndim)
         variables: dict[str, Any] = {
-            name: (
-                (*profile, *part), getattr(self, name), {"units": unit, "long_name": said, **more}
+            one.variable: (
+                (*profile, *((part,) if part else legs)), getattr(self, one.variable), one.described
             )
-            for quantities, part in kinds
-            for name, (unit, said, more) in quantities.items()
+            for part, columns in self.columns().items()
+            for one in columns
         }  # fmt: skip
         meanings = {"flag_values": range(len(STATUSES)), "flag_meanings": " ".join(STATUSES)}
         variables["status"] = (profile, self.status, meanings)
@@ -122,11 +133,12 @@ class Profiles:
         import pandas
 
         frames = {}
-        for name in (one.name for one in fields(self) if not one.name.endswith("_label")):
+        labels = {"component": self.component_label, "clamp": self.clamp_label}
+        own = {one.variable: part for part, columns in self.columns().items() for one in columns}
+        for name, part in {**own, "status": ""}.items():
             values = getattr(self, name).reshape(self.status.size, -1)
-            named = self.clamp_label if name in netcdf.OF_CLAMP else self.component_label
-            labels = range(values.shape[1]) if name in (*netcdf.OF_ENDS, "status") else named
-            frames[name] = pandas.DataFrame(values, columns=[*labels])
+            named = labels.get(part, range(values.shape[1]))
+            frames[name] = pandas.DataFrame(values, columns=[*named])
         return pandas.concat(frames, axis=1)
 
 
@@ -208,9 +220,7 @@ class Batch:
         status = np.zeros(len(current[1]), np.int8)
         status[self._implausible(current)] = _IMPLAUSIBLE
         columns: dict[str, Any] = self._net.solve(current, status, workers or processors())
-        pieces, clamps = net.file.pieces, clamps_down(net.file.pieces)
-        labels = tuple(piece.label for piece in pieces), tuple(clamp.label for clamp in clamps)
-        return Profiles(labels[0], labels[1], status=status, **columns)
+        return Profiles.made(net.file.pieces, status, columns)
 
     def _solve_lines(
         self, mooring: Mooring, current: tuple[Floats, ...], workers: int | None
@@ -349,7 +359,7 @@ def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
         for name, array in vars(profiles).items()
         if isinstance(array, np.ndarray)
     }
-    return replace(profiles, **columns)
+    return profiles.with_columns(**columns)
 
 
 def _measured(mooring: Mooring, rows: Results, status: NDArray[np.int8]) -> Profiles:
@@ -384,11 +394,8 @@ def _measured(mooring: Mooring, rows: Results, status: NDArray[np.int8]) -> Prof
         for i, name in enumerate(OF_CLAMP)
     }
     columns |= {name: ends[:, i] for i, name in enumerate(OF_ENDS) if name != "end_depth"}
-    return Profiles(
-        component_label=tuple(piece.label for piece in mooring.file.pieces),
-        clamp_label=tuple(clamp.label for clamp in clamps_down(mooring.file.pieces)),
-        knockdown=np.hstack([columns["depth_top"][:, :-1] - depth_top, nothing]),
-        clamp_knockdown=np.hstack([clamps[:, OF_CLAMP.index("depth")] - clamp_depth, standing]),
-        status=status,
-        **columns,
+    columns["knockdown"] = np.hstack([columns["depth_top"][:, :-1] - depth_top, nothing])
+    columns["clamp_knockdown"] = np.hstack(
+        [clamps[:, OF_CLAMP.index("depth")] - clamp_depth, standing]
     )
+    return Profiles.made(mooring.file.pieces, status, columns)

@@ -17,7 +17,8 @@ from calm.assemble import assemble_water
 from calm.case.measure import result_of
 from calm.case.mooring import Mooring, refuse_in_the_slope
 from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, as_read, naming_the_piece
-from calm.case.result import Accuracy, AnchorLoad, EndLoad, NetResult, NodePlace, Result
+from calm.case.result import NetResult, Result
+from calm.case.result_tables import Accuracy, AnchorLoad, EndLoad, NodePlace
 from calm.case.tow import Tow
 from calm.errors import InputError, NoEquilibrium, Problem
 from calm.files import MooringFile, Piece

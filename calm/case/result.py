@@ -13,10 +13,20 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
 
-from calm.case.result_tables import Clamps, Components, Shape
+from calm.case.result_tables import (
+    MOORED_ENDS,
+    Accuracy,
+    AnchorLoad,
+    Clamps,
+    Components,
+    EndLoad,
+    NodePlace,
+    Shape,
+    Top,
+    documents,
+)
 from calm.case.strumming import Strumming, StrummingBand, band_of
-from calm.files import Clamp, MooringFile, Piece
-from calm.files.legs import leg_numbers
+from calm.files import MooringFile
 from calm.physics.line import Floats
 from calm.solve.solution import OtherEquilibrium
 
@@ -32,14 +42,6 @@ def document_of(
     """The JSON object of a result; `ends` stand before its components, `last` behind its clamps."""
     from calm.version import __version__
 
-    components, clamps = result.components.to_dicts(), result.clamps.to_dicts()
-    for component in components:
-        for name in ("kind", "role", "tension", "least_tension"):
-            del component[name]
-    parts: list[Piece | Clamp] = [*result.components.part, *result.clamps.part]
-    for row, part in zip((*components, *clamps), parts, strict=True):
-        if part.serial is not None:
-            row["serial"] = part.serial
     document = result.file.document
     told = ("type", "status", "iterations", "segments", "miss", "closure")
     return {
@@ -49,8 +51,8 @@ def document_of(
         **{name: getattr(result, name) for name in told},
         "accuracy": {k: v for k, v in asdict(result.accuracy).items() if v is not None},
         **ends,
-        "components": components,
-        "clamps": clamps,
+        "components": documents(result.components, result.file),
+        "clamps": documents(result.clamps, result.file),
         **last,
         "warnings": list(result.warnings),
     }
@@ -71,57 +73,6 @@ def _known(part: Strumming | StrummingBand | None) -> dict[str, Any] | None:
     return None if part is None else asdict(part)
 
 
-@dataclass(frozen=True)
-class Accuracy:
-    """The solver's own estimate of its errors.
-
-    Of the worst of any depth or offset [m], of any tension [N], of the vertical and the horizontal
-    pull on the anchor [N], and of the weight that it needs [N]; the last two None in a tow.
-    """
-
-    depth: float
-    tension: float
-    anchor: float | None = None
-    required_weight: float | None = None
-
-
-@dataclass(frozen=True)
-class Top:
-    """The free end: depth, offsets east and north, knockdown [m]; None where there is none.
-
-    `used_buoyancy` is the share in use of the buoyancy that is at the surface, `reserve` the
-    rest of it [N]; 1 and 0 below the surface. `draft` and `freeboard` [m] are those of a float at
-    the surface whose hull is known.
-    """
-
-    depth: float
-    x: float
-    y: float
-    knockdown: float | None
-    used_buoyancy: float
-    reserve: float
-    draft: float | None = None
-    freeboard: float | None = None
-
-
-@dataclass(frozen=True)
-class AnchorLoad:
-    """Hold what the line does to its anchor [N]; `angle` is from the vertical [degrees].
-
-    `required_weight` is the weight in water that holds it, `weight` what it has, `friction` its
-    coefficient on the bed; `grounded_length` is the unstretched length of line on the seabed [m].
-    """
-
-    tension: float
-    vertical: float
-    horizontal: float
-    angle: float
-    required_weight: float
-    weight: float
-    friction: float
-    grounded_length: float
-
-
 @dataclass(frozen=True, kw_only=True, repr=False)
 class ResultForms:
     """Tell how a solution was found, and the forms of a result in a notebook and for other
@@ -130,7 +81,7 @@ class ResultForms:
     `iterations` counts marches, `segments` the cuts of the final one, `miss` is how far the end of
     a line, the worst of a net's, is from where it is held: in height, of a single line [m];
     `closure` the relative force residual recomputed from the final coordinates. `notebook_form`
-    makes HTML of a result, `netcdf_form` a file; the packages above set them.
+    makes HTML of a result, `netcdf_form` a file, `plot_form` draws it; the packages above set them.
     """
 
     name: str
@@ -145,12 +96,22 @@ class ResultForms:
 
     notebook_form: ClassVar[Callable[[Any], str] | None] = None
     netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
+    plot_form: ClassVar[Callable[[Any, Any], Any] | None] = None
 
     if TYPE_CHECKING:
 
         @property
         def components(self) -> Components:
             """Return the pieces."""
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the line from the side on axes of matplotlib, and return them.
+
+        Without `ax` the axes are those of a new figure. UsageError: matplotlib is not installed.
+        """
+        form = type(self).plot_form
+        assert form is not None, "a mooring is read by calm.load"
+        return form(self, ax)
 
     def to_pandas(self) -> Any:
         """Return the components as a pandas data frame."""
@@ -250,41 +211,6 @@ class Result(Solved):
         return line_document(self, ends)
 
 
-@dataclass(frozen=True)
-class EndLoad:
-    """Hold what a leg does to an end that is held, or to its anchor.
-
-    The pull of the line and its parts up and sideways [N], its angle from the vertical [degrees];
-    where the end is [m]. Of an anchor the weight in water that it needs, and has [N], the
-    unstretched length of line on the seabed, and how much more of that there is than leads to the
-    anchor [m].
-    """
-
-    leg: str
-    tension: float
-    vertical: float
-    horizontal: float
-    angle: float
-    x: float
-    y: float
-    depth: float
-    required_weight: float | None = None
-    weight: float | None = None
-    grounded_length: float = 0.0
-    slack_length: float = 0.0
-
-
-@dataclass(frozen=True)
-class NodePlace:
-    """Hold where the legs of a node meet [m]; `imbalance` is left of their pulls there [N]."""
-
-    name: str
-    depth: float
-    x: float
-    y: float
-    imbalance: float
-
-
 @dataclass(frozen=True, kw_only=True, repr=False)
 class NetResult(ResultForms):
     """A converged net. Lengths and depths [m], forces [N], angles [degrees].
@@ -341,13 +267,10 @@ class NetResult(ResultForms):
         """Of each leg the depth of its free upper end [m], the share in use of the buoyancy there,
         and the pull on its anchor up and sideways [N]; NaN where there is none.
         """
-        free = np.array([1.0 if keys.top.free else nan for keys in self.file.legs])
         return {
-            "top_depth": free * [leg.top.depth for leg in self.legs],
-            "anchor_vertical": np.array([leg.anchor.vertical for leg in self.legs]),
-            "anchor_horizontal": np.array([leg.anchor.horizontal for leg in self.legs]),
-            "used_buoyancy": free * [leg.top.used_buoyancy for leg in self.legs],
-            "other_used_buoyancy": nan * free,
+            one.name: np.array([one.found(leg) for leg in self.legs])
+            for one in MOORED_ENDS
+            if one.found
         }
 
     def to_dict(self) -> dict[str, Any]:
@@ -372,10 +295,7 @@ class NetResult(ResultForms):
                 for leg in self.legs
             ],
         }
-        document, numbers = document_of(self, ends), leg_numbers(self.file)
-        for row in (*document["components"], *document["clamps"]):
-            row["leg"] = self.legs[numbers[row["index"]]].name
-        return document
+        return document_of(self, ends)
 
 
 _OF_ANCHORS = ("required_weight", "weight", "grounded_length", "slack_length")

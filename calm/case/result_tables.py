@@ -1,18 +1,35 @@
-"""Tables kept by column: one array per figure, records and data frames on demand."""
+"""The registry of result columns, and the tables that hold them.
+
+A table stores one array per column and makes records and data frames on demand. To add a column,
+add a field with its entry to the class of its rows; a computation longer than one line goes into
+`calm.case.line_figures`. `OF_ROWS`, `MOORED_ENDS` and `TOWED_ENDS` have the columns of outputs
+only.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
 from functools import cached_property
 from itertools import chain
-from math import isfinite
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, Self, TypeVar
+from math import hypot, isfinite, nan
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, NamedTuple, Protocol, Self, TypeVar
 
 import numpy as np
 
+from calm.case.columns import (
+    FILES,
+    LINE_TABLES,
+    Output,
+    ResultColumn,
+    column,
+    columns_of,
+    derive,
+    shown_in,
+)
+from calm.case.line_figures import catalogue_figures
 from calm.errors import unknown
-from calm.files import Clamp, Piece, Place
+from calm.files import Clamp, MooringFile, Piece, Place
 from calm.files.mooring_file import STAND_IN
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES
@@ -27,19 +44,13 @@ _OF_THE_FILE = "part"
 """The column with the models of the file, left out of JSON and of a data frame."""
 
 
-class ColumnTable(Generic[Row]):
-    """A table of rows that is kept by column: `table.depth` has the `depth` of all its rows.
-
-    A column is an array of numbers, or a list. Its names are those of the fields of `record`.
-    """
-
-    record: ClassVar[type[Any]]
-    label: list[str]
+class Columnar:
+    """Columns by their names: `table.depth` has the `depth` of all rows."""
 
     def __init__(self, **columns: Any) -> None:
         if sorted(columns) != sorted(self.names()):
             raise TypeError(f"the columns of {type(self).__name__} are {', '.join(self.names())}")
-        vars(self).update({name: columns[name] for name in self.names()})
+        self.__dict__ = {name: columns[name] for name in self.names()}
 
     if TYPE_CHECKING:
 
@@ -49,7 +60,52 @@ class ColumnTable(Generic[Row]):
     @classmethod
     def names(cls) -> list[str]:
         """Return the names of the columns, in their order."""
+        raise NotImplementedError
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in self.names()}
+
+    def with_columns(self, **columns: Any) -> Self:
+        """Return the same table with other columns in place of some of its own."""
+        return type(self)(**{**self.__getstate__(), **columns})
+
+
+class ColumnTable(Columnar, Generic[Row]):
+    """A table of rows that is kept by column.
+
+    A column is an array of numbers, or a list. Its names are those of the fields of `record`.
+    """
+
+    record: ClassVar[type[Any]]
+    label: list[str]
+
+    @classmethod
+    def names(cls) -> list[str]:
+        """Return the names of the columns, in their order."""
         return [each.name for each in fields(cls.record)]
+
+    @classmethod
+    def columns(cls, output: Output | None = None) -> list[ResultColumn]:
+        """The entries of the columns, by default all, else those that an output shows."""
+        every = columns_of(cls.record)
+        return [*every] if output is None else shown_in(every, output)
+
+    @classmethod
+    def made(cls, parts: Sequence[Any], value: Callable[[ResultColumn], Any]) -> Self:
+        """Make a table of pieces or clamps of a file, with its derived columns.
+
+        Parameters
+        ----------
+        parts : the piece or clamp of each row
+        value : computes a column that neither `of_part` nor `derived` gives
+        """
+        known: dict[str, Any] = {}
+        for one in cls.columns():
+            if one.of_part is not None:
+                known[one.name] = [one.of_part(part) for part in parts]
+            elif one.derived is None:
+                known[one.name] = value(one)
+        return cls(**known, **derive(cls.columns(), known))
 
     @classmethod
     def joined(cls, tables: Sequence[Self]) -> Self:
@@ -83,9 +139,6 @@ class ColumnTable(Generic[Row]):
     def __iter__(self) -> Iterator[Row]:
         return iter(self._records)
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {name: getattr(self, name) for name in self.names()}
-
     @cached_property
     def _records(self) -> tuple[Row, ...]:
         """The rows, which every rule of a design check goes through again."""
@@ -93,10 +146,6 @@ class ColumnTable(Generic[Row]):
         # whole columns become plain numbers faster than their numbers one by one
         plain = [column if isinstance(column, list) else column.tolist() for column in columns]
         return tuple(map(self.record, *plain))
-
-    def with_columns(self, **columns: Any) -> Self:
-        """Return the same table with other columns in place of some of its own."""
-        return type(self)(**{**self.__getstate__(), **columns})
 
     def head(self, count: int) -> Self:
         """Return the first rows."""
@@ -121,52 +170,209 @@ class ColumnTable(Generic[Row]):
 
     def to_xarray(self) -> Dataset:
         """Return a dataset over `label`, with units and meanings."""
-        return _dataset(self.to_pandas(), "label")
+        return _dataset(self.to_pandas(), self.columns(), "label")
 
 
-def _dataset(columns: Mapping[str, Any], along: str) -> Dataset:
+def _dataset(values: Mapping[str, Any], columns: Sequence[ResultColumn], along: str) -> Dataset:
     """Columns of equal length as a dataset of one dimension."""
     from xarray import Dataset
 
-    said = {
-        name: {"units": QUANTITIES[name].unit or "1", "long_name": QUANTITIES[name].meaning}
-        for name in columns
-        if name in QUANTITIES
-    }
-    return Dataset({name: (along, [*columns[name]], said.get(name)) for name in columns})
+    return Dataset(
+        {
+            one.name: (along, [*values[one.name]], one.described)
+            for one in columns
+            if one.name in values
+        }
+    )
 
 
 def _known(value: Any) -> Any:
     return None if isinstance(value, float) and not isfinite(value) else value
 
 
+class LineEnd(NamedTuple):
+    """Input of the anchor's row: the row above the anchor, its piece, the water depth [m]."""
+
+    above: ComponentRow
+    piece: Piece
+    seabed: float
+
+    @property
+    def height(self) -> float:
+        """Height of the anchor [m]."""
+        return self.piece.length or 0.0
+
+
+class OnAnchor(NamedTuple):
+    """Input of the row of a clamp on an anchor: the clamp, and the row of the anchor."""
+
+    clamp: Clamp
+    anchor: ComponentRow
+
+
+_LEVEL = {"standard_name": "depth", "positive": "down"}
+_EAST, _NORTH = "offset to the east of the anchor", "offset to the north of the anchor"
+_IN_BATCHES = FILES | Output.BATCH
+_OF_PIECES = FILES & ~Output.NETCDF
+_OF_NODES = Output.JSON | Output.NETCDF
+
+
 @dataclass(frozen=True, slots=True)
 class ComponentRow:
     """A piece of a solved line: a row of `Components`, which says what the figures are."""
 
-    part: Piece = field(repr=False)
-    index: int
-    use: str
-    label: str
-    kind: str
-    role: str
-    length: float
-    cut_length: float
-    depth_top: float
-    depth_bottom: float
-    x_top: float
-    y_top: float
-    x_bottom: float
-    y_bottom: float
-    tension_top: float
-    tension_bottom: float
-    tension: float
-    least_tension: float
-    tilt: float
-    knockdown: float
-    safety_factor: float
-    utilisation: float
-    reynolds: float
+    part: Piece = column("the piece of the file", of_part=lambda piece: piece, in_repr=False)
+    index: int = column(
+        "number of the piece in the file, from 0",
+        _OF_PIECES,
+        title="no.",
+        unit="",
+        decimals=0,
+        found=lambda line: line.index,
+        at_anchor=lambda end: end.piece.index,
+    )
+    use: str = column("the component's id", _OF_PIECES, of_part=lambda piece: piece.use)
+    label: str = column(
+        "name of the piece in this line", _OF_PIECES, of_part=lambda piece: piece.label
+    )
+    kind: str = column("kind of component", of_part=lambda piece: piece.component.kind)
+    role: str = column(
+        "purpose of the piece, such as float or instrument",
+        of_part=lambda piece: piece.component.role,
+    )
+    length: float = column(
+        "length, stretched",
+        FILES | LINE_TABLES,
+        place=1,
+        found=lambda line: line.length,
+        at_anchor=lambda end: end.height,
+    )
+    cut_length: float = column(
+        "length before any load",
+        FILES,
+        found=lambda line: line.cut_length,
+        at_anchor=lambda end: end.height,
+    )
+    depth_top: float = column(
+        "depth of the upper end",
+        _IN_BATCHES,
+        title="depth, upper end",
+        unit="m",
+        found=lambda line: -line.top[:, 2],
+        at_anchor=lambda end: end.above.depth_bottom,
+        attributes=_LEVEL,
+    )
+    depth_bottom: float = column(
+        "depth of the lower end",
+        FILES,
+        title="depth, lower end",
+        unit="m",
+        found=lambda line: -line.bottom[:, 2],
+        at_anchor=lambda end: end.seabed,
+        attributes=_LEVEL,
+    )
+    x_top: float = column(
+        f"{_EAST}, of the upper end",
+        _IN_BATCHES,
+        title="east, upper end",
+        unit="m",
+        found=lambda line: line.top[:, 0],
+        at_anchor=lambda end: end.above.x_bottom,
+    )
+    y_top: float = column(
+        f"{_NORTH}, of the upper end",
+        _IN_BATCHES,
+        title="north, upper end",
+        unit="m",
+        found=lambda line: line.top[:, 1],
+        at_anchor=lambda end: end.above.y_bottom,
+    )
+    x_bottom: float = column(
+        "offset to the east, of the lower end",
+        FILES,
+        title="east, lower end",
+        unit="m",
+        found=lambda line: line.bottom[:, 0],
+        at_anchor=lambda end: end.above.x_bottom,
+    )
+    y_bottom: float = column(
+        "offset to the north, of the lower end",
+        FILES,
+        title="north, lower end",
+        unit="m",
+        found=lambda line: line.bottom[:, 1],
+        at_anchor=lambda end: end.above.y_bottom,
+    )
+    tension_top: float = column(
+        "tension at the upper end",
+        _IN_BATCHES,
+        title="tension, upper end",
+        unit="N",
+        decimals=0,
+        found=lambda line: line.tension_top,
+        at_anchor=lambda end: end.above.tension_bottom,
+    )
+    tension_bottom: float = column(
+        "tension at the lower end",
+        _IN_BATCHES,
+        title="tension, lower end",
+        unit="N",
+        decimals=0,
+        found=lambda line: line.tension_bottom,
+        at_anchor=lambda end: end.above.tension_bottom,
+    )
+    tension: float = column(
+        "greatest tension in the piece",
+        LINE_TABLES | Output.BUILDER,
+        place=10,
+        found=lambda line: line.greatest_tension,
+        at_anchor=lambda end: end.above.tension_bottom,
+    )
+    least_tension: float = column(
+        "least tension above the seabed; unknown for a piece that lies on it entirely",
+        title="least tension",
+        unit="N",
+        decimals=0,
+        found=lambda line: line.least_tension,
+        at_anchor=lambda end: end.above.tension_bottom,
+    )
+    tilt: float = column(
+        "angle of the chord from the vertical",
+        _IN_BATCHES | LINE_TABLES | Output.BUILDER,
+        place=9,
+        found=lambda line: line.tilt,
+        at_anchor=lambda end: 0.0,
+    )
+    knockdown: float = column(
+        "depth of the upper end less its depth in still water",
+        _IN_BATCHES | Output.MOORING_TABLE | Output.NET_TABLE,
+        place=6,
+        found=lambda line: line.knockdown,
+        at_anchor=lambda end: 0.0,
+    )
+    safety_factor: float = column(
+        "breaking load over the greatest tension",
+        FILES | LINE_TABLES,
+        place=11,
+        derived=lambda rows: (
+            catalogue_figures(rows.part, "breaking_load")
+            / np.where(rows.tension > 0, rows.tension, nan)
+        ),
+    )
+    utilisation: float = column(
+        "greatest tension over the working load",
+        FILES,
+        derived=lambda rows: rows.tension / catalogue_figures(rows.part, "working_load"),
+    )
+    reynolds: float = column(
+        "greatest Reynolds number of speed and diameter",
+        Output.JSON,
+        title="Reynolds number",
+        unit="",
+        decimals=0,
+        found=lambda line: line.reynolds,
+        at_anchor=lambda end: nan,
+    )
 
     @property
     def place(self) -> Place:
@@ -183,16 +389,57 @@ class ComponentRow:
 class ClampRow:
     """An instrument clamped on a solved line: a row of `Clamps`."""
 
-    part: Clamp = field(repr=False)
-    index: int
-    use: str
-    label: str
-    depth: float
-    x: float
-    y: float
-    tension: float
-    tilt: float
-    knockdown: float
+    prefix: ClassVar[str] = "clamp_"
+
+    part: Clamp = column("the clamp of the file", of_part=lambda clamp: clamp, in_repr=False)
+    index: int = column(
+        "number of the piece that it sits on, from 0",
+        _OF_PIECES,
+        title="no.",
+        unit="",
+        decimals=0,
+        found=lambda held: held.index,
+        at_anchor=lambda on: on.anchor.index,
+    )
+    use: str = column("the component's id", _OF_PIECES, of_part=lambda clamp: clamp.use)
+    label: str = column("its name in this line", _OF_PIECES, of_part=lambda clamp: clamp.label)
+    depth: float = column(
+        "depth of the clamped instrument",
+        _IN_BATCHES,
+        found=lambda held: -held.position[:, 2],
+        at_anchor=lambda on: on.anchor.depth_top + on.clamp.at,
+        attributes=_LEVEL,
+    )
+    x: float = column(
+        f"{_EAST}, of the clamped instrument",
+        _IN_BATCHES,
+        found=lambda held: held.position[:, 0],
+        at_anchor=lambda on: on.anchor.x_bottom,
+    )
+    y: float = column(
+        f"{_NORTH}, of the clamped instrument",
+        _IN_BATCHES,
+        found=lambda held: held.position[:, 1],
+        at_anchor=lambda on: on.anchor.y_bottom,
+    )
+    tension: float = column(
+        "tension at the clamp",
+        _IN_BATCHES,
+        found=lambda held: held.tension,
+        at_anchor=lambda on: on.anchor.tension,
+    )
+    tilt: float = column(
+        "angle of the line at the clamp from the vertical",
+        _IN_BATCHES,
+        found=lambda held: held.tilt,
+        at_anchor=lambda on: on.anchor.tilt,
+    )
+    knockdown: float = column(
+        "depth of the clamped instrument less its depth in still water",
+        _IN_BATCHES,
+        found=lambda held: held.knockdown,
+        at_anchor=lambda on: on.anchor.knockdown,
+    )
 
     @property
     def place(self) -> Place:
@@ -205,25 +452,51 @@ class ClampRow:
         return self.depth, self.x, self.y
 
 
+def _height(row: ComponentRow | ClampRow, file: MooringFile) -> float:
+    bottom = file.environment.depth
+    return nan if bottom is None else bottom - row.upper[0]
+
+
+def _offset(row: ComponentRow | ClampRow, _: MooringFile) -> float:
+    return hypot(*row.upper[1:])
+
+
+def _leg(row: ComponentRow | ClampRow, file: MooringFile) -> str | None:
+    alone = len(file.legs) == 1
+    own = (leg.name for leg in file.legs if alone or leg.first <= row.index < leg.end)
+    return next(own, None)
+
+
+OF_ROWS = tuple(
+    ResultColumn(name, QUANTITIES.get(name), description, outputs, of_row=of_row, **more)
+    for name, description, outputs, of_row, more in (
+        ("depth", "depth of the upper end", LINE_TABLES | Output.BUILDER,
+         lambda row, _: row.upper[0], {"place": 2, "worst": lambda depths: depths[0]}),
+        ("layback", "horizontal distance of the upper end behind the tow point",
+         Output.TOW_TABLE, _offset, {"place": 3}),
+        ("x", _EAST, Output.NET_TABLE, lambda row, _: row.upper[1], {"place": 3}),
+        ("y", _NORTH, Output.NET_TABLE, lambda row, _: row.upper[2], {"place": 4}),
+        ("height", "height of the upper end above the seabed", Output.MOORING_TABLE, _height,
+         {"place": 5}),
+        ("offset", "horizontal distance of the upper end from the anchor",
+         Output.MOORING_TABLE, _offset, {"place": 7}),
+        ("serial", "serial number, where the file gives one", Output.JSON,
+         lambda row, _: row.part.serial, {}),
+        ("leg", "name of the leg, of a net", Output.JSON | Output.CSV, _leg, {}),
+    )
+)  # fmt: skip
+"""Columns of pieces and clamps that no table stores: outputs compute them row by row. JSON omits a
+column that is None.
+"""
+
+
 class Components(ColumnTable[ComponentRow]):
     """The n pieces of the line in file order; NaN where a figure is unknown.
 
-    Those of a mooring from the free end down, the anchor last; those of a tow from the ship.
-
-    Attributes
-    ----------
-    part : (n,) the piece of the file
-    index, use, label, kind, role : (n,) which it is, of what component
-    length, cut_length : (n,) stretched and unstretched [m]
-    depth_top, depth_bottom : (n,) of the first-listed and the other end [m], + down
-    x_top, y_top, x_bottom, y_bottom : (n,) east and north of the anchor or the tow point [m]
-    tension_top, tension_bottom, tension : (n,) at the ends and the greatest in the piece [N]
-    least_tension : (n,) of what does not lie on the seabed [N]; NaN where all of a piece does
-    tilt : (n,) of the chord from the lower to the upper end, from the vertical [degrees]
-    knockdown : (n,) depth_top less the same in still water [m]; NaN in a tow
-    safety_factor : (n,) breaking load / greatest tension
-    utilisation : (n,) greatest tension / working load
-    reynolds : (n,) greatest Reynolds number of speed and diameter
+    Those of a mooring from the free end down, the anchor last; those of a tow from the ship. The
+    columns are the fields of `ComponentRow`, (n,) each: `part`, `use`, `label`, `kind` and `role`
+    are lists, lengths, depths and offsets are in m, tensions in N, `tilt` in degrees; x and y are
+    east and north of the anchor or the tow point, depths + down. `knockdown` is NaN in a tow.
     """
 
     record = ComponentRow
@@ -232,18 +505,29 @@ class Components(ColumnTable[ComponentRow]):
 class Clamps(ColumnTable[ClampRow]):
     """The m instruments clamped on the line, in file order.
 
-    Attributes
-    ----------
-    part : (m,) the clamp of the file
-    index : (m,) of the piece each sits on
-    use, label : (m,)
-    depth, x, y, knockdown : (m,) [m]
-    tension : (m,) the greater of those above and below [N]
-    tilt : (m,) of the pull in the line, of the sum of those above and below; on a rigid piece that
-        of the piece [degrees]
+    The columns are the fields of `ClampRow`, (m,) each. `tension` is the greater of those above and
+    below the clamp [N], `tilt` that of the pull in the line, of the sum of those above and below;
+    on a rigid piece that of the piece [degrees].
     """
 
     record = ClampRow
+
+
+def documents(table: Components | Clamps, file: MooringFile) -> list[dict[str, Any]]:
+    """The rows as JSON objects; None for unknown figures."""
+    own, beside = table.columns(Output.JSON), shown_in(OF_ROWS, Output.JSON)
+    rows = []
+    for row in table:
+        told = {one.name: _known(getattr(row, one.name)) for one in own}
+        more = {one.name: one.value(row, file) for one in beside}
+        rows.append(told | {name: value for name, value in more.items() if value is not None})
+    return rows
+
+
+def table_columns(output: Output) -> list[ResultColumn]:
+    """The columns of a table for people, from the left; for the builder in the order of entry."""
+    shown = shown_in((*OF_ROWS, *Components.columns()), output)
+    return shown if output == Output.BUILDER else sorted(shown, key=lambda one: one.place)
 
 
 @dataclass(frozen=True, repr=False)
@@ -257,11 +541,38 @@ class Shape:
     tilt : (k,) of the segment that ends there [degrees]
     """
 
-    depth: Floats
-    x: Floats
-    y: Floats
-    tension: Floats
-    tilt: Floats
+    prefix: ClassVar[str] = "shape_"
+
+    depth: Floats = column(
+        "depth of the line",
+        _OF_NODES | Output.BATCH,
+        found=lambda nodes: -nodes.position[:, 2],
+        attributes=_LEVEL,
+    )
+    x: Floats = column(
+        f"{_EAST}, of the line",
+        _OF_NODES | Output.BATCH,
+        found=lambda nodes: nodes.position[:, 0],
+    )
+    y: Floats = column(
+        f"{_NORTH}, of the line",
+        _OF_NODES | Output.BATCH,
+        found=lambda nodes: nodes.position[:, 1],
+    )
+    tension: Floats = column(
+        "tension of the line", _OF_NODES | Output.BATCH, found=lambda nodes: nodes.tension
+    )
+    tilt: Floats = column(
+        "angle of the segment that ends there from the vertical",
+        _OF_NODES,
+        found=lambda nodes: nodes.tilt,
+    )
+
+    @classmethod
+    def columns(cls, output: Output | None = None) -> list[ResultColumn]:
+        """The entries of the columns, by default all, else those that an output shows."""
+        every = columns_of(cls)
+        return [*every] if output is None else shown_in(every, output)
 
     def __repr__(self) -> str:
         """Return how many nodes there are."""
@@ -269,7 +580,7 @@ class Shape:
 
     def to_dict(self) -> dict[str, list[float]]:
         """Return the columns as lists of plain numbers."""
-        return {name: column.tolist() for name, column in vars(self).items()}
+        return {one.name: getattr(self, one.name).tolist() for one in self.columns(Output.JSON)}
 
     def to_pandas(self) -> pandas.DataFrame:
         """Return a pandas data frame with a row a node."""
@@ -279,7 +590,226 @@ class Shape:
 
     def to_xarray(self) -> Dataset:
         """Return a dataset over `node`, with units and meanings."""
-        return _dataset(vars(self), "node")
+        return _dataset(vars(self), self.columns(), "node")
+
+
+# The ends of lines. `calm.case` computes them where it makes these records; all fields are in JSON.
+
+_AN_END = Output.JSON | Output.NET_TABLE
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Error estimates of the solver; None where a result, such as a tow, has no anchor."""
+
+    depth: float = column("worst error expected of any depth or offset", Output.JSON)
+    tension: float = column("worst error expected of any tension", Output.JSON)
+    anchor: float | None = column(
+        "worst error expected of the vertical and horizontal pull on the anchor",
+        Output.JSON,
+        title="pull on the anchor",
+        unit="N",
+        decimals=0,
+        default=None,
+    )
+    required_weight: float | None = column(
+        "error expected of the weight in water that the anchor needs", Output.JSON, default=None
+    )
+
+
+@dataclass(frozen=True)
+class Top:
+    """The free end of a line; None for figures that it lacks."""
+
+    depth: float = column("depth of the free end", Output.JSON)
+    x: float = column(f"{_EAST}, of the free end", Output.JSON)
+    y: float = column(f"{_NORTH}, of the free end", Output.JSON)
+    knockdown: float | None = column(
+        "depth of the free end less its depth in still water", Output.JSON
+    )
+    used_buoyancy: float = column(
+        "share of the buoyancy at the surface that is in use; 1 below the surface", Output.JSON
+    )
+    reserve: float = column(
+        "buoyancy at the surface that is not in use; 0 below the surface", Output.JSON
+    )
+    draft: float | None = column(
+        "draft of the hull at the surface, if the hull is known", Output.JSON, default=None
+    )
+    freeboard: float | None = column(
+        "freeboard of the hull at the surface, if the hull is known", Output.JSON, default=None
+    )
+
+
+@dataclass(frozen=True)
+class AnchorLoad:
+    """The load of a line on its anchor."""
+
+    tension: float = column("tension of the line at the anchor", Output.JSON)
+    vertical: float = column("upward pull of the line on the anchor", Output.JSON)
+    horizontal: float = column("horizontal pull of the line on the anchor", Output.JSON)
+    angle: float = column("angle of the pull from the vertical", Output.JSON)
+    required_weight: float = column("weight in water that the anchor needs", Output.JSON)
+    weight: float = column("weight of the anchor in water", Output.JSON)
+    friction: float = column("coefficient of friction of the anchor on the seabed", Output.JSON)
+    grounded_length: float = column("unstretched length of line on the seabed", Output.JSON)
+
+
+@dataclass(frozen=True)
+class TowPoint:
+    """The load of a towed line on the ship."""
+
+    tension: float = column("tension of the line at the ship", Output.JSON)
+    angle: float = column("angle of the line at the ship below the horizontal", Output.JSON)
+    vertical: float = column("downward pull on the ship", Output.JSON)
+    horizontal: float = column("backward pull on the ship", Output.JSON)
+
+
+@dataclass(frozen=True)
+class TowedBody:
+    """The upper end of the lowest piece of a tow, or the free end of a bare cable."""
+
+    depth: float = column("depth of the towed body", Output.JSON)
+    layback: float = column("horizontal distance behind the tow point", Output.JSON)
+    tension: float = column("tension at the towed body", Output.JSON)
+    angle: float = column("angle of the line above the body from the horizontal", Output.JSON)
+
+
+@dataclass(frozen=True)
+class EndLoad:
+    """The load of a leg on its anchor, or on what holds its end; held ends lack the last four."""
+
+    leg: str = column("name of the leg", Output.JSON)
+    tension: float = column("tension of the leg at its end", _AN_END, title="pull", place=1)
+    vertical: float = column("upward pull of the leg", _AN_END, title="up", place=2)
+    horizontal: float = column("horizontal pull of the leg", _AN_END, title="sideways", place=3)
+    angle: float = column("angle of the pull from the vertical", Output.JSON)
+    x: float = column("offset of the end to the east of the origin", _AN_END, place=5)
+    y: float = column("offset of the end to the north of the origin", _AN_END, place=6)
+    depth: float = column("depth of the end", _AN_END, place=4)
+    required_weight: float | None = column(
+        "weight in water that the anchor needs", _AN_END, title="needs", place=7, default=None
+    )
+    weight: float | None = column("weight of the anchor in water", Output.JSON, default=None)
+    grounded_length: float = column(
+        "unstretched length of the leg on the seabed", Output.JSON, default=0.0
+    )
+    slack_length: float = column(
+        "surplus length on the seabed, beyond the way to the anchor",
+        Output.JSON,
+        title="slack length",
+        unit="m",
+        default=0.0,
+    )
+
+
+@dataclass(frozen=True)
+class NodePlace:
+    """A node, where legs meet."""
+
+    name: str = column("name of the node", Output.JSON)
+    depth: float = column("depth of the node", _AN_END)
+    x: float = column("offset of the node to the east of the origin", _AN_END)
+    y: float = column("offset of the node to the north of the origin", _AN_END)
+    imbalance: float = column(
+        "remaining sum of the pulls at the node",
+        Output.JSON,
+        title="imbalance",
+        unit="N",
+        decimals=2,
+    )
+
+
+ENDS: Mapping[str, type[Any]] = {
+    "accuracy": Accuracy,
+    "top": Top,
+    "anchor": AnchorLoad,
+    "tow_point": TowPoint,
+    "body": TowedBody,
+}
+"""Records of a single line by their names in JSON and of the result in Python."""
+
+NET_ENDS: Mapping[str, type[Any]] = {"anchors": EndLoad, "held": EndLoad, "nodes": NodePlace}
+"""Records of a net, each name for several of them."""
+
+
+def _free(line: Any) -> float:
+    """1 for a line with a free upper end, NaN for a leg that is held or joined there."""
+    legs = line.file.legs
+    return 1.0 if not legs or legs[0].top.free else nan
+
+
+_OF_ENDS = Output.NETCDF | Output.BATCH
+MOORED_ENDS = (
+    ResultColumn(
+        "top_depth",
+        QUANTITIES["depth"],
+        "depth of the free end",
+        _OF_ENDS,
+        found=lambda line: _free(line) * line.top.depth,
+    ),
+    ResultColumn(
+        "anchor_vertical",
+        QUANTITIES["vertical"],
+        "upward pull of the line on the anchor",
+        _OF_ENDS,
+        found=lambda line: line.anchor.vertical,
+    ),
+    ResultColumn(
+        "anchor_horizontal",
+        QUANTITIES["horizontal"],
+        "horizontal pull of the line on the anchor",
+        _OF_ENDS,
+        found=lambda line: line.anchor.horizontal,
+    ),
+    ResultColumn(
+        "used_buoyancy",
+        QUANTITIES["used_buoyancy"],
+        "share of the buoyancy at the surface that is in use",
+        _OF_ENDS,
+        found=lambda line: _free(line) * line.top.used_buoyancy,
+    ),
+    ResultColumn(
+        "other_used_buoyancy",
+        QUANTITIES["used_buoyancy"],
+        "the same share in another equilibrium, if one was found",
+        _OF_ENDS,
+        found=lambda line: _free(line) * line.other_used_buoyancy,
+    ),
+)
+"""Columns of the ends of a moored line, or of each leg of a net."""
+
+TOWED_ENDS = (
+    ResultColumn(
+        "speed",
+        QUANTITIES["speed"],
+        "speed of the ship over the ground",
+        Output.NETCDF,
+        found=lambda tow: tow.speed,
+    ),
+    ResultColumn(
+        "body_depth",
+        QUANTITIES["depth"],
+        "depth of the towed body",
+        Output.NETCDF,
+        found=lambda tow: tow.body.depth,
+    ),
+    ResultColumn(
+        "layback",
+        QUANTITIES["layback"],
+        "horizontal distance of the towed body behind the tow point",
+        Output.NETCDF,
+        found=lambda tow: tow.body.layback,
+    ),
+    ResultColumn(
+        "tow_tension",
+        QUANTITIES["tension"],
+        "tension at the tow point",
+        Output.NETCDF,
+        found=lambda tow: tow.tow_point.tension,
+    ),
+)
+"""Columns of the ends of a tow."""
 
 
 class WithClamps(Protocol):

@@ -6,8 +6,8 @@ from math import hypot
 from typing import Any
 
 from calm.case.parts import TOP, one_part
-from calm.case.result import AnchorLoad, EndLoad, NetResult, Result, legs_of
-from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place
+from calm.case.result import NetResult, Result, legs_of
+from calm.case.result_tables import AnchorLoad, ClampRow, ComponentRow, EndLoad, rows_by_place
 from calm.errors import UsageError, unknown
 from calm.files import MooringFile, Place
 from calm.files.mooring_file import STAND_IN, parts_of

@@ -12,7 +12,8 @@ from calm.assemble import assemble_line, assemble_water
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
 from calm.case.parts import Origin, OtherEnvironment, ReadFromFile, cut_like, naming_the_piece
-from calm.case.result import Accuracy, Solved, line_document
+from calm.case.result import Solved, line_document
+from calm.case.result_tables import Accuracy, TowedBody, TowPoint
 from calm.case.strumming import StrummingBand, band_of, strumming_of
 from calm.case.warnings import warnings_of
 from calm.errors import NoEquilibrium, UsageError, or_why_not
@@ -21,33 +22,6 @@ from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.physics.line import Line, Water
 from calm.records.profile_tables import components
 from calm.solve import Settings, Solution, Status, Towing, fit_tow_length, solve_tow
-
-
-@dataclass(frozen=True)
-class TowPoint:
-    """Hold what the line does to the ship: its tension, downward and backward [N].
-
-    `angle` is that of the line there below the horizontal [degrees].
-    """
-
-    tension: float
-    angle: float
-    vertical: float
-    horizontal: float
-
-
-@dataclass(frozen=True)
-class TowedBody:
-    """The upper end of the lowest piece, or the free end of a bare cable.
-
-    Depth and horizontal distance from the tow point [m], tension there [N], and the angle of the
-    line above it from the horizontal [degrees].
-    """
-
-    depth: float
-    layback: float
-    tension: float
-    angle: float
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

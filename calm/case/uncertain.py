@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 
 from calm.case.draws import CAUSES, SAMPLES, Draw, checked_samples, drawn, draws_of, normals_of
-from calm.case.measure import anchor_load, clamps_of, measured
+from calm.case.line_figures import LineFigures
+from calm.case.measure import anchor_load, clamps_of
 from calm.case.mooring import Mooring
 from calm.case.result import Result
 from calm.errors import NoEquilibrium
@@ -198,13 +199,13 @@ def _figures(
 def _figures_of(mooring: Mooring) -> tuple[Floats, tuple[float, float]]:
     solution = mooring.equilibrium(mooring.water)
     still = mooring.still_beside(solution)
-    rows = measured(solution, still)
+    rows = LineFigures(solution, still)
     load = anchor_load(mooring, solution)
-    x, y, tension = rows["x_top"], rows["y_top"], rows["tension"]
+    (x, y, up), tension = rows.top.T, rows.greatest_tension
     excursion = hypot(x[0], y[0])
     offset = (x * x[0] + y * y[0]) / excursion if excursion else np.zeros(len(x))
-    pieces = np.stack([rows["depth_top"], rows["knockdown"], rows["tilt"], tension, offset])
-    anchor = [rows["depth_bottom"][-1], 0.0, 0.0, load.tension, 0.0]
+    pieces = np.stack([-up, rows.knockdown, rows.tilt, tension, offset])
+    anchor = [-rows.bottom[-1, 2], 0.0, 0.0, load.tension, 0.0]
     held = clamps_of(mooring.file.pieces[:-1], solution, still)
     clamps = np.stack([held.depth, held.knockdown, held.tilt, held.tension, 0.0 * held.depth])
     return np.column_stack([pieces, anchor, clamps]), (load.tension, load.required_weight)

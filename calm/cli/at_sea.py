@@ -161,7 +161,7 @@ def _plan(deck: Deck) -> dict[str, Any]:
 
 def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
     """Return what the sheets cannot show of the names in a file, and where."""
-    from calm.report.folder import lacking
+    from calm.drawing.typesetting import lacking
 
     signs = lacking(text for text, _ in _texts(deck))
     if not signs:
@@ -284,7 +284,7 @@ def locate(
 
     outputs = Outputs((file,), json)
     if plot is not None:
-        check_format(plot, (".png", ".svg", ".pdf"))
+        check_format(plot)
         check_destination(plot)
     given = options.quantities(
         transducer=(transducer, "length"),

@@ -141,13 +141,15 @@ def draw(
         above.
     """
     from calm.drawing.picture import check_format, image
-    from calm.report.chart_page import CHART_FORMATS, draw_chart
+    from calm.drawing.plot import figure_svg, require_matplotlib
+    from calm.report.chart_page import draw_chart
     from calm.report.folder import check_destination, write_file
 
-    check_format(output, CHART_FORMATS)
+    check_format(output)
+    require_matplotlib("calm chart draw")
     check_destination(output)
     (drag_over_weight,) = options.quantities(k=(k, "number")).values()
-    write_file(output, image(draw_chart(drag_over_weight, lower_end), output.suffix))
+    write_file(output, image(figure_svg(draw_chart(drag_over_weight, lower_end)), output.suffix))
     narrate(f"{output} written")
     return ExitCode.DONE
 

@@ -228,9 +228,9 @@ def _ready(stands: int, drawn: bool) -> None:
     if drawn:
         import calm.report.check_report
         import calm.report.html  # noqa: F401
-        from calm.report.folder import legible
+        from calm.drawing.typesetting import signs
 
-        legible("")  # has the signs of the fonts read
+        signs()  # has the font read
 
 
 def _solve_and_conclude(

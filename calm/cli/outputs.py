@@ -217,10 +217,10 @@ class FileOutcome:
             from calm.report.result_files import result_netcdf
 
             return result_netcdf(self.result)
+        from calm.drawing.line_drawing import line_drawing
         from calm.drawing.picture import image
-        from calm.drawing.plot import draw
 
-        return image(draw(self.result, self.uncertain), suffix)
+        return image(line_drawing(self.result, self.uncertain), suffix)
 
 
 @dataclass(frozen=True)

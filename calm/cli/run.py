@@ -62,7 +62,7 @@ def run(
         Write the result as NetCDF, with the names of `calm batch`; for several files one
         each, as with --plot.
     plot
-        Draw it, as .png or .svg; for several files p.png becomes p-FILE.png for each.
+        Draw it, as .svg, .png or .pdf; for several files p.png becomes p-FILE.png.
     html
         Write a report of the line, its table, drawings and inputs, as one
         self-contained .html file; for several files one each, as with --plot.

@@ -111,9 +111,9 @@ class TabulatedTow:
 
     def rendered(self, suffix: str) -> bytes:
         from calm.drawing.picture import image
-        from calm.report.tabulation import draw_sweep
+        from calm.report.tabulation import sweep_drawing
 
-        return image(draw_sweep(self.tabulation), suffix)
+        return image(sweep_drawing(self.tabulation), suffix)
 
 
 def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path]) -> list[Tow]:

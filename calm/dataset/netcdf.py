@@ -142,47 +142,7 @@ PIECES, CLAMPS = "piece of the line, from its top", "clamped instrument, down th
 NUMBER = "<f4"
 """Of depths, offsets, forces and angles of many profiles; without equilibrium they are NaN."""
 
-_EAST, _NORTH = "offset to the east of the anchor", "offset to the north of the anchor"
 _PLACE = {"latitude": "degrees_north", "longitude": "degrees_east"}
-_DOWN = {"standard_name": "depth", "positive": "down"}
-
-OF_COMPONENT: Mapping[str, tuple[str, str, Attributes]] = {
-    "depth_top": ("m", "depth of the upper end", _DOWN),
-    "x_top": ("m", f"{_EAST}, of the upper end", {}),
-    "y_top": ("m", f"{_NORTH}, of the upper end", {}),
-    "tension_top": ("N", "tension at the upper end", {}),
-    "tension_bottom": ("N", "tension at the lower end", {}),
-    "tilt": ("degree", "angle of the chord from the vertical", {}),
-    "knockdown": ("m", "depth of the upper end less its depth in still water", {}),
-}
-"""Unit, meaning and further attributes of the variables of a piece of the line."""
-
-OF_CLAMP: Mapping[str, tuple[str, str, Attributes]] = {
-    "clamp_depth": ("m", "depth of the clamped instrument", _DOWN),
-    "clamp_x": ("m", f"{_EAST}, of the clamped instrument", {}),
-    "clamp_y": ("m", f"{_NORTH}, of the clamped instrument", {}),
-    "clamp_tension": ("N", "tension at the clamp", {}),
-    "clamp_tilt": ("degree", "angle of the line at the clamp from the vertical", {}),
-    "clamp_knockdown": ("m", "depth of the clamped instrument less its depth in still water", {}),
-}
-"""The same of a clamped instrument."""
-
-OF_ENDS: Mapping[str, tuple[str, str, Attributes]] = {
-    "top_depth": ("m", "depth of the free end", {}),
-    "anchor_vertical": ("N", "upward pull of the line on the anchor", {}),
-    "anchor_horizontal": ("N", "horizontal pull of the line on the anchor", {}),
-    "used_buoyancy": ("1", "share of the buoyancy at the surface that is in use", {}),
-    "other_used_buoyancy": ("1", "the same share in another equilibrium, if one was found", {}),
-}
-"""The same of the line as a whole."""
-
-OF_NODE: Mapping[str, tuple[str, str, Attributes]] = {
-    "shape_depth": ("m", "depth of the line", _DOWN),
-    "shape_x": ("m", f"{_EAST}, of the line", {}),
-    "shape_y": ("m", f"{_NORTH}, of the line", {}),
-    "shape_tension": ("N", "tension of the line", {}),
-}
-"""The same of a node of the line."""
 
 
 def of_net(

@@ -11,8 +11,8 @@ from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break
 from calm.checks.strength import allowable_load
 from calm.drawing import graph, line_picture
+from calm.drawing.line_drawing import SEABED_COLOUR, SIGNS, WATER_COLOUR
 from calm.drawing.line_picture import NAMED_ROLES, LineKind, along_the_line, current_between
-from calm.drawing.plot import SEABED_COLOUR, SIGNS, WATER_COLOUR
 from calm.quantities import QUANTITIES
 
 Solved = Sequence[tuple[str, Result]]
@@ -140,26 +140,19 @@ def _draw_tension(page: graph.Graph, place: Place, solved: Solved) -> None:
 
 
 def _draw_plan(page: graph.Graph, place: Place, solved: Solved) -> None:
-    """Both axes to one scale: the one whose range needs less is drawn wider."""
+    """Both axes are to one scale."""
     _, _, width, height = place
     across, up = (
         graph.covering([0.0], *(getattr(result.shape, name) for _, result in solved))
         for name in "xy"
     )
-    scale = max((across.high - across.low) / width, (up.high - up.low) / height)
-    axes = page.axes(*place, _widened(across, scale * width), _widened(up, scale * height))
+    axes = page.axes(*place, *graph.to_one_scale(across, up, width, height))
     for number, (_, result) in enumerate(solved):
         stroke = _stroke(number)
         axes.line(result.shape.x, result.shape.y, stroke)
         axes.mark(result.top.x, result.top.y, "o", 3.5, stroke.colour)
     axes.mark(0.0, 0.0, "v", 5.0, "black")
     axes.frame(5, 6, below=QUANTITIES["x"].label, beside=QUANTITIES["y"].label)
-
-
-def _widened(scale: graph.Scale, extent: float) -> graph.Scale:
-    """So far from edge to edge about the same middle."""
-    middle = (scale.low + scale.high) / 2
-    return graph.Scale(middle - extent / 2, middle + extent / 2)
 
 
 def _draw_breaks(page: graph.Graph, place: Place, backup: Sequence[Break]) -> None:

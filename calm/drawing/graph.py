@@ -1,4 +1,4 @@
-"""Graphs for the pages of a report, as SVG: drawn many times, without a plotting library.
+"""Graphs as SVG: scales, axes and legends, drawn by the pen.
 
 Lengths are in points (1/72 inch); the upper left corner of a graph is its origin.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, floor, isfinite, log10
+from math import ceil, copysign, floor, isfinite, log10
 from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
@@ -19,7 +19,7 @@ from calm.drawing.schematic.pen import INK, Pen, picture, text_width
 from calm.physics.line import Floats
 
 COLOURS = ("#0b3c5d", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#332288")
-"""Of lines that are to be told apart; a single one has the first."""
+"""Colours of lines in one graph; a single line has the first."""
 
 _MARGIN = 0.05  # of the range, on either side
 
@@ -40,7 +40,7 @@ class Scale:
     logarithmic: bool = False
 
     def share(self, value: ArrayLike) -> Floats:
-        """Way of values from `low` (0) to `high` (1); NaN of what a logarithm does not have."""
+        """Positions of values between `low` (0) and `high` (1); NaN without a logarithm."""
         given: Any = np.asarray(value, dtype=np.float64)
         if not self.logarithmic:
             return np.asarray((given - self.low) / (self.high - self.low))
@@ -49,7 +49,7 @@ class Scale:
 
 
 def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
-    """The linear range that holds all finite values, with a margin; 0 to 1 where there is none."""
+    """Find the linear range of all finite values, with a margin; 0 to 1 if there are none."""
     every = np.concatenate([np.ravel(np.asarray(each, dtype=np.float64)) for each in values])
     every = every[np.isfinite(every)]
     if not every.size:
@@ -57,6 +57,23 @@ def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
     low, high = float(every.min()), float(every.max())
     spare = margin * (high - low) or margin * abs(low) or margin
     return Scale(low - spare, high + spare)
+
+
+def to_one_scale(across: Scale, up: Scale, width: float, height: float) -> tuple[Scale, Scale]:
+    """Widen one of two ranges about its middle, so that a unit has one length on both axes.
+
+    Parameters
+    ----------
+    width, height : of the axes [pt]
+    """
+    unit = max(abs(across.high - across.low) / width, abs(up.high - up.low) / height)
+    return _widened(across, unit * width), _widened(up, unit * height)
+
+
+def _widened(scale: Scale, extent: float) -> Scale:
+    middle = (scale.low + scale.high) / 2
+    half = copysign(extent / 2, scale.high - scale.low)
+    return Scale(middle - half, middle + half)
 
 
 _STEPS = (1.0, 2.0, 5.0, 10.0)
@@ -71,21 +88,21 @@ _TIMES = (
 
 
 class Tick(NamedTuple):
-    """A value of an axis, and its text."""
+    """A value of an axis and its text."""
 
     value: float
     text: str
 
 
 def numbers(low: float, high: float, most: int) -> list[Tick]:
-    """Round numbers between two values, in either order: about `most` of them."""
+    """Return about `most` ticks at round numbers between two values, in either order."""
     low, high = min(low, high), max(low, high)
     values = round_numbers(low, high, most)
     return [Tick(value, number(value).replace("-", "\N{MINUS SIGN}")) for value in values]
 
 
 def counts(first: int, last: int, most: int) -> list[Tick]:
-    """Whole numbers from the first to the last: at most `most` steps of one round width."""
+    """Return ticks at whole numbers, `first` to `last`, in at most `most` equal round steps."""
     wanted = max((last - first) / max(most, 1), 1.0)
     power = 10 ** floor(log10(wanted))
     step = next(int(each) * power for each in _STEPS if each * power >= wanted)
@@ -95,13 +112,13 @@ def counts(first: int, last: int, most: int) -> list[Tick]:
 
 
 def decades(low: float, high: float) -> list[Tick]:
-    """Powers of ten between two values above zero."""
+    """Return ticks at the powers of ten between two positive values."""
     powers = range(ceil(log10(low) - 1e-9), floor(log10(high) + 1e-9) + 1)
     return [Tick(10.0**power, f"{10.0**power:g}") for power in powers]
 
 
 def moments(begin: np.datetime64, end: np.datetime64, most: int) -> list[Tick]:
-    """Round times from `begin` to `end`, their values seconds since 1970: at most `most` or so."""
+    """Return at most about `most` ticks at round times; their values are seconds since 1970."""
     edges = np.array([begin, end])
     first, last = seconds(edges)
     wanted = (last - first) / max(most, 1)
@@ -124,18 +141,18 @@ def moments(begin: np.datetime64, end: np.datetime64, most: int) -> list[Tick]:
 
 
 def seconds(times: Any) -> NDArray[np.float64]:
-    """(n,) seconds since 1970 of times."""
+    """Convert (n,) times to seconds since 1970."""
     return np.asarray(times.astype("datetime64[ms]").astype("i8") / 1e3)
 
 
 def _days(months: Any, step: int) -> Any:
-    """Every so many-th day of each month from the first on, none near the next first."""
+    """Days of each month in equal steps from the first, none just before the next month."""
     each = np.arange(months[0], months[1] + 1).astype("datetime64[D]")
     return (each[:, None] + np.arange(0, 29 - step // 2, step)).ravel()
 
 
 def round_numbers(low: float, high: float, most: int) -> list[float]:
-    """Round numbers from `low` to `high`, about `most` of them, and more than one."""
+    """Return about `most` round numbers between `low` and `high`, and at least two."""
     raw = (high - low) / max(most, 1)
     power = 10.0 ** floor(log10(raw))
     step = next(power * each for each in _STEPS if power * each >= raw * (1.0 - 1e-9))
@@ -149,7 +166,7 @@ def _multiples(step: float, low: float, high: float) -> list[float]:
 
 
 def number(value: float) -> str:
-    """As a scale shows it."""
+    """Format a number for a scale."""
     return f"{value:z.6g}" if abs(value) < 1e6 else f"{value:.0f}"
 
 
@@ -166,7 +183,7 @@ class Stroke(NamedTuple):
     square: bool = False
 
     def attributes(self) -> dict[str, float | str]:
-        """As a pen takes them."""
+        """Attributes of an SVG element."""
         written: dict[str, float | str] = {"stroke": self.colour, "stroke_width": self.width}
         if self.dashes:
             written["stroke_dasharray"] = " ".join(f"{each:g}" for each in self.dashes)
@@ -184,7 +201,7 @@ _SAMPLE, _GAP = 16.0, 5.0  # points: the line beside a text, and what is between
 
 
 class LegendEntry(NamedTuple):
-    """A text with its line, or its sign: form, width [pt] and colour."""
+    """A text with its line or its mark: form, width [pt] and colour."""
 
     text: str
     line: Stroke | None = None
@@ -199,14 +216,25 @@ class Graph:
         self.pen.element.set("fill", "none")  # a curve and a frame are lines
 
     def svg(self) -> str:
-        """The graph as text that can stand inside a page."""
+        """Return the graph as an SVG element, for a file or inside a page."""
         return within_xml(ElementTree.tostring(self.pen.element, encoding="unicode"))
 
     def axes(
-        self, left: float, top: float, width: float, height: float, across: Scale, up: Scale
+        self,
+        left: float,
+        top: float,
+        width: float,
+        height: float,
+        across: Scale,
+        up: Scale,
+        *,
+        clipped: bool = False,
     ) -> Axes:
-        """Axes at a place [pt] of the graph, their ranges from left to right and upward."""
-        return Axes(self, (left, top, width, height), across, up)
+        """Add axes at a place [pt] of the graph; the ranges run from left to right and upward.
+
+        The frame of `clipped` axes cuts off lines that leave it.
+        """
+        return Axes(self, (left, top, width, height), across, up, clipped)
 
     def legend(
         self,
@@ -216,7 +244,7 @@ class Graph:
         row: float,
         columns: int = 1,
     ) -> None:
-        """Entries row by row in columns; a text that is too long is cut short.
+        """Write entries row by row in columns; long texts are shortened.
 
         Parameters
         ----------
@@ -235,57 +263,68 @@ class Graph:
 
 
 class Axes:
-    """Two scales, and a frame that `frame` draws around what was drawn between them."""
+    """Two scales and the drawing between them, in a frame that `frame` draws last."""
 
     def __init__(
-        self, graph: Graph, place: tuple[float, float, float, float], across: Scale, up: Scale
+        self,
+        graph: Graph,
+        place: tuple[float, float, float, float],
+        across: Scale,
+        up: Scale,
+        clipped: bool = False,
     ) -> None:
         self.graph, self.across, self.up = graph, across, up
         self.left, self.top, self.width, self.height = place
         self._grid = graph.pen.draw("g", **_GRID.attributes())
-        self._drawn = graph.pen.draw("g")
+        self.drawn = graph.pen.draw("g")
+        if clipped:
+            name = f"axes-{len(graph.pen.element)}"
+            left, top, width, height = place
+            frame = graph.pen.draw("clipPath", id=name)
+            frame.draw("rect", x=left, y=top, width=width, height=height)
+            self.drawn = graph.pen.draw("g", clip_path=f"url(#{name})")
 
     def x(self, value: ArrayLike) -> Floats:
-        """Points from the left edge of the graph."""
+        """Distances [pt] of values from the left edge of the graph."""
         return np.asarray(self.left + self.width * self.across.share(value))
 
     def y(self, value: ArrayLike) -> Floats:
-        """Points from the upper edge of the graph."""
+        """Distances [pt] of values from the upper edge of the graph."""
         return np.asarray(self.top + self.height * (1.0 - self.up.share(value)))
 
     def line(self, x: ArrayLike, y: ArrayLike, stroke: Stroke) -> None:
-        """A line from point to point, interrupted where one is not known."""
+        """Draw a line from point to point, interrupted at NaN."""
         path = _path(self.x(x), self.y(y))
         if path:
-            self._drawn.path(path, **stroke.attributes())
+            self.drawn.path(path, **stroke.attributes())
 
     def lines(self, x: ArrayLike, y: ArrayLike, stroke: Stroke) -> None:
-        """Lines apart, (2, n) ends of each; what is not known is left out."""
+        """Draw separate lines by their (2, n) ends; lines with NaN are skipped."""
         (x1, x2), (y1, y2) = np.broadcast_arrays(self.x(x), self.y(y))
         for ends in zip(x1.tolist(), y1.tolist(), x2.tolist(), y2.tolist(), strict=True):
             if all(map(isfinite, ends)):
                 left, top, right, bottom = ends
-                self._drawn.line(left, top, right, bottom, **stroke.attributes())
+                self.drawn.line(left, top, right, bottom, **stroke.attributes())
 
     def level(self, value: float, stroke: Stroke) -> None:
-        """A line across at a value of the upward axis."""
+        """Draw a horizontal line at a value of the upward axis."""
         y = float(self.y(value))
-        self._drawn.line(self.left, y, self.left + self.width, y, **stroke.attributes())
+        self.drawn.line(self.left, y, self.left + self.width, y, **stroke.attributes())
 
     def plumb(self, value: float, stroke: Stroke) -> None:
-        """A line up and down at a value of the axis across."""
+        """Draw a vertical line at a value of the axis across."""
         x = float(self.x(value))
-        self._drawn.line(x, self.top, x, self.top + self.height, **stroke.attributes())
+        self.drawn.line(x, self.top, x, self.top + self.height, **stroke.attributes())
 
     def strip(self, low: float, high: float, colour: str) -> None:
-        """Do what lies between two values of the upward axis, filled."""
+        """Fill the strip between two values of the upward axis."""
         y = sorted(map(float, self.y([low, high])))
-        self._drawn.draw(
+        self.drawn.draw(
             "rect", x=self.left, y=y[0], width=self.width, height=y[1] - y[0], fill=colour
         )
 
     def band(self, x: ArrayLike, low: ArrayLike, high: ArrayLike, colour: str) -> None:
-        """Do what lies between two curves, filled; parted where one is not known."""
+        """Fill the area between two curves, interrupted at NaN."""
         across, bottom, top = self.x(x), self.y(low), self.y(high)
         known = np.isfinite(bottom) & np.isfinite(top)
         ends = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]])))
@@ -298,23 +337,46 @@ class Axes:
             for known in map(slice, ends[::2], ends[1::2])
         )
         if path:
-            self._drawn.path(path, fill=colour, stroke=colour, stroke_width=0.4)
+            self.drawn.path(path, fill=colour, stroke=colour, stroke_width=0.4)
+
+    def area(self, x: ArrayLike, y: ArrayLike, colour: str) -> None:
+        """Fill a closed line with a transparent colour."""
+        self.drawn.path(f"{_path(self.x(x), self.y(y))}Z", fill=colour, fill_opacity=0.2)
+
+    def words(
+        self,
+        x: float,
+        y: float,
+        text: str,
+        *,
+        shift: tuple[float, float] = (4.0, -4.0),
+        anchor: str = "start",
+        colour: str = INK,
+    ) -> None:
+        """Write a text beside a point, shifted [pt] to the right and down."""
+        at = float(self.x(x)) + shift[0], float(self.y(y)) + shift[1]
+        self.drawn.letters(*at, text, size=self.graph.size, anchor=anchor, colour=colour)
+
+    def title(self, text: str) -> None:
+        """Write a title above the left end of the frame; a long one is shortened."""
+        size = self.graph.size
+        self.graph.pen.write(self.left, self.top - 0.8 * size, text, self.width, size=size)
 
     def bars(self, at: ArrayLike, value: ArrayLike, width: float, colours: Sequence[str]) -> None:
-        """Bars from zero to values, `width` wide on the axis across."""
+        """Draw bars from zero to values, `width` wide on the axis across."""
         centres = np.asarray(at, dtype=np.float64)
         edges = self.x(centres - width / 2), self.x(centres + width / 2)
         ends, zero = self.y(value), float(self.y(0.0))
         for left, right, end, colour in zip(*edges, ends, colours, strict=True):
             if np.isfinite(end):
-                self._drawn.draw(
+                self.drawn.draw(
                     "rect", x=float(left), y=min(float(end), zero), width=float(right - left),
                     height=abs(float(end) - zero), fill=colour,
                 )  # fmt: skip
 
     def mark(self, x: float, y: float, sign: str, size: float, colour: str) -> None:
-        """A sign at a point, as `draw_mark` draws it."""
-        draw_mark(self._drawn, float(self.x(x)), float(self.y(y)), sign, size, colour)
+        """Draw a mark at a point, see `draw_mark`."""
+        draw_mark(self.drawn, float(self.x(x)), float(self.y(y)), sign, size, colour)
 
     def frame(
         self,
@@ -326,7 +388,7 @@ class Axes:
         grid: bool = False,
         numbered: tuple[bool, bool] = (True, True),
     ) -> None:
-        """The frame with its ticks; to be drawn last.
+        """Draw the frame with its ticks, after everything inside it.
 
         Parameters
         ----------
@@ -370,9 +432,20 @@ class Axes:
             turned = f"translate({x:.2f} {self.top + self.height / 2:.2f}) rotate(-90)"
             pen.draw("g", transform=turned).letters(0.0, 0.0, text, size=size, anchor="middle")
 
+    def scale_above(self, ticks: Sequence[Tick], label: str) -> None:
+        """Draw a second scale above the frame; the ticks have values of the axis across."""
+        pen, size = self.graph.pen, self.graph.size
+        for tick in ticks:
+            x = float(self.x(tick.value))
+            pen.line(x, self.top - _TICK, x, self.top, **_FRAME.attributes())
+            at = self.top - _TICK - 0.8 * size
+            pen.letters(x, at, tick.text, size=size, anchor="middle")
+        at = self.top - _TICK - 2.3 * size
+        pen.letters(self.left + self.width / 2, at, label, size=size, anchor="middle")
+
 
 def _path(x: Floats, y: Floats) -> str:
-    """Straight lines through points; a new one begins after what is not known."""
+    """Path of straight lines through points, interrupted at NaN."""
     parts: list[str] = []
     last: tuple[float, float] | None = None
     for here in zip(x.tolist(), y.tolist(), strict=True):
@@ -385,16 +458,24 @@ def _path(x: Floats, y: Floats) -> str:
 
 
 def draw_mark(pen: Pen, x: float, y: float, sign: str, size: float, colour: str) -> None:
-    """A filled sign of some width [pt] at a point: o, s (square), D (diamond) or v (downward)."""
+    """Draw a mark of a width [pt] at a point.
+
+    Filled: o, s (square), D (diamond), v and ^ (triangles); of lines: +, | (an upright).
+    """
     half = size / 2
     if sign == "o":
         pen.circle(x, y, half, fill=colour)
     elif sign == "s":
         pen.box(x, y, size, size, fill=colour)
+    elif sign in "+|":
+        ends = {"+": ((half, 0.0), (0.0, half)), "|": ((0.0, half),)}[sign]
+        for across, up in ends:
+            pen.line(x - across, y - up, x + across, y + up, stroke=colour, stroke_width=1.2)
     else:
         corners = {
             "D": ((0, -1.2), (1.2, 0), (0, 1.2), (-1.2, 0)),
             "v": ((-1, -0.9), (1, -0.9), (0, 1)),
+            "^": ((-1, 0.9), (1, 0.9), (0, -1)),
         }[sign]
         points = " ".join(f"{x + half * u:.2f},{y + half * v:.2f}" for u, v in corners)
         pen.draw("polygon", points=points, fill=colour)

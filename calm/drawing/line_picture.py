@@ -1,7 +1,7 @@
 """A solved line seen from the side and from above: what is drawn, in metres, for every printer.
 
-`calm.drawing.plot` puts it out for files, `calm.drawing.check_figures` for the pages of a report
-and `calm.drawing.sketch` for a terminal.
+`calm.drawing.line_drawing` draws it for files and pages, `calm.drawing.check_figures` beside others
+of a check, `calm.drawing.sketch` in a terminal and `calm.drawing.plot` on axes of matplotlib.
 """
 
 from collections.abc import Iterator, Sequence
@@ -257,6 +257,21 @@ def current_between(
     depth = depth[(depth >= top) & (depth <= bottom)]
     u, v = (np.interp(depth, water.level, speed) for speed in (water.u, water.v))
     return depth, u, v
+
+
+def water_past(result: AnyResult) -> tuple[Floats, Floats, Floats]:
+    """Return depths, and the speed of the water past the line there, east and north [m/s].
+
+    It is the current of a mooring and a net; a tow adds the speed of its ship.
+    """
+    if not isinstance(result, TowResult):
+        water = result.mooring.water
+        return current_between(water, 0.0, water.depth)
+    top, bottom = levels_of(result)
+    behind = plane_of(result)
+    above = 0.0 if result.file.environment.fluid == "water" else top
+    depth, u, v = current_between(result.tow.water, above, bottom)
+    return depth, u + result.speed * behind[0], v + result.speed * behind[1]
 
 
 def along_the_line(shape: Shape) -> Floats:

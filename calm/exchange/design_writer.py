@@ -11,7 +11,7 @@ from textwrap import wrap
 
 from calm.case import Tow
 from calm.case.net import Net, load
-from calm.case.result import AnchorLoad, EndLoad
+from calm.case.result_tables import AnchorLoad, EndLoad
 from calm.errors import CalmError, one_line
 from calm.exchange import model
 from calm.files import Catalogue

@@ -6,7 +6,7 @@ import hashlib
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from threading import Event
 
@@ -226,8 +226,7 @@ class Task:
         shift = found.depth - points(likely)
         surface = (self.common.datum + found.sea)[:, None]
         down = found.depth - surface - moments.forward.still
-        profiles = replace(
-            likely,
+        profiles = likely.with_columns(
             clamp_depth=found.depth[:, :clamps],
             depth_top=found.depth[:, clamps:],
             clamp_knockdown=down[:, :clamps] + 0.0 * likely.clamp_knockdown,
@@ -237,7 +236,7 @@ class Task:
         if one.false is not None:
             lost = one.false & (likely.status == STATUSES.index("no-current"))
             status = np.where(lost, STATUSES.index("implausible-current"), likely.status)
-            profiles = replace(profiles, status=status.astype(np.int8))
+            profiles = profiles.with_columns(status=status.astype(np.int8))
         known = np.where(likely.status == 0, 1.0, np.nan)
         deviation = found.deviation * self.common.widened * known[:, None]
         columns = {

@@ -7,13 +7,14 @@ circles.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import cycle
 from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calm.checks.finding import State
-from calm.drawing.picture import empty_figure, figure_svg
+from calm.drawing.graph import Axes, Graph, LegendEntry, Scale, Stroke, covering, to_one_scale
 from calm.drop import DropPlan
 from calm.drop.fall_record import DepthReached
 from calm.physics.line import Floats
@@ -25,9 +26,6 @@ from calm.report.provenance import degrees_text, position_text
 from calm.units import KNOT
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
-
     from calm.ranging import Located
 
 
@@ -197,66 +195,69 @@ def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
     )
 
 
-_WIDTH, _HEIGHT = 7.05, 3.0  # inches: an A4 page between its margins
-_FONT_SIZE = 8.0  # points
-_WATER, _SEABED = "#2b7bba", "#b8a07e"
-_DASHES = ("-", (0, (6, 2)), (0, (4, 2, 1, 2)), (0, (1, 1.5)), (0, (2, 1)), "-")
+_WIDTH, _SIZE = 510.0, 8.0  # points: an A4 page between its margins; the letters
+_HEIGHT = 216.0
+_LEFT, _BELOW = 42.0, 30.0  # around the axes, for their scales
+_WATER, _SEABED, _PATH = "#2b7bba", "#b8a07e", "#d55e00"
+_DASHES = ((), (6.0, 2.0), (4.0, 2.0, 1.0, 2.0), (1.0, 1.5), (2.0, 1.0))
 
 
 def drop_figure(plan: DropPlan) -> str:
-    """The figure as SVG.
+    """The drop as SVG.
 
-    Left, to one scale, the path of the anchor and the line at moments, each with its own dashes and
-    named where it ends: it reads in black and white too. Right the fall speed over depth.
+    Left, to one scale, the path of the anchor and the line at several times, each with its own
+    dashes and an entry in the legend: it reads in black and white too. Right the fall speed over
+    depth.
     """
-    figure = empty_figure(_WIDTH, _HEIGHT)
-    figure.subplots_adjust(0.08, 0.14, 0.985, 0.97, wspace=0.06)
-    shapes, speed = figure.subplots(1, 2, sharey=True, width_ratios=(3.2, 1.0))
-    _draw_shapes(shapes, plan)
-    _draw_speed(speed, plan)
-    for axes in (shapes, speed):
-        axes.tick_params(labelsize=_FONT_SIZE)
-        axes.grid(alpha=0.3, linewidth=0.5)
-    return figure_svg(figure)
-
-
-def _draw_shapes(axes: Axes, plan: DropPlan) -> None:
+    greys = [round(255 * shade) for shade in np.linspace(0.65, 0.0, len(plan.moments))]
+    moments = [
+        (moment, Stroke(f"#{grey:02x}{grey:02x}{grey:02x}", 1.1, dashes))
+        for moment, grey, dashes in zip(plan.moments, greys, cycle(_DASHES), strict=False)
+    ]
+    entries = [LegendEntry(moment.name, line=stroke) for moment, stroke in moments]
+    entries.append(LegendEntry("path of the anchor", line=Stroke(_PATH, 1.4)))
+    legend = ceil(len(entries) / 3) * 12.0 + 6.0
+    page = Graph(_WIDTH, legend + _HEIGHT, "Anchor drop", _SIZE)
+    page.legend(entries, (_LEFT, 2.0), (_WIDTH - _LEFT) / 3, 12.0, columns=3)
+    top, tall = legend + 4.0, _HEIGHT - _BELOW - 4.0
     depth = plan.mooring.water.depth
-    axes.axhline(0.0, color=_WATER, linewidth=1.0)
-    axes.axhspan(depth, 1.06 * depth, color=_SEABED)
-    shades = np.linspace(0.65, 0.0, len(plan.moments))
-    for moment, dashes, shade in zip(plan.moments, _DASHES, shades, strict=False):
-        axes.plot(
-            moment.x, moment.depth, color=str(shade), linestyle=dashes, linewidth=1.1,
-            label=moment.name,
-        )  # fmt: skip
-        axes.plot(moment.x[0], moment.depth[0], "o", color=str(shade), markersize=3.5)
-    axes.plot(plan.path.anchor_x, plan.path.anchor_depth, color="#d55e00", linewidth=1.4,
-              label="path of the anchor")  # fmt: skip
-    axes.plot(plan.fall_back, depth, "v", color="#d55e00", markersize=6, clip_on=False)
-    axes.set_xlabel("distance from where the anchor is let go, towards the float [m]",
-                    fontsize=_FONT_SIZE)  # fmt: skip
-    axes.set_ylabel("depth [m]", fontsize=_FONT_SIZE)
-    axes.set_ylim(1.06 * depth, -0.04 * depth)
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.legend(fontsize=_FONT_SIZE, loc="lower right", framealpha=0.9)
+    down = Scale(1.06 * depth, -0.04 * depth)
+    wide = 342.0
+    reach = covering(
+        plan.path.anchor_x, [plan.fall_back], *(moment.x for moment, _ in moments), margin=0.03
+    )
+    across, up = to_one_scale(reach, down, wide, tall)
+    shapes = page.axes(_LEFT, top, wide, tall, across, up, clipped=True)
+    shapes.strip(depth, max(up.low, 1.06 * depth), _SEABED)
+    shapes.level(0.0, Stroke(_WATER, 1.0))
+    for moment, stroke in moments:
+        shapes.line(moment.x, moment.depth, stroke)
+        shapes.mark(moment.x[0], moment.depth[0], "o", 3.5, stroke.colour)
+    shapes.line(plan.path.anchor_x, plan.path.anchor_depth, Stroke(_PATH, 1.4))
+    shapes.mark(plan.fall_back, depth, "v", 6.0, _PATH)
+    below = "distance from where the anchor is let go, towards the float [m]"
+    shapes.frame(7, 6, below=below, beside="depth [m]", grid=True)
+    _draw_speed(page, (_LEFT + wide + 12.0, top, _WIDTH - _LEFT - wide - 20.0, tall), plan, up)
+    return page.svg()
 
 
-def _draw_speed(axes: Axes, plan: DropPlan) -> None:
+def _draw_speed(
+    page: Graph, place: tuple[float, float, float, float], plan: DropPlan, down: Scale
+) -> None:
     path = plan.path
-    axes.plot(path.anchor_speed[1:], path.anchor_depth[1:], color="#111111", linewidth=1.2)
-    axes.set_xlim(0.0, 1.1 * float(np.max(path.anchor_speed[path.time > 0.02 * path.time[-1]])))
-    axes.set_xlabel("fall speed [m/s]", fontsize=_FONT_SIZE)
+    fastest = float(np.max(path.anchor_speed[path.time > 0.02 * path.time[-1]]))
+    axes = page.axes(*place, Scale(0.0, 1.1 * fastest), down, clipped=True)
+    axes.line(path.anchor_speed[1:], path.anchor_depth[1:], Stroke("#111111", 1.2))
     for share in (0.25, 0.5, 0.75):
         time = share * path.time[-1]
         at = float(np.interp(time, path.time, path.anchor_depth))
         value = float(np.interp(time, path.time, path.anchor_speed))
-        axes.plot(value, at, "o", color="#111111", markersize=3)
-        axes.annotate(f"{time:.0f} s", (value, at), textcoords="offset points", xytext=(-4, 4),
-                      ha="right", fontsize=_FONT_SIZE)  # fmt: skip
+        axes.mark(value, at, "o", 3.0, "#111111")
+        axes.words(value, at, f"{time:.0f} s", shift=(-4.0, -5.0), anchor="end")
+    axes.frame(3, 6, below="fall speed [m/s]", grid=True, numbered=(True, False))
 
 
-_CIRCLE, _LEFT_OUT, _PLACE = "#2b7bba", "#999999", "#c0392b"
+_CIRCLE, _LEFT_OUT, _PLACE = Stroke("#2b7bba", 0.8), Stroke("#999999", 0.8, (4.0, 2.5)), "#c0392b"
 _ROUND = np.linspace(0.0, 2.0 * np.pi, 1441)
 
 
@@ -327,15 +328,15 @@ def _residuals(located: Located) -> Table:
     )
 
 
-def located_figure(located: Located) -> Drawing:
-    """Return where each range meets the depth of what answers, as a circle about the ship.
+_PANEL = 290.0
 
-    Left all of the survey, right the place itself with its 95 % ellipse. What is not used is
-    grey and dashed, and carries the number of its line.
+
+def located_figure(located: Located) -> str:
+    """The ranges as SVG: a circle about each place of the ship, at the depth of the transponder.
+
+    Left the whole survey, right the position with its 95 % ellipse. A range that is not used is
+    grey and dashed, and has the number of its line.
     """
-    figure = empty_figure(9.6, 4.9)
-    figure.subplots_adjust(0.075, 0.1, 0.985, 0.93, wspace=0.22)
-    whole, near = figure.subplots(1, 2)
     frame, survey = located.survey.frame, located.survey
     ships = frame.place(
         survey.latitude, survey.longitude, np.full(len(survey.line), survey.transducer)
@@ -343,31 +344,30 @@ def located_figure(located: Located) -> Drawing:
     ships = ships - located.place
     ranges = located.residuals + np.linalg.norm(ships, axis=1)
     across = np.sqrt(np.maximum(ranges**2 - ships[:, 2] ** 2, 0.0))
-    for axes in (whole, near):
-        for (x, y, _), radius, used in zip(ships, across, located.used, strict=True):
-            axes.plot(
-                x + radius * np.cos(_ROUND), y + radius * np.sin(_ROUND), linewidth=0.8,
-                color=_CIRCLE if used else _LEFT_OUT, linestyle="-" if used else "--",
-            )  # fmt: skip
-        axes.set_aspect("equal")
-        axes.tick_params(labelsize=_FONT_SIZE)
-        axes.grid(alpha=0.3, linewidth=0.5)
-        axes.set_xlabel("east of the anchor [m]", fontsize=_FONT_SIZE)
-        axes.set_ylabel("north of the anchor [m]", fontsize=_FONT_SIZE)
     reach = 1.15 * float(np.abs(ships[:, :2]).max())
-    for line, (x, y, _) in zip(survey.line, ships.tolist(), strict=True):
-        whole.plot(x, y, "^", color="#111111", markersize=4)
-        whole.annotate(str(line), (x, y), textcoords="offset points", xytext=(4, 3),
-                       fontsize=_FONT_SIZE - 1.0)  # fmt: skip
-    whole.set_title("all ranges, numbered by line of the file", fontsize=_FONT_SIZE)
-    _draw_ellipse(near, located)
     scatter = float(np.abs(located.residuals[located.used]).max())
     close = max(3.0 * np.nan_to_num(located.horizontal_95), 3.0 * scatter, 1.0)
-    near.set_title("the place, with its 95 % ellipse", fontsize=_FONT_SIZE)
-    for axes, half in ((whole, max(reach, 2.0 * close)), (near, close)):
-        axes.plot(0.0, 0.0, "+", color=_PLACE, markersize=10, markeredgewidth=1.6)
-        axes.set(xlim=(-half, half), ylim=(-half, half))
-    return figure
+    page = Graph(2 * _PANEL + 110.0, _PANEL + 52.0, "Position of the anchor by ranges", _SIZE)
+    titles = "all ranges, numbered by line of the file", "the position, with its 95 % ellipse"
+    for panel, half in enumerate((max(reach, 2.0 * close), close)):
+        left = 48.0 + panel * (_PANEL + 54.0)
+        scale = Scale(-half, half)
+        axes = page.axes(left, 18.0, _PANEL, _PANEL, scale, scale, clipped=True)
+        for (x, y, _), radius, used in zip(ships, across, located.used, strict=True):
+            stroke = _CIRCLE if used else _LEFT_OUT
+            axes.line(x + radius * np.cos(_ROUND), y + radius * np.sin(_ROUND), stroke)
+        if panel == 0:
+            for line, (x, y, _) in zip(survey.line, ships.tolist(), strict=True):
+                axes.mark(x, y, "^", 5.0, "#111111")
+                axes.words(x, y, str(line))
+        else:
+            _draw_ellipse(axes, located)
+        axes.mark(0.0, 0.0, "+", 10.0, _PLACE)
+        axes.title(titles[panel])
+        axes.frame(
+            7, 7, below="east of the anchor [m]", beside="north of the anchor [m]", grid=True
+        )
+    return page.svg()
 
 
 def _draw_ellipse(axes: Axes, located: Located) -> None:
@@ -376,4 +376,4 @@ def _draw_ellipse(axes: Axes, located: Located) -> None:
         return
     east, north = np.sin(np.radians(bearing)), np.cos(np.radians(bearing))
     along, aside = major * np.cos(_ROUND), minor * np.sin(_ROUND)
-    axes.fill(along * east + aside * north, along * north - aside * east, color=_PLACE, alpha=0.25)
+    axes.area(along * east + aside * north, along * north - aside * east, _PLACE)

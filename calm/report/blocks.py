@@ -11,7 +11,7 @@ from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
-from calm.quantities import QUANTITIES
+from calm.quantities import QUANTITIES, Quantity
 
 if TYPE_CHECKING:
     from calm.report.check_facts import CheckFacts
@@ -266,17 +266,18 @@ def blank(heading: str, unit: str = "", share: float = 1.0) -> Field:
     return words(heading, lambda _: None, share, unit=unit)
 
 
-def quantity(name: str, show: Shown = "", heading: str | None = None) -> Field:
+def quantity(name: str | Quantity, show: Shown = "", heading: str | None = None) -> Field:
     """A column of a quantity, in the unit that people read.
 
     Parameters
     ----------
-    name : of the quantity
+    name : of the quantity, or the quantity
     show : what it shows of an item [SI, degrees], as in `words`; by default what has its name
     heading : where it is another than that of the quantity
     """
-    value = _getter(show, name)
-    return quantity_column(name, heading), lambda one: figure_cell(name, value(one))
+    shown = QUANTITIES[name] if isinstance(name, str) else name
+    value = _getter(show, shown.name)
+    return quantity_column(shown, heading), lambda one: figure_cell(shown, value(one))
 
 
 _SHORT = {
@@ -287,24 +288,23 @@ _SHORT = {
 """Headings cut so that the table of a line fits 80 columns."""
 
 
-def quantity_column(name: str, heading: str | None = None) -> Column:
+def quantity_column(quantity: Quantity, heading: str | None = None) -> Column:
     """The head of a column of a quantity, or another, with the unit that people read."""
-    shown = QUANTITIES[name]
-    short = None if heading else _SHORT.get(name)
-    marked = name in ("tilt", "safety_factor")
-    return Column(heading or shown.heading, shown.display_unit, True, short=short, marked=marked)
+    short = None if heading else _SHORT.get(quantity.name)
+    marked = quantity.name in ("tilt", "safety_factor")
+    title, unit = heading or quantity.heading, quantity.display_unit
+    return Column(title, unit, True, short=short, marked=marked)
 
 
-def figure_cell(name: str, value: float | None, state: State | None = None) -> Cell:
+def figure_cell(quantity: Quantity, value: float | None, state: State | None = None) -> Cell:
     """Return a value of a quantity as it stands under its `quantity_column`.
 
     Parameters
     ----------
-    name : of the quantity
     value : SI, degrees; None where it is not known
     state : warns or fails where the figure is near a limit or beyond it, and marks it so
     """
-    return Cell(QUANTITIES[name].format(value), state=state, mark=state.sign if state else "")
+    return Cell(quantity.format(value), state=state, mark=state.sign if state else "")
 
 
 def table_of(

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.analytic.chart_branch import CurvePoints, critical_angle, curve
-from calm.drawing.picture import empty_figure
+from calm.drawing.plot import empty_figure
 from calm.errors import UsageError
 from calm.physics.line import Floats
 from calm.report.blocks import Field, Note, ReportPart, number, table_of, words
@@ -30,9 +30,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from calm.analytic.chart import ChartAnswer, ChartSolution
-
-CHART_FORMATS = (".svg", ".png", ".pdf")
-"""The endings a chart's file name may have."""
 
 _PAGE = (8.27, 11.69)  # inches, A4
 _RIGHT = np.pi / 2

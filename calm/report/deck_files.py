@@ -9,8 +9,7 @@ from typing import Any
 
 from calm.case.result import NetResult
 from calm.deck import Deck
-from calm.drawing.picture import figure_svg
-from calm.drawing.plot import draw
+from calm.drawing.line_drawing import line_drawing
 from calm.drop import DropPlan
 from calm.records.delimited import table_csv
 from calm.report import deck_lists, deck_logs, provenance
@@ -189,7 +188,7 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
 
 def net_svg(deck: Deck) -> str:
     """A net from the side and from above."""
-    return figure_svg(draw(deck.result))
+    return line_drawing(deck.result)
 
 
 def diagram_report(deck: Deck, paper: Paper) -> Report:

@@ -6,13 +6,13 @@ A report as PDF is set by typst.
 import contextlib
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from calm.drawing.typesetting import legible, typeset
 from calm.errors import UsageError
 from calm.report.blocks import Cell, Report, Section
 from calm.report.html import page
@@ -131,8 +131,8 @@ def printed(
 ) -> bytes:
     """Any report on pages; its texts reach the template as data, never as markup.
 
-    The same report gives the same bytes: the fonts are those that typst and matplotlib bring, and
-    the only date is that of SOURCE_DATE_EPOCH. A sign that no font has shows as �.
+    The same report gives the same bytes: the fonts are those of the package, and the only date is
+    that of SOURCE_DATE_EPOCH. A sign that the fonts lack shows as �.
 
     Parameters
     ----------
@@ -140,22 +140,18 @@ def printed(
     least : size of the smallest text of its tables and notes [pt]
     leaves : its sections as `pdf_leaf` has them, where they are made already
     """
-    import typst
-
     leaves = leaves or [pdf_leaf(section) for section in report.sections]
-    fonts = typst.Fonts(include_system_fonts=False, font_paths=[font_folder()])
     when = moment()
-    return typst.compile(
+    return typeset(
         (files("calm.report") / "report.typ").read_bytes(),
-        font_paths=fonts,
-        sys_inputs={
+        {
             "report": pdf_leaf(replace(report, sections=())),
             "sections": f"[{','.join(leaves)}]",
             "paper": "us-letter" if paper == "letter" else paper,
             "least": f"{least:g}",
         },
-        pdf_tags=False,  # they make the file ten times as large; the page for a browser has its own
-        timestamp=None if when is None else int(when.timestamp()),
+        "pdf",
+        None if when is None else int(when.timestamp()),
     )
 
 
@@ -176,36 +172,3 @@ def _members(part: Any) -> dict[str, Any] | str:
     if isinstance(part, Section):
         return {"name": part.name, "parts": part.parts}
     return {"kind": type(part).__name__, **vars(part)}
-
-
-def font_folder() -> Path:
-    """The fonts that are always there: those that matplotlib brings."""
-    import matplotlib
-
-    return Path(matplotlib.get_data_path(), "fonts", "ttf")
-
-
-def lacking(texts: Iterable[str]) -> str:
-    """The signs of some texts that no font of a PDF has, each once, in order."""
-    held, known = list(texts), _signs()
-    unknown = {sign for sign in set().union(*held) if sign.isprintable() and ord(sign) not in known}
-    if not unknown:  # as nearly always: a report has millions of signs
-        return ""
-    return "".join(dict.fromkeys(sign for text in held for sign in text if sign in unknown))
-
-
-def legible(text: str) -> str:
-    """A text for a PDF: a sign that no font has is a question mark in a lozenge.
-
-    A single one would otherwise have all of a drawing's label shown in boxes.
-    """
-    unknown = lacking([text])
-    return text.translate(dict.fromkeys(map(ord, unknown), "\ufffd")) if unknown else text
-
-
-@cache
-def _signs() -> frozenset[int]:
-    from matplotlib.ft2font import FT2Font
-
-    fonts = sorted(font_folder().glob("DejaVuSans*.ttf"))
-    return frozenset(code for font in fonts for code in FT2Font(str(font)).get_charmap())

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from calm.batch.finished import open_result
-from calm.drawing.picture import empty_figure, figure_svg
+from calm.drawing.plot import empty_figure, figure_svg
 from calm.grid.field import DOUBTFUL, GriddedQuantity
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES_MEASURED

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.checks.finding import State
-from calm.drawing.picture import empty_figure, figure_svg
+from calm.drawing.graph import Axes, Graph, Scale, Stroke, Tick, covering, moments, seconds
+from calm.drawing.schematic.pen import shortened, text_width
 from calm.motion.remarks import Agreement, Fault, no_drag
 from calm.motion.study import HeldOut, MotionEstimate, SensorSeries, knockdown
 from calm.report import blocks
@@ -20,8 +21,6 @@ from calm.report.result_files import members
 from calm.version import __version__
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Drawing
     from numpy.typing import NDArray
 
 
@@ -300,69 +299,83 @@ def _agreement(one: Agreement) -> dict[str, Any]:
     return {"n": said.pop("count"), **said}
 
 
-_WIDTH = 7.4  # inches: an A4 page between its margins
-_FONT_SIZE = 7.0  # points
-_ESTIMATED = "#0b3c5d"
+_WIDTH, _SIZE = 510.0, 7.5  # points: an A4 page between its margins; the letters
+_PAGE_HEIGHT = 645.0
+_LEFT, _RIGHT, _BELOW = 44.0, 8.0, 16.0  # around the axes, for their scales
+_ESTIMATED, _BAND = "#0b3c5d", "#9ecae1"
+_BY_CURRENTS, _MEASURED = Stroke("#d55e00", 0.8, (3.0, 1.5)), Stroke("#111111", 0.8)
 
 
 def overview_figure(series: Sequence[SensorSeries]) -> str:
     """Depths of all instruments over time, with their bands: where and when the line went down."""
-    figure = _empty(3.6, 0.1, 0.09)
-    axes = figure.subplots()
-    for one in series:
-        style = "--" if one.hidden else "-"
-        axes.plot(_band(axes, one), one.estimated, style, color=_ESTIMATED, linewidth=0.6)
-    _frame(axes)
-    return figure_svg(figure)
+    page = Graph(_WIDTH, 260.0, "Depths of all instruments", _SIZE)
+    place = (_LEFT, 6.0, _WIDTH - _LEFT - _RIGHT, 260.0 - 6.0 - _BELOW)
+    _draw_depths(page, place, series, lambda one: [(one.estimated, _line_of(one))], numbered=True)
+    return page.svg()
+
+
+def _line_of(one: SensorSeries) -> Stroke:
+    return Stroke(_ESTIMATED, 0.7, (3.0, 1.5) if one.hidden else ())
 
 
 def depth_figure(series: Sequence[SensorSeries]) -> str:
     """Depths of each sensor over time: measured, estimated with its band, by the currents alone."""
-    height = 1.25 * len(series) + 0.4
-    figure = _empty(height, 0.1, 0.25 / height, hspace=0.25)
-    panels = figure.subplots(len(series), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, one in zip(panels, series, strict=True):
-        time = _band(axes, one)
-        if one.plain is not None:
-            axes.plot(time, one.plain, "--", color="#d55e00", linewidth=0.7)
-        axes.plot(time, one.estimated, color=_ESTIMATED, linewidth=0.9)
-        axes.plot(time, one.measured, color="#111111", linewidth=0.8)
+    apart = 14.0
+    tall = max(min(76.0, _PAGE_HEIGHT / len(series) - apart), 36.0)
+    page = Graph(_WIDTH, len(series) * (tall + apart) + _BELOW, "Depths of each sensor", _SIZE)
+
+    def curves(one: SensorSeries) -> list[tuple[Any, Stroke]]:
+        plain = [] if one.plain is None else [(one.plain, _BY_CURRENTS)]
+        return [*plain, (one.estimated, Stroke(_ESTIMATED, 1.0)), (one.measured, _MEASURED)]
+
+    for row, one in enumerate(series):
         hidden = one.hidden and np.isfinite(one.measured).any()
-        title = f"{one.label}{', hidden: not used' if hidden else ''}"
-        axes.set_title(title, fontsize=_FONT_SIZE, loc="left", pad=2, parse_math=False)
-        _frame(axes)
-    return figure_svg(figure)
+        place = (_LEFT, row * (tall + apart) + apart, _WIDTH - _LEFT - _RIGHT, tall)
+        axes = _draw_depths(page, place, [one], curves, numbered=row == len(series) - 1)
+        axes.title(f"{one.label}{', hidden: not used' if hidden else ''}")
+    return page.svg()
 
 
-def _empty(height: float, left: float, bottom: float, top: float = 0.98, **more: float) -> Drawing:
-    figure = empty_figure(_WIDTH, height)
-    figure.subplots_adjust(left, bottom, 0.99, top, **more)
-    return figure
-
-
-def _band(axes: Axes, one: SensorSeries) -> Any:
-    """Draw the band of what is estimated; the times of the sensor."""
-    time = one.time.astype("datetime64[s]")
-    low, high = one.estimated - 1.96 * one.spread, one.estimated + 1.96 * one.spread
-    axes.fill_between(time, low, high, color="#9ecae1", linewidth=0.0)
-    return time
-
-
-def _frame(axes: Axes) -> None:
-    axes.invert_yaxis()
-    axes.set_ylabel("depth [m]", fontsize=_FONT_SIZE)
-    axes.tick_params(labelsize=_FONT_SIZE)
-    axes.grid(alpha=0.3)
+def _draw_depths(
+    page: Graph,
+    place: tuple[float, float, float, float],
+    series: Sequence[SensorSeries],
+    curves: Callable[[SensorSeries], Iterable[tuple[Any, Stroke]]],
+    *,
+    numbered: bool,
+) -> Axes:
+    """Depths over time, each sensor with its 95 % band behind its curves."""
+    times = [seconds(one.time) for one in series]
+    bands = [(one.estimated - 1.96 * one.spread, one.estimated + 1.96 * one.spread)
+             for one in series]  # fmt: skip
+    drawn = [list(curves(one)) for one in series]
+    down = covering(*(edge for band in bands for edge in band),
+                    *(values for one in drawn for values, _ in one))  # fmt: skip
+    axes = page.axes(*place, covering(*times, margin=0.02), Scale(down.high, down.low))
+    for time, band in zip(times, bands, strict=True):
+        axes.band(time, *band, _BAND)
+    for time, one in zip(times, drawn, strict=True):
+        for values, stroke in one:
+            axes.line(time, values, stroke)
+    begin, end = min(one.time[0] for one in series), max(one.time[-1] for one in series)
+    axes.frame(
+        moments(begin, end, 8), max(round(place[3] / 25.0), 3),
+        beside="depth [m]", grid=True, numbered=(numbered, True),
+    )  # fmt: skip
+    return axes
 
 
 def false_figure(time: Any, false: Mapping[str, Any]) -> str:
     """A row of marks for each level whose current looks false at some of the times (n,)."""
-    height = 0.2 * len(false) + 0.5
-    figure = _empty(height, 0.2, 0.3 / height, 0.97)
-    axes = figure.subplots()
+    names = list(false)
+    left = min(max(text_width(name, _SIZE) for name in names) + 12.0, 0.4 * _WIDTH)
+    page = Graph(_WIDTH, 14.4 * len(false) + 12.0 + _BELOW, _FALSE, _SIZE)
+    rows = Scale(len(false) - 0.5, -0.5)
+    place = (left, 6.0, _WIDTH - left - _RIGHT, 14.4 * len(false))
+    axes = page.axes(*place, Scale(*seconds(time[[0, -1]])), rows)
     for row, when in enumerate(false.values()):
-        axes.plot(when.astype("datetime64[s]"), np.full(len(when), row), "|", color="#d55e00")
-    axes.set_yticks(range(len(false)), list(false), parse_math=False)
-    axes.set(xlim=tuple(time[[0, -1]].astype("datetime64[s]")), ylim=(len(false) - 0.5, -0.5))
-    axes.tick_params(labelsize=_FONT_SIZE)
-    return figure_svg(figure)
+        for at in seconds(when):
+            axes.mark(float(at), row, "|", 7.0, "#d55e00")
+    ticks = [Tick(row, shortened(name, left - 8.0, _SIZE)) for row, name in enumerate(names)]
+    axes.frame(moments(time[0], time[-1], 8), ticks)
+    return page.svg()

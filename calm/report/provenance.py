@@ -24,7 +24,7 @@ from calm.report.blocks import Listing, Prose, Report, ReportPart, number, quant
 from calm.version import __version__
 from calm.whole_file import read_text
 
-_LIBRARIES = ("numpy", "pydantic", "matplotlib", "jinja2", "typst")
+_LIBRARIES = ("numpy", "pydantic", "jinja2", "typst")
 
 
 def made_by() -> str:

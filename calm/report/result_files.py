@@ -9,22 +9,27 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.case import Result, TowResult
+from calm.case import TowResult
+from calm.case.columns import Output, shown_in, terms
 from calm.case.result import AnyResult, NetResult
-from calm.case.result_tables import ClampRow, ComponentRow, Components, rows_down
+from calm.case.result_tables import (
+    MOORED_ENDS,
+    OF_ROWS,
+    TOWED_ENDS,
+    Clamps,
+    Components,
+    Shape,
+    rows_down,
+)
 from calm.dataset import netcdf
-from calm.dataset.netcdf import CLAMPS, OF_CLAMP, OF_COMPONENT, OF_ENDS, Attributes, labels, numbers
+from calm.dataset.netcdf import Attributes, labels, numbers
 from calm.files.legs import leg_numbers
-from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
 
-_WORDS = ("mooring", "part", "index", "use", "label")
-_WITHIN = {"tension", "least_tension", "reynolds"}
-"""What is greatest or least within a piece: a row has the figures of its ends."""
 
-_NUMBERS = tuple(name for name in Components.names() if name in QUANTITIES and name not in _WITHIN)
-HEADER = (*_WORDS, *(QUANTITIES[name].header for name in _NUMBERS))
-"""The first row: names, with the unit in brackets where there is one."""
+def header() -> tuple[str, ...]:
+    """The first row of CSV: names, with the unit in brackets where there is one."""
+    return ("mooring", "part", *(one.header for one in Components.columns(Output.CSV)))
 
 
 def to_csv(results: Sequence[AnyResult]) -> str:
@@ -35,49 +40,29 @@ def to_csv(results: Sequence[AnyResult]) -> str:
     a net among them the last column is the leg.
     """
     rows = [row for result in results for row in _rows(result)]
-    wide = max(map(len, rows), default=0)
-    header = (*HEADER, "leg")[: max(wide, len(HEADER))]
-    return table_csv(header, ([*row, *[""] * (wide - len(row))] for row in rows))
+    more = shown_in(OF_ROWS, Output.CSV)
+    shown = len(header())
+    used = [at for at in range(len(more)) if any(row[shown + at] is not None for row in rows)]
+    heads = *header(), *(more[at].header for at in used)
+    return table_csv(heads, ([*row[:shown], *(row[shown + at] for at in used)] for row in rows))
 
 
 def _rows(result: AnyResult) -> Iterator[list[object]]:
-    legs, own = result.file.legs, leg_numbers(result.file)
+    own, more = Components.columns(Output.CSV), shown_in(OF_ROWS, Output.CSV)
     for component, clamps in rows_down(result):
-        leg = [legs[own[component.index]].name] if legs else []
-        numbers = (getattr(component, name) for name in _NUMBERS)
-        yield [*_words(result, "component", component), *numbers, *leg]
+        beside = [one.value(component, result.file) for one in more]
+        figures = (getattr(component, one.name) for one in own)
+        yield [result.name, "component", *figures, *beside]
         for clamp in clamps:
             # a clamp has one figure where a component has one for each end
-            names = (name.removesuffix("_top").removesuffix("_bottom") for name in _NUMBERS)
-            numbers = (getattr(clamp, name, None) for name in names)
-            yield [*_words(result, "clamp", clamp), *numbers, *leg]
+            names = (one.name.removesuffix("_top").removesuffix("_bottom") for one in own)
+            figures = (getattr(clamp, name, None) for name in names)
+            yield [result.name, "clamp", *figures, *beside]
 
 
-def _words(result: AnyResult, part: str, row: ComponentRow | ClampRow) -> list[object]:
-    return [result.name, part, row.index, row.use, row.label]
-
-
-_MORE: dict[str, tuple[str, str, Attributes]] = {
-    "depth_bottom": ("m", "depth of the lower end", {"standard_name": "depth", "positive": "down"}),
-    "x_bottom": ("m", "offset to the east, of the lower end", {}),
-    "y_bottom": ("m", "offset to the north, of the lower end", {}),
-    "length": ("m", "length, stretched", {}),
-    "cut_length": ("m", "length before any load", {}),
-    "safety_factor": ("1", "breaking load over the greatest tension", {}),
-    "utilisation": ("1", "greatest tension over the working load", {}),
-}
-_TILT: dict[str, tuple[str, str, Attributes]] = {
-    "shape_tilt": ("degree", "angle of the segment that ends there from the vertical", {})
-}
 _ACCURACY: dict[str, tuple[str, str, Attributes]] = {
     "accuracy_depth": ("m", "worst error expected of any depth or offset", {}),
     "accuracy_tension": ("N", "worst error expected of any tension", {}),
-}
-_OF_TOW: dict[str, tuple[str, str, Attributes]] = {
-    "speed": ("m s-1", "speed of the ship over the ground", {}),
-    "body_depth": ("m", "depth of the towed body", {}),
-    "layback": ("m", "horizontal distance of the towed body behind the tow point", {}),
-    "tow_tension": ("N", "tension at the tow point", {}),
 }
 
 
@@ -87,30 +72,28 @@ def result_netcdf(result: AnyResult) -> bytes:
     A net has its ends leg by leg, and the nodes of its shape one leg after the other.
     """
     file, pieces, clamps = result.file, result.components, result.clamps
-    ends = _ends(result)
     place = () if file.position is None else (file.position.latitude, file.position.longitude)
     of_station, where = netcdf.station(result.name or "mooring", place, "the anchor")
     lines = result.legs if isinstance(result, NetResult) else (result,)
-    of_node = {
-        f"shape_{name}": np.concatenate([getattr(line.shape, name) for line in lines])
-        for name in vars(lines[0].shape)
+    of_nodes = Shape.columns(Output.NETCDF)
+    nodes = {
+        one.variable: np.concatenate([getattr(line.shape, one.name) for line in lines])
+        for one in of_nodes
     }
-    sizes = {"component": len(pieces), "node": len(of_node["shape_depth"])}
-    variables = [*of_station, labels("component_label", "component", pieces.label, netcdf.PIECES)]
-    of_component = {name: getattr(pieces, name) for name in (*OF_COMPONENT, *_MORE)}
-    of_clamp = {name: getattr(clamps, name.removeprefix("clamp_")) for name in OF_CLAMP}
-    beside = f"component_label depth_top{where}"
-    variables += numbers(("component",), {**OF_COMPONENT, **_MORE}, beside, _floats(of_component))
+    sizes = {"component": len(pieces), "node": sum(len(line.shape.depth) for line in lines)}
+    variables = [
+        *of_station,
+        labels("component_label", "component", pieces.label, netcdf.PIECES),
+        *_table_variables("component", pieces, f"component_label depth_top{where}"),
+    ]
     if len(clamps):
         sizes["clamp"] = len(clamps)
-        variables.append(labels("clamp_label", "clamp", clamps.label, CLAMPS))
-        beside = f"clamp_label clamp_depth{where}"
-        variables += numbers(("clamp",), OF_CLAMP, beside, _floats(of_clamp))
-    variables += numbers(
-        ("node",), {**netcdf.OF_NODE, **_TILT}, f"shape_depth{where}", _floats(of_node)
-    )
+        variables.append(labels("clamp_label", "clamp", clamps.label, netcdf.CLAMPS))
+        variables += _table_variables("clamp", clamps, f"clamp_label clamp_depth{where}")
+    variables += numbers(("node",), terms(of_nodes), f"shape_depth{where}", _floats(nodes))
     accuracy = {f"accuracy_{name}": getattr(result.accuracy, name) for name in ("depth", "tension")}
-    of_ends = _OF_TOW if isinstance(result, TowResult) else OF_ENDS
+    of_ends = shown_in(TOWED_ENDS if isinstance(result, TowResult) else MOORED_ENDS, Output.NETCDF)
+    ends = {one.name: [one.found(line) for line in lines] for one in of_ends if one.found}
     along: tuple[str, ...] = ()
     if isinstance(result, NetResult):
         sizes["leg"], along = len(lines), ("leg",)
@@ -119,7 +102,9 @@ def result_netcdf(result: AnyResult) -> bytes:
             variables, [line.name for line in lines], own, [own[row.index] for row in clamps],
             [n for n, line in enumerate(lines) for _ in line.shape.depth],
         )  # fmt: skip
-    variables += numbers(along, of_ends, where.strip(), _floats(ends))
+    else:
+        ends = {name: column[0] for name, column in ends.items()}
+    variables += numbers(along, terms(of_ends), where.strip(), _floats(ends))
     variables += numbers((), _ACCURACY, where.strip(), _floats(accuracy))
     variables += netcdf.down_the_line(sizes)
     attributes = {
@@ -132,24 +117,13 @@ def result_netcdf(result: AnyResult) -> bytes:
     return netcdf.netcdf_of(netcdf.ResultLayout(sizes, tuple(variables), known))
 
 
-def _ends(result: AnyResult) -> Mapping[str, object]:
-    """Return what is known of the line as a whole, or of each leg."""
-    if isinstance(result, NetResult):
-        return result.ends
-    if isinstance(result, Result):
-        return {
-            "top_depth": result.top.depth,
-            "anchor_vertical": result.anchor.vertical,
-            "anchor_horizontal": result.anchor.horizontal,
-            "used_buoyancy": result.top.used_buoyancy,
-            "other_used_buoyancy": result.other_used_buoyancy,
-        }
-    return {
-        "speed": result.speed,
-        "body_depth": result.body.depth,
-        "layback": result.body.layback,
-        "tow_tension": result.tow_point.tension,
-    }
+def _table_variables(
+    dimension: str, table: Components | Clamps, beside: str
+) -> list[netcdf.Variable]:
+    """The columns of a table; `beside` are the coordinates that go with them."""
+    columns = table.columns(Output.NETCDF)
+    figures = _floats({one.variable: getattr(table, one.name) for one in columns})
+    return numbers((dimension,), terms(columns), beside, figures)
 
 
 def _floats(columns: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:

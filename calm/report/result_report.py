@@ -9,9 +9,8 @@ from calm.case.result import AnyResult, NetResult
 from calm.case.uncertain import Uncertain
 from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface
+from calm.drawing.line_drawing import line_drawing
 from calm.drawing.line_picture import water_of
-from calm.drawing.picture import figure_svg
-from calm.drawing.plot import draw
 from calm.drawing.schematic import schematic_svg
 from calm.files import Uncertainty
 from calm.files.uncertainty import Spread
@@ -44,7 +43,7 @@ def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> bloc
         keys = limits_used(result.file, reaches_the_surface(result.mooring))
         limits = (ReportPart("Limits", (limits_table(keys),)),)
     described = (blocks.Prose((file.description,)),) if file.description else ()
-    drawing = figure_svg(draw(result, uncertain))
+    drawing = line_drawing(result, uncertain)
     return report_of(
         result.name,
         title.removeprefix(f"{result.name}: "),

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from math import isnan
 
 from calm.checks.finding import State
-from calm.drawing.picture import empty_figure, figure_svg
+from calm.drawing.graph import COLOURS, Graph, LegendEntry, Scale, Stroke, Tick, covering
 from calm.quantities import QUANTITIES, say
 from calm.records.sea_states import doubted
 from calm.report import blocks
@@ -237,27 +237,51 @@ def _measured(state: MooringInSea, band: MeasuredBand) -> str:
     )
 
 
+_WIDTH, _TALL, _SIZE = 510.0, 180.0, 8.0  # points; the last one of the letters
+_TOP, _GAP = 22.0, 52.0
+_MEAN, _STD, _MAX = (Stroke(COLOURS[0], 1.2, dashes) for dashes in ((), (1.2, 1.8), (4.0, 2.0)))
+
+
 def _drawn(analysis: WaveAnalysis, several: bool) -> str:
+    """Spectrum of the tension, tension by depth and, of several seas, by their height."""
     state = _highest(analysis)
-    figure = empty_figure(7.4, 3.2, layout="constrained")
-    left, right, *over = figure.subplots(1, 3 if several else 2)
+    page = Graph(_WIDTH, _TOP + _TALL + 30.0, "Tension in waves", _SIZE)
+    panels = 3 if several else 2
+    wide = (_WIDTH - 8.0 - panels * _GAP) / panels
+    places = [(_GAP - 4.0 + at * (wide + _GAP), _TOP, wide, _TALL) for at in range(panels)]
+
     omega, density = state.spectrum
-    left.plot(omega, 1e-6 * density, color="#0b3c5d")
-    left.set(xlabel="frequency [rad/s]", ylabel="spectrum of tension [kN² s/rad]", xscale="log")
-    ticks = [at for at in (0.2, 0.5, 1.0, 2.0, 5.0) if omega[0] < at < omega[-1]]
-    left.set_xticks(ticks, [f"{at:g}" for at in ticks])
-    left.minorticks_off()
+    range_of = Scale(float(omega[0]), float(omega[-1]), logarithmic=True)
+    axes = page.axes(*places[0], range_of, covering([0.0], 1e-6 * density))
+    axes.line(omega, 1e-6 * density, _MEAN)
+    ticks = [at for at in (0.2, 0.5, 1.0, 2.0, 5.0, 10.0) if omega[0] < at < omega[-1]]
+    axes.frame(
+        [Tick(at, f"{at:g}") for at in ticks], 6,
+        below="frequency [rad/s]", beside="spectrum of tension [kN² s/rad]", grid=True,
+    )  # fmt: skip
+
     depth, *tensions = state.along
-    for values, name, dash in zip(tensions, ("mean", "std", "max"), ("-", ":", "--"), strict=True):
-        right.plot(values, depth, dash, color="#0b3c5d", label=name)
-    right.set(xlabel="tension [N]", ylabel="depth [m]")
-    right.invert_yaxis()
-    right.legend(frameon=False)
-    for axes in over:
+    down = covering(depth)
+    axes = page.axes(*places[1], covering([0.0], *tensions), Scale(down.high, down.low))
+    strokes = (_MEAN, _STD, _MAX)
+    for values, stroke in zip(tensions, strokes, strict=True):
+        axes.line(values, depth, stroke)
+    axes.frame(4, 6, below="tension [N]", beside="depth [m]", grid=True)
+    entries = [
+        LegendEntry(name, line=stroke)
+        for name, stroke in zip(("mean", "std", "max"), strokes, strict=True)
+    ]
+    page.legend(entries, (places[1][0], 4.0), 52.0, 12.0, columns=3)
+    if several:
         heights = [each.sea.significant_height for each in analysis.states]
         tops = [each.components[0] for each in analysis.states]
-        axes.plot(heights, [each.tension_std for each in tops], "+", color="#0b3c5d", label="std")
-        axes.plot(heights, [each.tension_max for each in tops], ".", color="#0b3c5d", label="max")
-        axes.set(xlabel="Hs [m]", ylabel="tension at the top [N]", ylim=(0.0, None))
-        axes.legend(frameon=False)
-    return figure_svg(figure)
+        columns = [[one.tension_std for one in tops], [one.tension_max for one in tops]]
+        axes = page.axes(*places[2], covering(heights), Scale(0.0, covering([0.0], *columns).high))
+        signs = ("+", 5.0, COLOURS[0]), ("o", 3.0, COLOURS[0])
+        for column, sign in zip(columns, signs, strict=True):
+            for height, value in zip(heights, column, strict=True):
+                axes.mark(height, value, *sign)
+        axes.frame(5, 6, below="Hs [m]", beside="tension at the top [N]", grid=True)
+        entries = [LegendEntry("std", sign=signs[0]), LegendEntry("max", sign=signs[1])]
+        page.legend(entries, (places[2][0], 4.0), wide / 2, 12.0, columns=2)
+    return page.svg()

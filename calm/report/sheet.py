@@ -6,11 +6,13 @@ Of a net they are the table of its legs, its nodes, and what its ends bear.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 from calm.case import Result, TowResult
+from calm.case.columns import Output, ResultColumn, columns_of, shown_in
 from calm.case.mooring import ProfilerTravel
 from calm.case.result import AnyResult, NetResult, legs_of
-from calm.case.result_tables import ClampRow, ComponentRow, rows_down
+from calm.case.result_tables import ClampRow, ComponentRow, rows_down, table_columns
 from calm.case.strumming import StrummingBand
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
@@ -20,14 +22,20 @@ from calm.files.legs import EndKeys
 from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.quantities import duration, say
 from calm.report import blocks
-from calm.report.blocks import Cell, Column, Line, Note, Prose, ReportPart, Span, Table, words
+from calm.report.blocks import (
+    Cell,
+    Column,
+    Field,
+    Line,
+    Note,
+    Prose,
+    ReportPart,
+    Span,
+    Table,
+    words,
+)
 from calm.solve import Status
 
-_MOORING_COLUMNS = (
-    "length", "depth", "height", "knockdown", "offset", "tilt", "tension", "safety_factor",
-)  # fmt: skip
-_TOW_COLUMNS = ("length", "depth", "layback", "tilt", "tension", "safety_factor")
-_NET_COLUMNS = ("length", "depth", "x", "y", "knockdown", "tilt", "tension", "safety_factor")
 _NOTE = "of the upper end. Tension: the greatest in the piece. ~ near a limit, ! beyond it."
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 
@@ -187,13 +195,13 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
     The legs of a net have heads. With `places` a clamp says where on its piece it sits, in place of
     a length.
     """
-    names: tuple[str, ...] = _MOORING_COLUMNS
-    of_an_end, heads = "Depth, height and offset", {}
+    output, of_an_end, heads = Output.MOORING_TABLE, "Depth, height and offset", {}
     if isinstance(result, TowResult):
-        names, of_an_end = _TOW_COLUMNS, "Depth and layback"
+        output, of_an_end = Output.TOW_TABLE, "Depth and layback"
     elif isinstance(result, NetResult):
-        names, of_an_end = _NET_COLUMNS, "Depth, east and north"
+        output, of_an_end = Output.NET_TABLE, "Depth, east and north"
         heads = {leg.file.legs[0].first: leg_title(leg) for leg in result.legs}
+    figures = table_columns(output)
     columns = [Column("no.", numeric=True, narrow=False), Column("piece", short="")]
     rows: list[tuple[Cell, ...]] = []
     for number, (piece, clamps) in enumerate(rows_down(result)):
@@ -203,17 +211,18 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
             Cell(piece.label, strong=piece.role == "instrument"),
             safety_state(result, piece),
         )
-        rows.append((Cell(str(number)), label, *_cells(result, names, piece, factor)))
+        rows.append((Cell(str(number)), label, *_cells(result, figures, piece, factor)))
         for clamp in clamps:
-            cells = [*_cells(result, names, clamp)]
+            cells = [*_cells(result, figures, clamp)]
             if places:
                 from calm.drawing.schematic.shown_parts import place_text
 
-                cells[names.index("length")] = Cell(place_text(clamp.part.at))
+                at = [one.name for one in figures].index("length")
+                cells[at] = Cell(place_text(clamp.part.at))
             strong = clamp.part.component.role == "instrument"
             label = Cell(clamp.label, indented=True, strong=strong)
             rows.append((Cell(), label, *cells))
-    columns += map(blocks.quantity_column, names)
+    columns += (blocks.quantity_column(one.quantity) for one in figures if one.quantity)
     return Table(title, tuple(columns), tuple(rows), f"{of_an_end}: {_NOTE}", dense=True)
 
 
@@ -242,19 +251,16 @@ def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
 
 def _cells(
     result: AnyResult,
-    names: tuple[str, ...],
+    figures: Sequence[ResultColumn],
     row: ComponentRow | ClampRow,
     factor: State | None = None,
 ) -> Iterator[Cell]:
     """The figures of a piece or a clamp; a safety factor is marked by its state."""
-    depth, x, y = row.upper
     states = {"tilt": tilt_state(row.part.component, row.tilt), "safety_factor": factor}
-    bottom, distance = result.file.environment.depth, math.hypot(x, y)
-    where = {"depth": depth, "offset": distance, "layback": distance, "x": x, "y": y}
-    where["height"] = math.nan if bottom is None else bottom - depth
-    for name in names:
-        value = where[name] if name in where else getattr(row, name, None)
-        yield blocks.figure_cell(name, value, states.get(name))
+    for one in figures:
+        if one.quantity:
+            value = one.value(row, result.file)
+            yield blocks.figure_cell(one.quantity, value, states.get(one.name))
 
 
 def net_part(result: NetResult) -> ReportPart:
@@ -302,16 +308,11 @@ def end_text(end: EndKeys) -> str:
 
 def _ends(result: NetResult) -> Iterator[Table | Prose]:
     """Nodes, anchors and held ends, and floats at the surface."""
-    if result.nodes:
-        places = map(blocks.quantity, ("depth", "x", "y"))
-        yield blocks.table_of("Nodes", result.nodes, words("", "name"), *places)
-    heads = {"tension": "pull", "vertical": "up", "horizontal": "sideways"}
-    heads |= {"depth": "depth", "x": "east", "y": "north", "required_weight": "needs"}
-    fields = [blocks.quantity(name, heading=head) for name, head in heads.items()]
-    if result.anchors:
-        yield blocks.table_of("Anchors", result.anchors, words("leg"), *fields)
-    if result.held:
-        yield blocks.table_of("Held ends", result.held, words("leg"), *fields[:-1])
+    ends = {"Nodes": result.nodes, "Anchors": result.anchors, "Held ends": result.held}
+    for title, rows in ends.items():
+        if rows:
+            head = words("", "name") if title == "Nodes" else words("leg")
+            yield blocks.table_of(title, rows, head, *_fields(rows))
     afloat = [
         f"{leg.name}: float at the surface, {leg.top.used_buoyancy:.1%} of its buoyancy used, "
         f"{say('reserve', leg.top.reserve)} in reserve"
@@ -320,6 +321,15 @@ def _ends(result: NetResult) -> Iterator[Table | Prose]:
     ]
     if afloat:
         yield Prose(tuple(afloat))
+
+
+def _fields(rows: Sequence[Any]) -> Iterator[Field]:
+    """The columns of nodes or ends, without those that no row has."""
+    columns = shown_in(columns_of(type(rows[0])), Output.NET_TABLE)
+    for one in sorted(columns, key=lambda one: one.place):
+        known = any(getattr(row, one.name) is not None for row in rows)
+        if known and one.quantity:
+            yield blocks.quantity(one.quantity, one.name)
 
 
 def _convergence(result: NetResult) -> str:

@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import starmap
-from math import floor, log10
-from operator import mul
+from math import floor, isfinite, log10
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from calm.checks.finding import State
-from calm.drawing import plot
-from calm.drawing.picture import empty_figure
+from calm.drawing.graph import Axes, Graph, LegendEntry, Scale, Stroke, Tick, covering, numbers
+from calm.drawing.line_drawing import LINE_COLOUR, WATER_COLOUR
+from calm.drawing.schematic.pen import shortened
 from calm.errors import NoEquilibrium
+from calm.physics.line import Floats
 from calm.physics.strumming import BourgetMarichal
 from calm.quantities import QUANTITIES, Quantity
 from calm.records.delimited import table_csv
@@ -24,9 +26,6 @@ from calm.units import KNOT
 from calm.version import __version__
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from calm.case import Tow, TowResult
     from calm.case.strumming import BareCable
     from calm.case.tow import Variation
@@ -266,47 +265,61 @@ def _notes(cable: BareCable) -> Iterator[str]:
         yield f"C* is above {law.ceiling:g}, the maximum of the method: check the measurements."
 
 
-_SWEEP_HEIGHT = 4.5  # inches
+_WIDTH, _HEIGHT, _SIZE = 600.0, 247.0, 8.0  # points; the last one of the letters
+_PANEL, _TOP, _LOW = 148.0, 66.0, 32.0  # width of a panel, and what is above and below it
+_LEFTS = (44.0, 244.0, 444.0)
 _MOST_MARKED = 60  # points that can still be told apart
+_CURVE, _AT_BODY = Stroke(LINE_COLOUR, 1.4), Stroke(LINE_COLOUR, 1.2, (4.0, 2.0))
 
 
-def draw_sweep(tabulation: Tabulation) -> Figure:
-    """A figure of three panels against the speed, which belongs to no window.
+def sweep_drawing(tabulation: Tabulation) -> str:
+    """Three panels against the speed, as SVG: depth of the body, its layback, and tensions.
 
-    Depth of the body, its layback, and the tension at the tow point and at the body. A speed
-    without equilibrium is a gap.
+    Tension is drawn at the tow point and at the body. A speed without equilibrium is a gap.
     """
-    figure = empty_figure(plot.WIDTH, _SWEEP_HEIGHT, layout="constrained")
-    depth, layback, tension = figure.subplots(1, 3)
-    figure.suptitle(tabulation.name, parse_math=False)
-    _draw_figure(depth, tabulation, "depth")
-    depth.axhline(0.0, color=plot.WATER_COLOUR, linewidth=1)
-    depth.invert_yaxis()
-    _draw_figure(layback, tabulation, "layback")
-    _draw_figure(tension, tabulation, "tension", label="at the tow point")
-    _draw_figure(tension, tabulation, "body_tension", "--", label="at the body")
-    tension.set_ylabel(QUANTITIES["tension"].label)
-    tension.set_ylim(bottom=0.0)
-    tension.legend(frameon=False)
-    return figure
-
-
-def _draw_figure(
-    axes: Axes, tabulation: Tabulation, name: str, dashes: str = "-", label: str = ""
-) -> None:
-    from matplotlib.ticker import MaxNLocator
-
+    page = Graph(_WIDTH, _HEIGHT, tabulation.name, _SIZE)
+    title = shortened(tabulation.name, _WIDTH - 12.0, 11.0, bold=True)
+    page.pen.letters(_WIDTH / 2, 10.0, title, size=11.0, bold=True, anchor="middle")
     speeds = [float(row.chosen["speed"]) for row in tabulation.rows]
-    figures = [row.figures[name] for row in tabulation.rows]
-    values = [float("nan") if value is None else value for value in figures]
-    marker = "." if dashes == "-" and len(speeds) <= _MOST_MARKED else ""
-    axes.plot(speeds, values, linestyle=dashes, marker=marker, label=label, **plot.LINE_STYLE)
     margin = 0.04 * (speeds[-1] - speeds[0]) or speeds[0]
-    axes.set_xlim(speeds[0] - margin, speeds[-1] + margin)
-    axes.set(xlabel=QUANTITIES["speed"].label, ylabel=QUANTITIES[name].label)
-    axes.grid(alpha=0.3)
-    if not axes.child_axes:
-        to_knots, from_knots = partial(mul, 1.0 / KNOT), partial(mul, KNOT)
-        knots = axes.secondary_xaxis("top", functions=(to_knots, from_knots))
-        knots.set_xlabel("speed [knot]")
-        knots.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    across = Scale(speeds[0] - margin, speeds[-1] + margin)
+    columns = {
+        name: np.array([row.figures[name] for row in tabulation.rows], dtype=np.float64)
+        for name in FIGURES
+    }
+    deep = covering([0.0], columns["depth"])
+    pull = covering([0.0], columns["tension"], columns["body_tension"])
+    _panel(page, 0, across, Scale(deep.high, deep.low), speeds, columns, "depth", WATER_COLOUR)
+    _panel(page, 1, across, covering(columns["layback"]), speeds, columns, "layback")
+    axes = _panel(page, 2, across, Scale(0.0, pull.high), speeds, columns, "tension")
+    axes.line(speeds, columns["body_tension"], _AT_BODY)
+    entries = [LegendEntry("tow point", line=_CURVE), LegendEntry("body", line=_AT_BODY)]
+    page.legend(entries, (_LEFTS[2], 22.0), _PANEL / 2, 12.0, columns=2)
+    return page.svg()
+
+
+def _panel(
+    page: Graph,
+    number: int,
+    across: Scale,
+    up: Scale,
+    speeds: list[float],
+    columns: Mapping[str, Floats],
+    name: str,
+    level: str = "",
+) -> Axes:
+    """A panel with the curve of a column, and a line at zero of a colour."""
+    place = _LEFTS[number], _TOP, _PANEL, _HEIGHT - _TOP - _LOW
+    axes = page.axes(*place, across, up)
+    if level:
+        axes.level(0.0, Stroke(level, 1.0))
+    axes.line(speeds, columns[name], _CURVE)
+    if len(speeds) <= _MOST_MARKED:
+        for speed, value in zip(speeds, columns[name], strict=True):
+            if isfinite(value):
+                axes.mark(speed, value, "o", 2.6, LINE_COLOUR)
+    below, beside = QUANTITIES["speed"].label, QUANTITIES[name].label
+    axes.frame(5, 6, below=below, beside=beside, grid=True)
+    knots = numbers(across.low / KNOT, across.high / KNOT, 5)
+    axes.scale_above([Tick(each.value * KNOT, each.text) for each in knots], "speed [knot]")
+    return axes

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
 from calm.batch.finished import place_of
-from calm.drawing import plot
 from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, Polyline, along
-from calm.drawing.picture import empty_figure
+from calm.drawing.plot import plot_elevation
 from calm.errors import UsageError
 from calm.quantities import QUANTITIES
 from calm.report.batch_summary import when
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
 
 
 @xr.register_dataset_accessor("calm")  # type: ignore[no-untyped-call]
@@ -54,12 +52,18 @@ class BatchAccessor:
         greater: xr.DataArray = upper.where(upper >= lower, lower)
         return greater
 
-    def plot_shape(self, *, time: str | np.datetime64) -> Figure:
-        """Draw the line at the time of the profile nearest to one.
+    def plot_shape(self, *, time: str | np.datetime64, ax: Axes | None = None) -> Axes:
+        """Draw the line from the side, in the profile nearest to a time, on axes of matplotlib.
 
-        UsageError: the profile has no equilibrium.
+        Without `ax` the axes are those of a new figure. UsageError: the profile has no equilibrium,
+        or matplotlib is not installed.
         """
-        return draw_shape(self._dataset, time)
+        axes = plot_elevation(shape_picture(self._dataset, time), ax)
+        moment = when(_nearest(self._dataset, time)["time"].values)
+        axes.set_title(
+            f"{self._dataset.attrs.get('title', '')}\n{moment}".strip(), parse_math=False
+        )
+        return axes
 
     def _of(self, label: str, quantity: str, of_component: str) -> xr.DataArray:
         """Return what a variable has for a component, or that of the same quantity for a clamp."""
@@ -70,37 +74,40 @@ class BatchAccessor:
         return column.assign_attrs(column.attrs | {"long_name": f"{quantity} of {label}"})
 
 
-_HEIGHT = 6.5  # inches
+def _nearest(dataset: xr.Dataset, time: str | np.datetime64) -> xr.Dataset:
+    return dataset.sel(time=np.datetime64(time), method="nearest")
 
 
-def draw_shape(dataset: xr.Dataset, time: str | np.datetime64) -> Figure:
-    """Elevation and plan of the line in the profile nearest to a time.
+def shape_picture(dataset: xr.Dataset, time: str | np.datetime64) -> LinePicture:
+    """The line from the side in the profile nearest to a time.
 
-    The line is drawn through the nodes of a result that has them (`--shape`), else straight from
-    the upper end of one component to that of the next. The elevation is in the vertical plane of
-    the anchor and the top. UsageError: the profile has no equilibrium.
+    The line goes through the nodes of a result that has them (`--shape`), else straight from the
+    upper end of one component to that of the next. The picture is in the vertical plane of the
+    anchor and the top. UsageError: the profile has no equilibrium.
     """
-    row = dataset.sel(time=np.datetime64(time), method="nearest")
+    row = _nearest(dataset, time)
     prefix, end = ("shape_", "") if "shape_depth" in row else ("", "_top")
     names = (f"{prefix}{name}{end}" for name in ("depth", "x", "y"))
     depth, x, y = (np.asarray(row[name].values, np.float64) for name in names)
-    moment = when(row["time"].values)
     if np.isnan(depth).any():
-        raise UsageError(f"the profile of {moment} has no equilibrium to draw")
+        raise UsageError(f"the profile of {when(row['time'].values)} has no equilibrium to draw")
     distance = float(np.hypot(x[0], y[0]))
     plane = np.array([x[0], y[0]]) / distance if distance > 0.0 else np.array([1.0, 0.0])
     height = float(np.ptp(depth))
-    marks: tuple[PictureMark, ...] = ()
-    if "clamp_depth" in row:
-        clamps = zip(*(row[f"clamp_{name}"].values for name in ("x", "y", "depth")), strict=True)
-        marks = tuple(PictureMark("", "", "instrument", *map(float, each)) for each in clamps)
-    above = LinePicture(
-        (Polyline(LineKind.LINE, x, y),), marks, QUANTITIES["x"].label, QUANTITIES["y"].label
+    clamps = (
+        zip(*(row[f"clamp_{name}"].values for name in ("x", "y", "depth")), strict=True)
+        if ("clamp_depth" in row)
+        else ()
     )
     margin = 0.05 * height
-    side = LinePicture(
+    return LinePicture(
         (Polyline(LineKind.LINE, along(x, y, plane), depth),),
-        tuple(replace(one, x=float(along(one.x, one.y, plane)), y=one.depth) for one in marks),
+        tuple(
+            PictureMark(
+                "", "", "instrument", float(along(east, north, plane)), float(deep), float(deep)
+            )
+            for east, north, deep in clamps
+        ),
         across=QUANTITIES["offset"].label,
         up=QUANTITIES["depth"].label,
         top=min(0.0, float(depth.min())) - margin,
@@ -108,9 +115,3 @@ def draw_shape(dataset: xr.Dataset, time: str | np.datetime64) -> Figure:
         height=height,
         surface=True,
     )
-    figure = empty_figure(plot.WIDTH, _HEIGHT, layout="constrained")
-    elevation, plan = figure.subplots(1, 2)
-    figure.suptitle(f"{dataset.attrs.get('title', '')}\n{moment}".strip(), parse_math=False)
-    plot.draw_elevation(elevation, side)
-    plot.draw_plan(plan, above)
-    return figure

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from textual.events import Paste
 
 from calm.assemble.catalogue_search import Index, Listed
+from calm.case.columns import Output
+from calm.case.result_tables import table_columns
 from calm.checks.finding import State, worst_state
 from calm.files import Place, components
 from calm.files.editing import Draft, LineItem, Value
@@ -130,10 +132,10 @@ def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
 def _told(found: Sequence[FoundRow]) -> dict[str, str]:
     """The figures of the pieces of one item: where it begins, and the worst of them."""
     texts = {}
-    for name in ("depth", "tension", "tilt"):
-        known = [figure for row in found if (figure := getattr(row, name)) is not None]
-        if known:
-            texts[name] = QUANTITIES[name].format(known[0] if name == "depth" else max(known))
+    for one in table_columns(Output.BUILDER):
+        known = [row.figures[one.name] for row in found if one.name in row.figures]
+        if known and one.quantity:
+            texts[one.name] = one.quantity.format(one.worst(known))
     margins = [row.margin for row in found if row.margin is not None]
     if any(row.lacks_strength for row in found):
         texts["margin"] = UNKNOWN_MARGIN

@@ -12,10 +12,11 @@ from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
 
+from calm.case.columns import Output, ResultColumn
+from calm.case.result_tables import table_columns
 from calm.checks.finding import State
 from calm.checks.strength import strength
 from calm.files import Place
-from calm.quantities import QUANTITIES
 from calm.tui import cell_editor, checking, dialogs, field, theme
 from calm.tui.scrolled import TableCells, TableColumn
 
@@ -179,10 +180,9 @@ Column = Literal["component", "label", "count", "length"]
 EDITABLE: tuple[Column, ...] = ("component", "label", "count", "length")
 """The columns that a person fills, from the left."""
 
-FIGURES = ("depth", "tension", "tilt", "margin")
-RIGHT_ALIGNED = frozenset({"count", "length", *FIGURES})
-
+_WORDS = ("leg", "component", "label")
 _WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "margin": 7}
+_USUAL_WIDTH = 9
 _LEAST_TEXT, _WANTED_TEXT = 9, 12
 _MOST_COMPONENT, _MOST_LABEL, _MOST_LENGTH, _MOST_LEG = 30, 40, 13, 10
 LEAD = 4
@@ -218,11 +218,16 @@ def layout_for(
     length : cells of the longest length
     leg : cells of the longest name of a leg of a net; none of a line
     """
-    shown = [*(["leg"] if leg else []), *EDITABLE, *FIGURES]
+    heads = {name: "n" if name == "count" else name for name in ("leg", *EDITABLE)}
+    figures = {one.name: _heading(one) for one in table_columns(Output.BUILDER)}
+    heads |= figures | {"margin": "margin"}
+    shown = list(heads)[0 if leg else 1 :]
     fixed = _WIDTHS | {"length": min(max(length, _WIDTHS["length"]), _MOST_LENGTH)}
     fixed["leg"] = min(max(leg, 3), _MOST_LEG)
-    fixed["tension"] = max(fixed["tension"], len(_heading("tension")))
-    for name in ("margin", "tilt", "count", "tension", "depth"):
+    for name, head in figures.items():
+        fixed[name] = max(_WIDTHS.get(name, _USUAL_WIDTH), len(head))
+    others = [name for name in figures if name not in _WIDTHS]
+    for name in (*others, "margin", "tilt", "count", "tension", "depth"):
         if _text_room(shown, width, fixed) >= 2 * _WANTED_TEXT:
             break
         shown.remove(name)
@@ -233,16 +238,16 @@ def layout_for(
     columns, start = [], LEAD
     for name in shown:
         tail = _TAIL if name == "component" else 0  # its size stands at its end
-        is_right = name in RIGHT_ALIGNED
-        columns.append(TableColumn(name, _heading(name), start, widths[name], is_right, tail))
+        is_right = name not in _WORDS
+        columns.append(TableColumn(name, heads[name], start, widths[name], is_right, tail))
         start += widths[name] + 1
     return tuple(columns)
 
 
-def _heading(name: str) -> str:
-    """The head of a column, with the unit of what is solved; the count is `n`."""
-    unit = QUANTITIES[name].display_unit if name in ("depth", "tension", "tilt") else ""
-    return f"{'n' if name == 'count' else name} {unit}".rstrip()
+def _heading(figure: ResultColumn) -> str:
+    """The head of a column of what is solved, with its unit."""
+    unit = "" if figure.quantity is None else figure.quantity.display_unit
+    return f"{figure.name} {unit}".rstrip()
 
 
 def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:

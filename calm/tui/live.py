@@ -8,16 +8,18 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
 from calm.case import Mooring, Result, Tow, TowResult
+from calm.case.columns import Output
 from calm.case.memory import Memory
 from calm.case.net import Net
 from calm.case.parts import cut_like
 from calm.case.result import AnyResult, NetResult, legs_of
+from calm.case.result_tables import ComponentRow, rows_by_place, table_columns
 from calm.checks import assess, net_check
 from calm.checks.assessment import MooringInEnvironment, Situation
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
@@ -231,7 +233,6 @@ def _wrong(view: View, problems: Sequence[Problem]) -> View:
     return replace(view, problems=wrong, missing=tuple(lacking))
 
 
-_Figures = tuple[float | None, float | None, float | None, float | None]
 _LACKING = (State.UNKNOWN, State.ACCEPTED)
 """What is not known stays so where somebody has accepted it."""
 
@@ -245,9 +246,7 @@ class FoundRow:
     place : in the line as read
     label : as in results
     length : as cut [m]; None of a clamp, and of one to be cut to fit until it is solved
-    depth : of the upper end [m], None like all below where nothing is solved
-    tension : the greatest [N]
-    tilt : [degrees]
+    figures : what the columns of the builder have of it, by name; none where nothing is solved
     margin : the least that a finding leaves, as a share of its limit; None where none is known
     state : the gravest of its findings; None where there is none
     lacks_strength : whether a figure of its strength is missing
@@ -256,9 +255,7 @@ class FoundRow:
     place: Place
     label: str
     length: float | None
-    depth: float | None = None
-    tension: float | None = None
-    tilt: float | None = None
+    figures: Mapping[str, float] = field(default_factory=dict)
     margin: float | None = None
     state: State | None = None
     lacks_strength: bool = False
@@ -268,12 +265,8 @@ def rows_of(
     file: MooringFile, result: AnyResult | None, findings: Iterable[Finding] = ()
 ) -> Iterator[FoundRow]:
     """Down the file; with figures where there is a result, and what the findings say of each."""
-    figures: dict[Place, _Figures] = {}
-    if result is not None:
-        for clamp in result.clamps:
-            figures[clamp.place] = (None, clamp.depth, clamp.tension, clamp.tilt)
-        for row in result.components:
-            figures[row.place] = (row.cut_length, row.depth_top, row.tension, row.tilt)
+    solved = {} if result is None else rows_by_place(result)
+    columns = table_columns(Output.BUILDER)
     found: defaultdict[Place | None, list[Finding]] = defaultdict(list)
     for finding in findings:
         found[finding.place].append(finding)
@@ -282,11 +275,17 @@ def rows_of(
             continue
         for part in mooring_file.parts_of([piece]):
             own, length = found[part.place], part.length if isinstance(part, Piece) else None
+            row, figures = solved.get(part.place), {}
+            if row is not None:
+                length = row.cut_length if isinstance(row, ComponentRow) else None
+                told = {one.name: one.value(row, file) for one in columns}
+                figures = {name: value for name, value in told.items() if value is not None}
             gravest = max(own, key=lambda each: each.state.severity, default=None)
             yield FoundRow(
                 part.place,
                 part.label,
-                *figures.get(part.place, (length, None, None, None)),
+                length,
+                figures,
                 margin=min((each.share for each in own if each.share is not None), default=None),
                 state=gravest.state if gravest else None,
                 lacks_strength=any(

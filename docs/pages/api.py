@@ -13,7 +13,8 @@ _SECTIONS = {
     "Parts of a result": [
         "calm.case.result_tables.Components", "calm.case.result_tables.Clamps",
         "calm.case.result_tables.Shape",
-        "calm.case.result.Top", "calm.case.result.AnchorLoad", "calm.case.result.Accuracy",
+        "calm.case.result_tables.Top", "calm.case.result_tables.AnchorLoad",
+        "calm.case.result_tables.Accuracy",
         "calm.case.strumming.Strumming", "calm.case.strumming.StrummingBand",
     ],
     "Many profiles": ["calm.solve_profiles", "calm.Profiles"],

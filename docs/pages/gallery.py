@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 import calm
 from calm.cli.main import main
 from calm.cli.outputs import ExitCode
-from calm.drawing.picture import image
-from calm.drawing.plot import draw
+from calm.drawing.line_drawing import line_drawing
+from calm.drawing.plot import figure_svg
 from calm.drawing.schematic import schematic_svg
 from calm.shipped import shipped_folder
 from pages import pictures
@@ -170,9 +170,9 @@ def pages() -> dict[str, str | bytes]:
     for group, file in _in_groups(shipped_folder("lines").glob("*.yaml")):
         solved = calm.load(file).solve()
         made[f"{file.stem}.md"] = _page(file, solved.name, made)
-        made[f"{file.stem}.svg"] = image(draw(solved), ".svg")
+        made[f"{file.stem}.svg"] = line_drawing(solved).encode()
         made[f"{file.stem}-schematic.svg"] = schematic_svg(solved.file, solved).encode()
-        made[f"{file.stem}-small.svg"] = image(pictures.thumbnail(solved), ".svg")
+        made[f"{file.stem}-small.svg"] = pictures.thumbnail(solved).encode()
         link = f"{file.stem}.md"
         small = f"[![{solved.name}]({file.stem}-small.svg)]({link})"
         row = f"| {small} | **[{solved.name}]({link})**: {solved.file.description} |"
@@ -224,7 +224,7 @@ def _page(file: Path, name: str, made: dict[str, str | bytes]) -> str:
     parts.append(f"```text\n{outcome}\n```")
     if tried.picture is not None:
         picture = f"{file.stem}-seen.svg"
-        made[picture] = image(tried.picture(), ".svg")
+        made[picture] = figure_svg(tried.picture()).encode()
         parts.append(f"![What is to be seen]({picture})\n\n{tried.seen}")
     text = file.read_text(encoding="utf-8").rstrip()
     parts.append(f"## The file\n\n`lines/{file.name}`:\n\n```yaml\n{text}\n```")

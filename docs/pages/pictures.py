@@ -12,8 +12,9 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
 import calm
+from calm.drawing.graph import Graph, Scale, Stroke
+from calm.drawing.line_drawing import SIGNS
 from calm.drawing.line_picture import along, levels_of, named_parts
-from calm.drawing.plot import mark_parts
 from calm.shipped import shipped_folder
 
 Floats = NDArray[np.float64]
@@ -76,7 +77,7 @@ def _current(axes: Axes3D, level: Floats, u: Floats, v: Floats) -> None:
     axes.text(mast[0][0] - 14, mast[1][0], -25.0, "current", color=WATER, fontsize=10)
 
 
-def thumbnail(result: calm.Result | calm.TowResult) -> Figure:
+def thumbnail(result: calm.Result | calm.TowResult) -> str:
     """A line without words, in the plane of its excursion; its width fills the picture."""
     shape, environment = result.shape, result.file.environment
     far = int(np.argmax(np.hypot(shape.x, shape.y)))
@@ -86,26 +87,20 @@ def thumbnail(result: calm.Result | calm.TowResult) -> Figure:
         top, bottom = levels_of(result)
     else:
         top, bottom = -0.08 * environment.depth, 1.08 * environment.depth
-    figure = Figure(figsize=(1.7, 1.7), facecolor="white")
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    if environment.fluid == "water":
-        axes.axhspan(0.0, bottom, color=WATER, alpha=0.15, linewidth=0)
-    if environment.depth is not None:
-        axes.axhspan(environment.depth, max(bottom, environment.depth), color=SEABED)
     offset = along(shape.x, shape.y, plane)
-    axes.plot(offset, shape.depth, color=LINE, linewidth=1.5)
-    mark_parts(
-        axes,
-        [
-            replace(part, x=float(along(part.x, part.y, plane)), y=part.depth)
-            for part in named_parts(result)
-        ],
-    )
     reach = max(float(np.ptp(offset)), 0.1 * (bottom - top))
     middle = (float(offset.min()) + float(offset.max())) / 2
-    axes.set(xlim=(middle - 0.7 * reach, middle + 0.7 * reach), ylim=(bottom, top))
-    axes.set_axis_off()
-    return figure
+    across = Scale(middle - 0.7 * reach, middle + 0.7 * reach)
+    page = Graph(122.0, 122.0, result.name, 8.0)
+    axes = page.axes(0.0, 0.0, 122.0, 122.0, across, Scale(bottom, top))
+    if environment.fluid == "water":
+        axes.strip(0.0, bottom, "#e0f0f8")
+    if environment.depth is not None:
+        axes.strip(environment.depth, max(bottom, environment.depth), SEABED)
+    axes.line(offset, shape.depth, Stroke(LINE, 1.5))
+    for part in named_parts(result):
+        axes.mark(float(along(part.x, part.y, plane)), part.depth, *SIGNS[part.role])
+    return page.svg()
 
 
 def veering_plan() -> Figure:

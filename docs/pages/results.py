@@ -7,10 +7,12 @@ from typing import Any
 import xarray as xr
 
 import calm
-from calm.dataset.netcdf import OF_CLAMP, OF_COMPONENT, OF_ENDS, OF_NODE
+from calm.batch.profiles import Profiles
+from calm.case.columns import Output, ResultColumn, columns_of
+from calm.case.result_tables import ENDS, NET_ENDS, OF_ROWS, Clamps, Components, Shape
 from calm.motion.correction import OF_MOTION
 from calm.quantities import QUANTITIES
-from calm.report.result_files import HEADER, result_netcdf
+from calm.report.result_files import result_netcdf
 from calm.shipped import shipped_folder
 from pages.markdown import code, plain, table
 
@@ -33,10 +35,6 @@ _MEANINGS = {
     "segments": ("", "number of segments of the line"),
     "miss": ("m", "distance of the end of the line from its anchor"),
     "closure": ("", "remaining sum of the forces, as a share of the greatest"),
-    "accuracy.depth": ("m", "worst error expected of any depth or offset"),
-    "accuracy.tension": ("N", "worst error expected of any tension"),
-    "accuracy.anchor": ("N", "the same of the vertical and horizontal pull on the anchor"),
-    "accuracy.required_weight": ("N", "the same of the weight that the anchor needs"),
     "strumming": ("", "`frequency`, `cn_min` and `cn_max`, where a law of strumming is chosen"),
     "strumming_band": ("", "`null` where a law of strumming is chosen"),
     "strumming_band.factor": ("", "factor on the Cn of every cable"),
@@ -46,15 +44,8 @@ _MEANINGS = {
         "depth of the free end, length on the seabed, share of the float's buoyancy in use, and "
         "anchor load in another equilibrium; `null` if none was found",
     ),
-    "index": ("", "number of the piece in the file, from 0"),
-    "use": ("", "the component's id"),
-    "label": ("", "name of the piece in this line"),
-    "reynolds": ("", "Reynolds number of the flow across the piece"),
-    "shape.depth": ("m", "depth of every node, free end first"),
     "warnings": ("", "[sentences](messages.md#warnings)"),
     "toward": ("deg", "where the ship goes to, clockwise from north"),
-    "body.tension": ("N", "pull on the towed body"),
-    "tow_point.tension": ("N", "pull on the ship"),
     "cn_min": ("", "least Cn of the cables as they strum"),
     "cn_max": ("", "greatest Cn of the cables as they strum"),
 }
@@ -73,9 +64,18 @@ def page() -> str:
         "## JSON of a tow",
         "The keys of a mooring, with these in place of `top` and `anchor`:",
         table(("key", "unit", "meaning"), (_json(key) for key, _ in own)),
+        "## JSON of a net of legs",
+        "The keys of a mooring without `top` and `shape`. Pieces and clamps have the name of their "
+        "`leg`; `anchor` stands only in a net with a single anchor. `held` has the keys of "
+        "`anchors` up to `depth`. Each of `legs` has its `name`, `closure`, `used_buoyancy`, "
+        "`reserve` and `shape`.",
+        table(
+            ("key", "unit", "meaning"),
+            [_json(key) for key in _COLUMNS if key.startswith(("anchors[", "nodes["))],
+        ),
         "## CSV",
         "A row for each piece and each clamped instrument:",
-        table(("column", "meaning"), map(_column, HEADER)),
+        table(("column", "meaning"), _csv()),
         "## NetCDF of one equilibrium",
         table(("variable", "dimensions", "unit", "meaning"), _netcdf(result_netcdf(moored))),
         "A tow has these in place of the figures of its ends:",
@@ -102,8 +102,24 @@ def _keys(document: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, 
             yield f"{before}{key}", value
 
 
+_COLUMNS = {
+    f"{part}{one.name}": one
+    for part, columns in {
+        "components[].": (*OF_ROWS, *Components.columns()),
+        "clamps[].": (*OF_ROWS, *Clamps.columns()),
+        "shape.": Shape.columns(),
+        **{f"{end}.": columns_of(record) for end, record in ENDS.items()},
+        **{f"{ends}[].": columns_of(record) for ends, record in NET_ENDS.items()},
+    }.items()
+    for one in columns
+}
+"""The columns of results by the keys of JSON."""
+
+
 def _json(key: str) -> tuple[str, str, str]:
     last = key.rpartition(".")[2]
+    if key in _COLUMNS:
+        return code(key), _COLUMNS[key].unit, plain(_COLUMNS[key].description)
     if key in _MEANINGS or last in _MEANINGS:
         unit, meaning = _MEANINGS.get(key) or _MEANINGS[last]
         return code(key), unit, meaning
@@ -111,11 +127,11 @@ def _json(key: str) -> tuple[str, str, str]:
     return code(key), quantity.unit, plain(quantity.meaning)
 
 
-def _column(header: str) -> tuple[str, str]:
-    name = header.partition("[")[0]
-    if name in ("mooring", "part"):
-        return code(header), {"mooring": "its name", "part": "`component` or `clamp`"}[name]
-    return code(header), _json(name)[2]
+def _csv() -> Iterator[tuple[str, str]]:
+    yield code("mooring"), "its name"
+    yield code("part"), "`component` or `clamp`"
+    for one in Components.columns(Output.CSV):
+        yield code(one.header), plain(one.description)
 
 
 def _netcdf(content: bytes) -> list[tuple[str, str, str, str]]:
@@ -133,13 +149,13 @@ def _variable(name: str, dimensions: Any, attributes: Mapping[str, Any]) -> tupl
 
 def _batch() -> Iterator[tuple[str, ...]]:
     yield code("time"), "time", "", "time of the profile"
-    for dimension, quantities in {
-        "component": OF_COMPONENT, "clamp": OF_CLAMP, "": OF_ENDS, "node": OF_NODE
-    }.items():  # fmt: skip
-        for name, (unit, meaning, _) in quantities.items():
-            yield _variable(
-                name, filter(None, ("time", dimension)), {"units": unit, "long_name": meaning}
-            )
+    entered: dict[str, list[ResultColumn]] = {
+        **Profiles.columns(),
+        "node": Shape.columns(Output.BATCH),
+    }
+    for dimension, columns in entered.items():
+        for one in columns:
+            yield _variable(one.variable, filter(None, ("time", dimension)), one.described)
     yield (
         code("status"),
         "time",

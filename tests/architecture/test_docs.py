@@ -62,6 +62,16 @@ def test_the_rules_of_the_design_check_are_in_the_manual_as_they_are() -> None:
     assert finished.returncode == 0, finished.stderr
 
 
+def test_the_columns_of_results_are_in_the_manual_as_they_are() -> None:
+    finished = subprocess.run(
+        [sys.executable, ROOT / "docs" / "generate_columns.py", "--check"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert finished.returncode == 0, finished.stderr
+
+
 def test_every_command_is_explained_in_the_readme_or_the_manual() -> None:
     reference = (ROOT / "docs" / "reference" / "command-line.md").read_text(encoding="utf-8")
     commands = [name for name in re.findall(r"^## (calm .+)$", reference, re.MULTILINE)]

@@ -77,8 +77,25 @@ def test_help_reads_no_files() -> None:
     assert not {"pydantic", "yaml", "calm.files"} & loaded(COMMAND.format(arguments=["--help"]))
 
 
-def test_reports_of_checks_draw_without_a_plotting_library(tmp_path: Path) -> None:
-    arguments = ["check", "lines/s1000.yaml", "--allow-unknown", "--report", str(tmp_path / "to")]
-    modules = loaded(COMMAND.format(arguments=arguments))
+RANGES = """latitude[deg],longitude[deg],range[m]
+48.3135,-5.2000,2497
+48.2933,-5.1825,2497
+48.2933,-5.2175,2497
+"""
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["check", "lines/s1000.yaml", "--allow-unknown", "--report", "{to}/check"],
+        ["run", "lines/s1000.yaml", "--plot", "{to}/line.png", "--pdf", "{to}/line.pdf"],
+        ["deck", "lines/fit-top-depth.yaml", "-o", "{to}/deck"],
+        ["locate", "{to}/ranges.csv", "--depth", "2000 m", "--plot", "{to}/ranges.pdf"],
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_drawings_need_no_plotting_library(arguments: list[str], tmp_path: Path) -> None:
+    (tmp_path / "ranges.csv").write_text(RANGES, encoding="utf-8")
+    modules = loaded(COMMAND.format(arguments=[each.format(to=tmp_path) for each in arguments]))
     assert "calm.drawing.graph" in modules
-    assert "matplotlib.figure" not in modules
+    assert not {"matplotlib", "matplotlib.figure"} & modules

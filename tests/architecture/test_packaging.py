@@ -179,7 +179,7 @@ def test_constraints_name_every_direct_dependency() -> None:
         *settings["project"]["dependencies"],
         *(
             wanted
-            for extra in ("dev", "docs", "release", "browser", "cluster", "sheets")
+            for extra in ("dev", "docs", "release", "browser", "cluster", "plot", "sheets")
             for wanted in settings["project"]["optional-dependencies"][extra]
         ),
     ]
@@ -193,7 +193,7 @@ def test_constraints_name_every_direct_dependency() -> None:
 
 
 def test_the_conda_recipe_wants_what_the_wheel_wants() -> None:
-    named = {"matplotlib": "matplotlib-base", "typst": "typst-py"}
+    named = {"typst": "typst-py"}
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     wanted = [dependency.lower().partition(">=") for dependency in project["dependencies"]]
     recipe = yaml.safe_load((ROOT / "conda" / "recipe.yaml").read_text(encoding="utf-8"))

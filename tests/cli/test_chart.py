@@ -1,6 +1,7 @@
 """`calm chart` as a user runs it."""
 
 import json
+import sys
 
 import pytest
 
@@ -129,4 +130,14 @@ def test_a_chart_that_cannot_be_drawn_leaves_no_file(calm, folder, words):
     done = calm("chart", "draw", *words)
     assert (done.code, done.out) == (2, "")
     assert done.err.startswith("calm: ")
+    assert not list(folder.iterdir())
+
+
+def test_without_matplotlib_the_command_that_installs_it_is_named(calm, folder, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    done = calm("chart", "draw", "--k", "0.6", "-o", "chart.svg")
+    assert (done.code, done.out) == (2, "")
+    assert done.err == (
+        "calm: calm chart draw needs matplotlib: pip install 'calm-mooring[plot]'\n"
+    )
     assert not list(folder.iterdir())

@@ -1,5 +1,6 @@
 """`calm grid` as a user runs it: depths and values of known instruments, onto levels."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -244,3 +245,11 @@ def test_bad_inputs_are_refused(calm, depths, folder):
 def test_options_typed_wrong(calm, depths, option, value, said):
     write_values("v.nc", depths)
     assert said in refused(calm, "depths.nc", "v.nc", option, value)
+
+
+def test_without_matplotlib_a_report_names_the_command_that_installs_it(calm, depths, monkeypatch):
+    write_values("v.nc", depths)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    said = refused(calm, "depths.nc", "v.nc", "--report", "page")
+    assert "calm grid --report needs matplotlib: pip install 'calm-mooring[plot]'" in said
+    assert not Path("out.nc").exists()

@@ -3,6 +3,8 @@ import re
 
 import pytest
 
+from tests.drawings import assert_none_overlap, curves_of, words_of
+
 RANGES = """\
 latitude[deg],longitude[deg],range[m]
 48.313488,-5.200000,2497.3
@@ -205,7 +207,14 @@ def test_a_file_that_cannot_take_it_is_refused_before_anything_is_written(
 
 def test_the_plot(calm, ranges, folder):
     assert calm("locate", ranges(), "--plot", "circles.svg").code == 0
-    assert "all ranges, numbered by line of the file" in (folder / "circles.svg").read_text()
+    svg = (folder / "circles.svg").read_text(encoding="utf-8")
+    words = words_of(svg)
+    assert {"all ranges, numbered by line of the file", "2", "7", "north of the anchor [m]"} <= set(
+        words
+    )
+    assert_none_overlap(svg)
+    circles = curves_of(svg, "#2b7bba") + curves_of(svg, "#999999")
+    assert [dashed for _, dashed in circles] == [False] * 10 + [True] * 2  # the last is left out
     assert calm("locate", ranges(), "--plot", "circles.txt").code == 2
 
 

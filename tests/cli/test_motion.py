@@ -11,6 +11,7 @@ import xarray
 
 import calm as package
 from calm.motion.sensors import depth_of
+from tests.drawings import assert_none_overlap, svgs_of
 
 HOURS = 48
 LATITUDE = 48.0
@@ -412,7 +413,10 @@ def test_currents_that_look_false_are_named(calm, given, truth, folder):
         assert result["level_label"].values.tolist() == ["0.0 m", "150.0 m", "300.0 m"]
         doubt = result["current_doubt"].values
         assert (doubt[[15, 16, 40], 0] > 0.5).all() and np.median(doubt) < 0.05
-    assert "current is probably wrong" in (folder / "r" / "motion.html").read_text()
+    page = (folder / "r" / "motion.html").read_text(encoding="utf-8")
+    assert "current is probably wrong" in page
+    for svg in svgs_of(page):
+        assert_none_overlap(svg)
 
 
 def test_currents_that_cannot_be_are_left_out_and_named(calm, given, folder):

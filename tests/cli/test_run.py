@@ -177,7 +177,7 @@ def test_catalogue_of_ones_own(calm, write_mooring, folder):
     [
         (["--json", "missing/x.json"], "there is no folder"),
         (["--csv", "."], "it is a folder"),
-        (["--plot", "x.pdf"], "ends in .png or .svg"),
+        (["--plot", "x.jpg"], "ends in .svg, .png or .pdf"),
         (["--json", "same", "--csv", "./same"], "two outputs would go to same"),
         (["--json", "-", "--csv", "-"], "two outputs would go to -"),
         (["--json", "m.yaml"], "m.yaml is a mooring file"),

@@ -4,6 +4,8 @@ import json
 
 import pytest
 
+from tests.drawings import assert_none_overlap, svgs_of
+
 BUOY = """\
 name: Small buoy
 environment: {depth: 80 m, current: {speed: 0.3 m/s, toward: 90 deg}}
@@ -272,6 +274,8 @@ def test_a_report_has_the_life_and_its_pictures(calm, buoy, tmp_path):
     assert "Life unknown: rope." in shown.out
     page = (tmp_path / "report" / "waves.html").read_text()
     assert page.count("<svg") == 1
+    (svg,) = svgs_of(page)
+    assert_none_overlap(svg)
     assert "Hs [m]" in page  # several seas: tension over height
     assert "dnv-studless-chain" in page
     assert (tmp_path / "report" / "waves.pdf").read_bytes().startswith(b"%PDF")

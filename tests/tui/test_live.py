@@ -55,7 +55,8 @@ def test_rows_are_those_of_run(name: str) -> None:
     view, result = judge(text_of(name), path), calm.load(path).solve()
     assert view.problems == () and view.missing == () and view.failure is None
     assert view.anchored
-    rows = {row.label: (row.length, row.depth, row.tension, row.tilt) for row in view.rows}
+    shown = ("depth", "tension", "tilt")
+    rows = {row.label: (row.length, *(row.figures[name] for name in shown)) for row in view.rows}
     # the same path is taken, so to the last digit
     assert rows == figures(result)
 
@@ -167,8 +168,9 @@ def test_a_line_without_an_anchor_stands_on_one_that_holds_anything() -> None:
     height = calm.files.Catalogue.shipped().get("anchor-wheels-4").length
     assert [row.label for row in without.rows] == [row.label for row in whole.rows[:-1]]
     for row, with_anchor in zip(without.rows, whole.rows, strict=False):
-        assert row.depth == pytest.approx(with_anchor.depth + height, abs=0.02)
-        assert row.tension == pytest.approx(with_anchor.tension, rel=1e-3)
+        mine, other = row.figures, with_anchor.figures
+        assert mine["depth"] == pytest.approx(other["depth"] + height, abs=0.02)
+        assert mine["tension"] == pytest.approx(other["tension"], rel=1e-3)
     rules = {finding.rule for finding in without.findings}
     assert "strength" in rules and not {rule for rule in rules if RULES[rule].of_anchor}
     assert {rule for rule in RULES if RULES[rule].of_anchor} == {
@@ -185,9 +187,9 @@ def test_a_line_without_an_anchor_stands_on_one_that_holds_anything() -> None:
 
 def test_a_line_without_a_float_has_its_rows_without_figures() -> None:
     view = judge(line(WIRE, ANCHOR))
-    assert [(row.label, row.length, row.depth) for row in view.rows[:2]] == [
-        ("wire", 300.0, None),
-        ("sbe37", None, None),
+    assert [(row.label, row.length, row.figures) for row in view.rows[:2]] == [
+        ("wire", 300.0, {}),
+        ("sbe37", None, {}),
     ]
 
 
@@ -212,7 +214,7 @@ def test_a_line_that_does_not_stand_tells_why() -> None:
     view = judge(line(FLOAT, WIRE, ANCHOR.replace("4}", "4, mass: 1 kg}")))
     assert isinstance(view.failure, NoEquilibrium)
     assert [finding.rule for finding in view.findings] == ["equilibrium"]
-    assert [row.depth for row in view.rows] == [None] * 4
+    assert [row.figures for row in view.rows] == [{}] * 4
 
 
 def test_a_failure_of_calm_itself_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -239,7 +241,7 @@ def test_what_has_not_changed_is_not_solved_again(monkeypatch: pytest.MonkeyPatc
     assert solved == [True, False]
     solved.clear()
     view = judge(WHOLE.replace("label: top", "label: big float"), keep=view)
-    assert view.rows[0].label == "big float" and view.rows[0].depth is not None
+    assert view.rows[0].label == "big float" and "depth" in view.rows[0].figures
     assert solved == []
     stronger = judge(WHOLE.replace("0.4 m/s", "0.5 m/s"), keep=view)
     assert solved == [True]  # still water is as it was

@@ -392,7 +392,7 @@ def test_a_tow_is_edited_the_same_way(drive, folder):
         await driver.press("enter")
         await driver.settle()
         assert driver.session.draft.items[0].values["body_depth"] == "60 m"
-        assert driver.view.rows[1].depth == pytest.approx(60.0, abs=0.1)
+        assert driver.view.rows[1].figures["depth"] == pytest.approx(60.0, abs=0.1)
         await driver.press("T", "ctrl+u")
         await driver.type("5 knot")
         await driver.press("ctrl+s")

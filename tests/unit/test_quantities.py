@@ -7,7 +7,7 @@ from calm.units import unit_factor
 
 
 def test_header_of_a_column_carries_the_unit_of_results():
-    assert QUANTITIES["depth_top"].header == "depth_top[m]"
+    assert QUANTITIES["cut_length"].header == "cut_length[m]"
     assert QUANTITIES["tilt"].header == "tilt[deg]"
     assert QUANTITIES["safety_factor"].header == "safety_factor"
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.finished import labels_of, readable, statuses_of
-from calm.dataset.netcdf import OF_ENDS
+from calm.case.result_tables import MOORED_ENDS
 from calm.files import MooringFile
 
 if TYPE_CHECKING:
@@ -123,9 +123,10 @@ class ResultColumns:
     def of_leg(self, leg: LegSeats) -> ResultColumns:
         """Return the columns of a leg of a net alone, which read from the same temporary file."""
         view, ends = copy(self), slice(leg.number, leg.number + 1)
+        of_ends = {one.name for one in MOORED_ENDS}
         view._columns = {
             name: columns[
-                leg.clamps if name.startswith("clamp_") else ends if name in OF_ENDS
+                leg.clamps if name.startswith("clamp_") else ends if name in of_ends
                 else leg.components
             ]
             for name, columns in self._columns.items()

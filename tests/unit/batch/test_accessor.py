@@ -79,9 +79,9 @@ def test_a_result_is_opened_without_loading_it(dataset, tmp_path):
 
 
 def test_the_shape_is_drawn_at_the_nearest_time(dataset):
-    figure = dataset.calm.plot_shape(time="2001-01-01T01:10")
-    assert "2001-01-01 01:00" in figure.get_suptitle()
-    assert figure.axes[0].lines[1].get_ydata().tolist() == [101.0, 111.0, 121.0, 131.0, 141.0]
+    axes = dataset.calm.plot_shape(time="2001-01-01T01:10")
+    assert "2001-01-01 01:00" in axes.get_title()
+    assert axes.lines[1].get_ydata().tolist() == [101.0, 111.0, 121.0, 131.0, 141.0]
 
 
 def test_a_stored_shape_is_drawn_by_its_nodes(dataset):
@@ -89,9 +89,9 @@ def test_a_stored_shape_is_drawn_by_its_nodes(dataset):
         name: (("time", "node"), np.full((3, 4), value))
         for name, value in (("shape_depth", 50.0), ("shape_x", 3.0), ("shape_y", 4.0))
     }
-    elevation, plan = dataset.assign(nodes).calm.plot_shape(time="2001-01-01").axes
-    assert elevation.lines[1].get_xdata().tolist() == [5.0] * 4
-    assert plan.lines[0].get_ydata().tolist() == [4.0] * 4
+    axes = dataset.assign(nodes).calm.plot_shape(time="2001-01-01")
+    assert axes.lines[1].get_xdata().tolist() == [5.0] * 4
+    assert axes.lines[1].get_ydata().tolist() == [50.0] * 4
 
 
 def test_no_shape_of_a_profile_without_equilibrium():

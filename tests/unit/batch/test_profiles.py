@@ -1,6 +1,6 @@
 """Many profiles: order, company and workers change nothing; gaps, shapes, statuses."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -32,10 +32,10 @@ def subsurface() -> Mooring:
 
 def assert_same(one: Profiles, other: Profiles, order: np.ndarray | slice = slice(None)) -> None:
     """Bit for bit."""
-    for column in fields(Profiles):
-        a, b = getattr(one, column.name), getattr(other, column.name)
+    for name in Profiles.names():
+        a, b = getattr(one, name), getattr(other, name)
         if isinstance(a, np.ndarray):
-            assert a[order].tobytes() == b.tobytes(), column.name
+            assert a[order].tobytes() == b.tobytes(), name
 
 
 @pytest.mark.thorough

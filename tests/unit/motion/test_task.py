@@ -33,6 +33,9 @@ class Solved:
     status: np.ndarray
     tension: np.ndarray
 
+    def with_columns(self, **columns):
+        return replace(self, **columns)
+
 
 class Line:
     """Its knockdown is 10 m at u of 1 m/s and a twentieth of the depth of the upper level."""

@@ -16,6 +16,7 @@ from calm.drawing.graph import (
     decades,
     moments,
     numbers,
+    to_one_scale,
 )
 
 NAN = float("nan")
@@ -62,6 +63,24 @@ def test_a_scale_runs_either_way_and_by_decades():
 )
 def test_a_range_holds_what_is_known(values, scale):
     assert covering(values) == scale
+
+
+def test_axes_to_one_scale_widen_the_range_that_needs_less():
+    across, up = to_one_scale(Scale(0.0, 10.0), Scale(30.0, 10.0), 100.0, 50.0)
+    assert across == Scale(-15.0, 25.0)  # 40 over 100 points as 20 over 50
+    assert up == Scale(30.0, 10.0)  # downward still
+
+
+def test_clipped_axes_of_a_graph_have_names_of_their_own():
+    page = Graph(100.0, 100.0, "two", 8.0)
+    for left in (0.0, 50.0):
+        scale = Scale(0.0, 1.0)
+        axes = page.axes(left, 0.0, 50.0, 100.0, scale, scale, clipped=True)
+        axes.line([-1.0, 2.0], [0.5, 0.5], Stroke("red"))
+    svg = page.svg()
+    names = re.findall(r'<clipPath id="([^"]+)"', svg)
+    assert len(set(names)) == 2
+    assert names == re.findall(r'clip-path="url\(#([^)]+)\)"', svg)
 
 
 def test_ticks_are_round():

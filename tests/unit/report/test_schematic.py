@@ -2,54 +2,18 @@
 
 import json
 import re
-import warnings
-from itertools import combinations
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from matplotlib.font_manager import FontProperties
-from matplotlib.textpath import TextToPath
 
 import calm
 from calm.drawing.schematic import schematic_svg
+from tests.drawings import SVG, assert_none_overlap, texts_of
 
 LINES = sorted((Path(__file__).resolve().parents[3] / "lines").glob("*.yaml"))
-SVG = "{http://www.w3.org/2000/svg}"
-MEASURE = TextToPath()
 NASTY = "<script>alert('x')</script> & \"q\""
 LONG = "Very long name of a component that nobody can read in one go, WWWWWWWW " * 3
-
-
-def texts_of(svg):
-    """Each text, and its box (left, top, right, bottom)."""
-    found = []
-    for element in ElementTree.fromstring(svg).iter(f"{SVG}text"):
-        shown = element.text
-        size, x, y = (float(element.get(name)) for name in ("font-size", "x", "y"))
-        # DejaVu Sans is wider than the fonts the picture asks for first.
-        font = FontProperties(
-            family="DejaVu Sans", size=size, weight=element.get("font-weight", "normal")
-        )
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message="Glyph")  # shown as a box, as wide
-            width = MEASURE.get_text_width_height_descent(shown, font, ismath=False)[0]
-        left = x - width if element.get("text-anchor") == "end" else x
-        # Ascent and descent of its glyphs, accents and brackets included.
-        found.append((shown, (left, y - 0.93 * size, left + width, y + 0.24 * size)))
-    return found
-
-
-def assert_none_overlap(svg):
-    page = ElementTree.fromstring(svg)
-    left, top, width, height = map(float, page.get("viewBox").split())
-    boxes = [box for _, box in texts_of(svg)]
-    for box in boxes:
-        assert left <= box[0] and box[2] <= left + width, box
-        assert top <= box[1] and box[3] <= top + height, box
-    for a, b in combinations(boxes, 2):
-        apart = a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
-        assert apart, (a, b)
 
 
 @pytest.fixture

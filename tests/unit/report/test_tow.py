@@ -1,17 +1,11 @@
-"""How a tow is shown: in a terminal, in a notebook, as CSV and drawn."""
+"""How a tow is shown: in a terminal, in a notebook, and as CSV."""
 
 import csv
 import io
 import re
-from dataclasses import replace
 from pathlib import Path
 
-import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-
 from calm.case.strumming import StrummingBand
-from calm.drawing.picture import image
-from calm.drawing.plot import draw
 from calm.report.html import fragment
 from calm.report.result_files import to_csv
 from calm.report.sheet import result_part
@@ -72,74 +66,6 @@ def test_csv_has_tows_beside_moorings(result, tow_result):
         "sbe37",
         "fish",
     ]
-
-
-def test_the_elevation_is_behind_the_ship_and_reaches_above_the_water(tow_result):
-    elevation, flow, _ = draw(tow_result).axes
-    assert elevation.get_xlabel() == "distance behind the tow point [m], heading 90°"
-    left, right = elevation.get_xlim()
-    assert left < 0.0 < 140.5 < right
-    bottom, top = elevation.get_ylim()
-    assert top < -3.0 and bottom > 121.5
-    assert flow.get_xlabel() == "speed past the line [m/s]"
-
-
-def test_the_speed_past_the_line_is_that_of_the_water_less_the_ships(tow_result):
-    flow = draw(tow_result).axes[1]
-    _, speed = flow.lines  # all of it in the plane of the tow
-    # The water runs after the ship at the surface and stands still from 100 m down.
-    assert speed.get_xdata()[0] == pytest.approx(1.0289 - 0.5)
-    assert speed.get_xdata()[-1] == pytest.approx(1.0289)
-    assert min(speed.get_ydata()) == 0.0
-
-
-def test_plan_only_where_the_line_leaves_the_plane(make_tow_result):
-    assert len(draw(make_tow_result()).axes) == 3
-    straight = make_tow_result()
-    straight.shape.y = 0.0 * straight.shape.y
-    assert len(draw(straight).axes) == 2
-
-
-def test_the_seabed_is_drawn_where_it_is_near(make_tow_result):
-    def lower_edge(depth):
-        result = make_tow_result()
-        result.file.environment.depth = depth
-        return draw(result).axes[0].get_ylim()[0]
-
-    assert lower_edge(150.0) > 150.0
-    assert lower_edge(3000.0) == lower_edge(None) < 150.0
-
-
-def test_names_stand_beside_their_parts_and_need_no_formula(make_tow_result):
-    result = make_tow_result()
-    result.components[1].label = "fish $x^$"
-    figure = draw(result)
-    FigureCanvasAgg(figure).draw()
-    assert [text.get_text() for text in figure.axes[0].texts] == ["sbe37", "fish $x^$"]
-    assert b"fish $x^$" in image(draw(result), ".svg")
-
-
-def test_a_bare_cable_is_drawn(make_tow_result):
-    result = make_tow_result()
-    result = replace(
-        result,
-        components=type(result.components)(result.components[:1]),
-        clamps=[],
-        shape=result.shape,
-    )
-    result.tow.file.pieces = (result.file.pieces[0],)
-    assert image(draw(result), ".png").startswith(b"\x89PNG")
-
-
-def test_a_line_at_rest_is_drawn_plumb(make_tow_result):
-    result = make_tow_result()
-    shape = result.shape
-    shape.x, shape.y = 0.0 * shape.x, 0.0 * shape.y
-    left, right = draw(result).axes[0].get_xlim()
-    # a tenth of the height at least, in 0.55 of the width
-    height = shape.depth.max() - shape.depth.min()
-    assert right == pytest.approx(0.1 * height / 0.55, rel=1e-12)
-    assert left < 0.0
 
 
 def test_what_strumming_would_do(make_tow_result):

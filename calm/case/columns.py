@@ -1,0 +1,195 @@
+"""The entry of a result column: title, unit, description, computation and outputs.
+
+The entries are in `calm.case.result_tables`, one for each column. Tables, JSON, CSV, NetCDF,
+batches, the builder and the manual read them, so a new entry appears in every output it names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import MISSING, dataclass, field, fields, replace
+from enum import Flag, auto
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+from calm.quantities import QUANTITIES, Quantity
+
+if TYPE_CHECKING:
+    from calm.dataset.netcdf import Attributes
+    from calm.files import MooringFile
+
+_ENTRY = "column"
+_CF_UNITS = {"": "1", "deg": "degree", "m/s": "m s-1"}
+"""CF spelling of the units that results spell differently."""
+
+
+class Output(Flag):
+    """Outputs of a column. In Python every column is an array of its table, even without any."""
+
+    JSON = auto()
+    CSV = auto()
+    NETCDF = auto()
+    """NetCDF and `to_xarray` of one equilibrium."""
+    BATCH = auto()
+    """Results of many profiles: `calm batch`, `calm motion`, `calm.solve_profiles`."""
+    MOORING_TABLE = auto()
+    TOW_TABLE = auto()
+    NET_TABLE = auto()
+    BUILDER = auto()
+
+
+NOWHERE = Output(0)
+FILES = Output.JSON | Output.CSV | Output.NETCDF
+LINE_TABLES = Output.MOORING_TABLE | Output.TOW_TABLE | Output.NET_TABLE
+_LAST = 1000
+
+
+@dataclass(frozen=True)
+class ResultColumn:
+    """A column of a result table.
+
+    Each column is computed in one of four ways: `of_part` reads the piece or clamp of the file;
+    `found` reads the arrays of a solved line, and `at_anchor` fills the row of the anchor;
+    `derived` combines earlier columns; `of_row` is evaluated when an output shows a row.
+
+    Attributes
+    ----------
+    name : name in Python and JSON
+    quantity : title, unit and digits of a numeric column; None for text
+    description : meaning, for the manual and the NetCDF `long_name`
+    outputs : outputs that show the column
+    prefix : prefix of the name in NetCDF and batches
+    of_part : value for a piece or clamp of the file
+    found : values (n,) from `LineFigures`, `ClampFigures` or `NodeFigures`
+    at_anchor : value for the anchor, from a `LineEnd`, or for a clamp on it, from an `OnAnchor`
+    derived : values (…, n) from a namespace of earlier columns and `part`, the n pieces or clamps
+    of_row : value from a row and the mooring file; no table stores it
+    worst : picks one value for the builder, where several pieces share a row
+    place : rank from the left in tables for people; columns without one come last
+    attributes : additional attributes of the NetCDF variable
+    """
+
+    name: str
+    quantity: Quantity | None
+    description: str
+    outputs: Output = NOWHERE
+    prefix: str = ""
+    of_part: Callable[[Any], Any] | None = None
+    found: Callable[[Any], Any] | None = None
+    at_anchor: Callable[[Any], Any] | None = None
+    derived: Callable[[Any], Any] | None = None
+    of_row: Callable[[Any, MooringFile], Any] | None = None
+    worst: Callable[[list[float]], float] = max
+    place: int = _LAST
+    attributes: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def variable(self) -> str:
+        """Name in NetCDF and batches."""
+        return self.prefix + self.name
+
+    @property
+    def header(self) -> str:
+        """Heading in CSV: name and unit."""
+        return self.name if self.quantity is None else self.quantity.header
+
+    @property
+    def unit(self) -> str:
+        """SI unit, or degrees; empty for text and pure numbers."""
+        return "" if self.quantity is None else self.quantity.unit
+
+    @property
+    def term(self) -> tuple[str, str, Attributes]:
+        """CF unit, description and additional attributes."""
+        return _CF_UNITS.get(self.unit, self.unit), self.description, dict(self.attributes)
+
+    @property
+    def described(self) -> Attributes:
+        """Attributes of the NetCDF variable; text has no unit."""
+        unit, meaning, more = self.term
+        units = {} if self.quantity is None else {"units": unit}
+        return {**units, "long_name": meaning, **more}
+
+    def value(self, row: Any, file: MooringFile) -> Any:
+        """Value shown for a row; None if the row lacks the column, as clamps lack a length."""
+        return self.of_row(row, file) if self.of_row else getattr(row, self.name, None)
+
+
+def column(
+    description: str,
+    outputs: Output = NOWHERE,
+    *,
+    title: str = "",
+    unit: str | None = None,
+    decimals: int = 1,
+    in_repr: bool = True,
+    default: Any = MISSING,
+    **more: Any,
+) -> Any:
+    """Declare a dataclass field as a result column; the field gives the column its name.
+
+    Parameters
+    ----------
+    description, outputs, more : attributes of the `ResultColumn`
+    title, unit, decimals : of the quantity. By default it is the entry of `QUANTITIES` with the
+        name of the field, of which `title` may replace the heading; a field without is text.
+    in_repr : whether the `repr` of a row includes the field
+    default : of the field
+    """
+
+    def named(name: str, prefix: str) -> ResultColumn:
+        quantity = QUANTITIES.get(name)
+        if unit is not None:
+            quantity = Quantity(name, title, unit, f"{description.capitalize()}.", decimals)
+        elif quantity is not None and title:
+            quantity = replace(quantity, heading=title)
+        return ResultColumn(name, quantity, description, outputs, prefix, **more)
+
+    return field(default=default, repr=in_repr, metadata={_ENTRY: named})
+
+
+_known: dict[type[Any], tuple[ResultColumn, ...]] = {}
+
+
+def columns_of(record: type[Any]) -> tuple[ResultColumn, ...]:
+    """The columns of a dataclass, in the order of its fields.
+
+    Fields declared without `column` take title and meaning from `QUANTITIES`.
+    """
+    if record not in _known:
+        _known[record] = tuple(_columns_of(record))
+    return _known[record]
+
+
+def _columns_of(record: type[Any]) -> Iterator[ResultColumn]:
+    for one in fields(record):
+        if (named := one.metadata.get(_ENTRY)) is not None:
+            yield named(one.name, getattr(record, "prefix", ""))
+        else:
+            quantity = QUANTITIES.get(one.name)
+            yield ResultColumn(one.name, quantity, "" if quantity is None else quantity.meaning)
+
+
+def shown_in(columns: Iterable[ResultColumn], output: Output) -> list[ResultColumn]:
+    """The columns that an output shows."""
+    return [one for one in columns if output in one.outputs]
+
+
+def terms(columns: Iterable[ResultColumn]) -> dict[str, tuple[str, str, Attributes]]:
+    """CF unit, description and attributes of each variable, by its name."""
+    return {one.variable: one.term for one in columns}
+
+
+def derive(columns: Iterable[ResultColumn], known: Mapping[str, Any]) -> dict[str, Any]:
+    """Compute the derived columns, by name.
+
+    Parameters
+    ----------
+    known : the other columns by name, and `part`, the pieces or clamps
+    """
+    rows, found = SimpleNamespace(**known), {}
+    for one in columns:
+        if one.derived is not None:
+            found[one.name] = one.derived(rows)
+            setattr(rows, one.name, found[one.name])
+    return found

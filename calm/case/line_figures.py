@@ -1,0 +1,222 @@
+"""Arrays measured on a solved line: the columns of pieces, clamps and nodes.
+
+Pieces are in the order of the file, without the anchor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from calm.files import Clamp, Piece
+from calm.files.mooring_file import clamps_in
+from calm.physics.line import Floats, Integers
+from calm.physics.track import head_count
+from calm.solve import Solution
+
+
+class LineFigures:
+    """Columns of the n pieces of a solved line.
+
+    Attributes
+    ----------
+    solution, still : the line in the current, and in still water for the knockdown
+    pieces : (n,) pieces of the file; needed for `index` and `reynolds` only
+    upper, lower : (n,) node numbers of the first-listed and the other end
+    top, bottom : (n, 3) positions of these ends: east, north, up [m]
+    """
+
+    def __init__(
+        self, solution: Solution, still: Solution | None = None, pieces: Sequence[Piece] = ()
+    ) -> None:
+        self.solution, self.still, self.pieces = solution, still, pieces
+        self._ahead = slice(None, None, -1) if solution.line.towed else slice(None)
+        self._first, self._last = solution.piece_nodes.T
+        ends = (self._last, self._first) if solution.line.towed else (self._first, self._last)
+        self.upper, self.lower = ends[0][self._ahead], ends[1][self._ahead]
+        self.top, self.bottom = solution.position[self.upper], solution.position[self.lower]
+
+    @property
+    def count(self) -> int:
+        """Number of pieces."""
+        return len(self.upper)
+
+    @property
+    def index(self) -> Integers:
+        """(n,) numbers of the pieces in the file."""
+        return np.array([piece.index for piece in self.pieces])
+
+    @cached_property
+    def length(self) -> Floats:
+        """(n,) stretched lengths [m]."""
+        stretched, solution = np.zeros(self.count), self.solution
+        np.add.at(stretched, solution.element_piece, solution.cut * (1.0 + solution.strain))
+        return stretched[self._ahead]
+
+    @property
+    def cut_length(self) -> Floats:
+        """(n,) unstretched lengths [m]."""
+        return self.solution.line.length[self._ahead]
+
+    @property
+    def tension_top(self) -> Floats:
+        """(n,) tensions at the first-listed end [N]."""
+        tension: Floats = self.solution.tension[self.upper]
+        return tension
+
+    @property
+    def tension_bottom(self) -> Floats:
+        """(n,) tensions at the other end [N]."""
+        tension: Floats = self.solution.tension[self.lower]
+        return tension
+
+    @property
+    def greatest_tension(self) -> Floats:
+        """(n,) greatest tension within each piece [N]."""
+        tension = self.solution.tension
+        within = np.maximum.reduceat(tension[:-1], self._first)
+        greatest: Floats = np.maximum(within, tension[self._last])[self._ahead]
+        return greatest
+
+    @property
+    def least_tension(self) -> Floats:
+        """(n,) least tension above the seabed [N]; NaN for a piece that lies on it entirely."""
+        tension = self.solution.tension
+        hanging = np.where(np.arange(len(tension)) <= self.solution.hanging, tension, np.inf)
+        within = np.minimum.reduceat(hanging[:-1], self._first)
+        least = np.minimum(within, hanging[self._last])[self._ahead]
+        return np.where(np.isfinite(least), least, np.nan)
+
+    @cached_property
+    def tilt(self) -> Floats:
+        """(n,) angle of the chord from the vertical [degrees].
+
+        A piece without length takes the angle of the pull; all pieces of a head, which is one rod,
+        take the angle of the rod.
+        """
+        solution, chord = self.solution, self.top - self.bottom
+        pull = solution.force[self.upper] + solution.force[self.lower]
+        lean = np.where(
+            np.linalg.norm(chord, axis=1) > 0,
+            leaning_of(chord),
+            leaning_of(-pull if solution.line.towed else pull),
+        )
+        head = 0 if solution.pulled else head_count(solution.line)
+        if head and (self.top[0] != self.bottom[head - 1]).any():
+            lean[:head] = leaning_of(self.top[0] - self.bottom[head - 1])
+        return lean
+
+    @property
+    def knockdown(self) -> Floats:
+        """(n,) knockdown [m]; NaN without the line in still water."""
+        if self.still is None:
+            return np.full(self.count, np.nan)
+        before = self.still.piece_nodes[self._ahead, 1 if self.solution.line.towed else 0]
+        knockdown: Floats = self.still.position[before, 2] - self.top[:, 2]
+        return knockdown
+
+    @property
+    def reynolds(self) -> Floats:
+        """(n,) greatest Reynolds number of speed and diameter; NaN without a diameter."""
+        solution = self.solution
+        middle = -0.5 * (solution.position[:-1] + solution.position[1:])[:, 2]
+        speed = np.linalg.norm(solution.water.current_at(middle), axis=1)
+        greatest = np.zeros(self.count)
+        np.maximum.at(greatest, solution.element_piece, speed / solution.water.viscosity_at(middle))
+        return greatest[self._ahead] * catalogue_figures(self.pieces, "diameter")
+
+
+class ClampFigures:
+    """Columns of the m instruments clamped on a solved line, in the order of the file.
+
+    Attributes
+    ----------
+    clamps : (m,) clamps of the file
+    index : (m,) number of the piece under each clamp
+    position : (m, 3) east, north, up [m]
+    """
+
+    def __init__(
+        self, pieces: Sequence[Piece], solution: Solution, still: Solution | None = None
+    ) -> None:
+        self.solution, self.still = solution, still
+        order = clamps_in(pieces)
+        elements = np.flatnonzero(solution.element_clamp >= 0)
+        self.index: Integers = solution.element_piece[elements]
+        if solution.line.towed:
+            elements = elements[::-1]
+            self.index = len(pieces) - 1 - self.index[::-1]
+        self.clamps = [order[which] for which in solution.element_clamp[elements]]
+        self.position, self._elements = solution.position[elements], elements
+
+    @property
+    def tension(self) -> Floats:
+        """(m,) greater of the tensions above and below the clamp [N]."""
+        tension = self.solution.tension
+        return np.maximum(tension[self._elements], tension[self._elements + 1])
+
+    @property
+    def tilt(self) -> Floats:
+        """(m,) angle of the mean pull above and below; on a rigid piece its tilt [degrees]."""
+        solution, elements = self.solution, self._elements
+        pull = solution.force[elements] + solution.force[elements + 1]
+        cable = solution.line.flexible[solution.element_piece[elements]]
+        tilt = leaning_of(-pull if solution.line.towed else pull)
+        return (
+            tilt if cable.all() else np.where(cable, tilt, LineFigures(solution).tilt[self.index])
+        )
+
+    @property
+    def knockdown(self) -> Floats:
+        """(m,) [m]; NaN without the line in still water."""
+        if self.still is None:
+            return np.full(len(self._elements), np.nan)
+        before = self.still.position[np.flatnonzero(self.still.element_clamp >= 0)]
+        ahead = slice(None, None, -1) if self.solution.line.towed else slice(None)
+        return before[ahead, 2] - self.position[:, 2]
+
+
+@dataclass(frozen=True)
+class NodeFigures:
+    """Columns of the k nodes of a solved line, free end first."""
+
+    solution: Solution
+
+    @property
+    def position(self) -> Floats:
+        """(k, 3) positions: east, north, up [m]."""
+        return self.solution.position
+
+    @property
+    def tension(self) -> Floats:
+        """(k,) tensions [N]."""
+        return self.solution.tension
+
+    @property
+    def tilt(self) -> Floats:
+        """(k,) angle of the segment that ends at each node, from the vertical [degrees]."""
+        chord = self.solution.position[:-1] - self.solution.position[1:]
+        if self.solution.line.towed:
+            chord = -chord
+        lengthy = np.linalg.norm(chord, axis=1) > 0
+        # a point without length leans as the segment above it, the first ones as the one below
+        last = np.maximum.accumulate(np.where(lengthy, np.arange(len(chord)), -1))
+        first = int(np.argmax(lengthy))
+        leaning = leaning_of(chord)[np.where(last >= 0, last, first)]
+        return np.concatenate([leaning[:1], leaning])
+
+
+def leaning_of(vector: Floats) -> Floats:
+    """Angle of upward-pointing vectors (..., 3) from the vertical [degrees]; 0 for none."""
+    horizontal = np.hypot(vector[..., 0], vector[..., 1])
+    tilt: Floats = np.degrees(np.arctan2(horizontal, vector[..., 2]))
+    return np.where((horizontal > 0) | (vector[..., 2] != 0), tilt, 0.0)
+
+
+def catalogue_figures(parts: Sequence[Piece | Clamp], name: str) -> Floats:
+    """(n,) values of a catalogue field of pieces or clamps; NaN for unknown values."""
+    values = [getattr(part.component, name, None) for part in parts]
+    return np.array([np.nan if value is None else value for value in values])
