@@ -202,7 +202,8 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
     if names:
         yield f"On the seabed: {', '.join(names)}."
     if solution.landed and result.file.environment.seabed is not None:
-        off = below_the_seabed(result.file, solution, solution.water.depth)[solution.hanging :]
+        depth = result.mooring.water.depth  # of a leg at its anchor
+        off = below_the_seabed(result.file, solution, depth)[solution.hanging :]
         worst = float(np.nan_to_num(np.abs(off)).max())
         if worst > solution.depth_error + 1e-3:
             yield (
