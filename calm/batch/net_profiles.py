@@ -26,14 +26,14 @@ from calm.case.result_tables import MOORED_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.files.legs import nodes_of
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import BETTER, Floats, Water
 from calm.physics.profile import Sea
 from calm.physics.track import head_count
 from calm.records.grids import SeabedGrid
 from calm.solve import expect_many, leg_closing, leg_numbers
-from calm.solve.leg_closing import AskedNet, ask_net, drifts, keep
+from calm.solve.leg_closing import NetTask, copy_values, do_task, drifts
 from calm.solve.leg_numbers import Marching, NetProblem, above_bed, place_of
 from calm.solve.net import NetSearch, NetSolution
 from calm.solve.problem import CHOSEN, FINE
@@ -87,7 +87,7 @@ class NetPaper(NamedTuple):
 
 
 def solve_net_rows(
-    ask: Callable[[AskedNet, float], float],
+    ask: Callable[[NetTask, float], float],
     net: NetProblem,
     step: float,
     paper: NetPaper,
@@ -113,15 +113,15 @@ def solve_net_rows(
         endings[case], sea = sea_of(paper.on, depth, u, v, w, case, paper.still)
         if endings[case] != 0:
             continue
-        keep(paper.start, paper.x)
+        copy_values(paper.start, paper.x)
         for k in range(len(paper.x)):
-            keep(paper.slopes[k], net.slopes[k])
-        keep(paper.scale, net.scale)
+            copy_values(paper.slopes[k], net.slopes[k])
+        copy_values(paper.scale, net.scale)
         how = Marching(sea, 4.0 * step, CHOSEN, False, False, FINE, 0.0)
-        ending = ask(AskedNet(leg_closing.CLOSE, net, paper.x, how, leg_closing.NEAR, True), 0.0)
+        ending = ask(NetTask(leg_closing.CLOSE, net, paper.x, how, leg_closing.NEAR, True), 0.0)
         if ending == FOUND:
             how = Marching(sea, step, CHOSEN, False, False, FINE, 0.0)
-            ending = ask(AskedNet(leg_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
+            ending = ask(NetTask(leg_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
         endings[case] = TO_SOLVE
         if ending == FOUND and stands(net, paper):
             endings[case] = 0
@@ -226,7 +226,7 @@ class NetProfiles:
         search.put_in(self.net.water.still() if self.still else self.net.water)
         how = search.marching(step, CHOSEN, FINE, given=False)
         # unknowns closed already; near them the legs' own scales are taken and the slopes found
-        search.asked(leg_closing.CLOSE, self.base.unknowns, how, np.inf)
+        search.do(leg_closing.CLOSE, self.base.unknowns, how, np.inf)
         return np.array(search.net.slopes), np.array(search.net.scale)
 
     def search(self) -> NetSearch:
@@ -293,7 +293,7 @@ class NetProfiles:
         )
         step = float(search.settings.angle_step)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        ask = by_address(ask_net, AskedNet(leg_closing.CLOSE, search.net, paper.x, how, 0.0, True))
+        ask = by_address(do_task, NetTask(leg_closing.CLOSE, search.net, paper.x, how, 0.0, True))
         given = (ask, search.net, step, paper, *current, rows, endings)
         outcome(solve_net_rows, True, *given)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import prod
 from typing import TYPE_CHECKING, Any
@@ -24,7 +24,7 @@ from calm.case.leg import Leg
 from calm.case.measure import clamps_of, components_of
 from calm.case.result_tables import MOORED_ENDS, Clamps, Columnar, Components
 from calm.files import Clamp, CurrentTable, Piece
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import Floats, Integers, Water
 from calm.solve import Status
@@ -168,7 +168,7 @@ def solve_profiles(
     Raises
     ------
     UsageError
-        It is a tow.
+        The design is a tow.
     TypeError
         The current is no numbers.
     ValueError
@@ -184,7 +184,6 @@ class Batch:
     """A mooring or a net made ready for many profiles, which may come in several goes."""
 
     mooring: Design
-    _starts: Floats | None = field(default=None, init=False, repr=False, compare=False)
 
     @cached_property
     def water(self) -> Water:
@@ -236,7 +235,7 @@ class Batch:
             columns = Results(*(array[block] for array in rows))
             self._solve_block(leg, mine, columns, status[block])
 
-        solve(slice(0, 0))  # compiles where need be
+        _ = self._starts  # compiles where need be, and by one thread
         with ThreadPoolExecutor(workers or processors()) as pool:
             for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
                 pass
@@ -266,6 +265,19 @@ class Batch:
         for array in rows:
             array[status != 0] = np.nan
 
+    @cached_property
+    def _starts(self) -> Floats:
+        """From where every profile of a line is sought."""
+        leg = self.mooring.moored
+        line, none = leg.line, np.zeros((0, 1))
+        rows = Results(
+            np.zeros((0, len(OF_PIECE), len(line.length))),
+            np.zeros((0, len(OF_CLAMP), len(line.clamp_piece))),
+            np.zeros((0, len(OF_ENDS))),
+        )
+        current = np.zeros((1, 1)), none, none, none
+        return self._march(leg, current, rows, np.zeros(0, np.int64), MANY_ROOM, None)
+
     def _solve_rows(
         self,
         leg: Leg,
@@ -275,6 +287,28 @@ class Batch:
         room: int,
     ) -> None:
         """Solve profiles, with room for so many segments; with more where that is too little."""
+        self._march(leg, current, rows, endings, room, self._starts)
+        again = np.flatnonzero(endings == LACKS_ROOM)
+        if again.size:
+            depth, *parts = current
+            mine = depth if len(depth) == 1 else depth[again]
+            found, ends = Results(*(array[again] for array in rows)), endings[again]
+            few = (mine, *(np.ascontiguousarray(part[again]) for part in parts))
+            self._solve_rows(leg, few, found, ends, MORE_ROOM * room)
+            endings[again] = ends
+            for array, solved in zip(rows, found, strict=True):
+                array[again] = solved
+
+    def _march(
+        self,
+        leg: Leg,
+        current: tuple[Floats, ...],
+        rows: Results,
+        endings: Integers,
+        room: int,
+        starts: Floats | None,
+    ) -> Floats:
+        """Solve profiles from known starts, or first find these, and return the starts."""
         line, water = leg.line, self.water
         depth, *parts = current
         on = solving.levels_for(depth.shape[1], water)
@@ -285,29 +319,18 @@ class Batch:
         # a profile without current is told apart from the others
         problem = problem._replace(limits=problem.limits._replace(at_rest=False))
         search, referee = search_of(problem, True), referee_of(line, water, 0.0, True)
-        first = self._starts is None
-        if not first:
-            known: Any = problem.starts
-            known[:] = self._starts
+        found: Any = problem.starts
+        if starts is not None:
+            found[:] = starts
         pieces = leg.file.pieces[:-1]
         paper = ProfileArrays(
             on=on,
             may_lie=np.array([one.component.kind == "chain" for one in pieces], np.int64),
         )
         find = by_address(find_asked, AskedSearch(search, referee))
-        given = (find, search, referee, paper, first, depth, *parts, rows, endings)
+        given = (find, search, referee, paper, starts is None, depth, *parts, rows, endings)
         outcome(solving.solve_rows, True, *given)
-        if first:
-            vars(self).update(_starts=problem.starts)
-        again = np.flatnonzero(endings == LACKS_ROOM)
-        if again.size:
-            mine = depth if len(depth) == 1 else depth[again]
-            found, ends = Results(*(array[again] for array in rows)), endings[again]
-            few = (mine, *(np.ascontiguousarray(part[again]) for part in parts))
-            self._solve_rows(leg, few, found, ends, MORE_ROOM * room)
-            endings[again] = ends
-            for array, solved in zip(rows, found, strict=True):
-                array[again] = solved
+        return np.asarray(found)
 
 
 def processors() -> int:

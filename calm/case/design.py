@@ -41,15 +41,14 @@ from calm.case.warnings import warnings_of
 from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 from calm.files import MooringFile, Piece
 from calm.files.environment import Environment
-from calm.files.legs import (
-    FileLeg,
+from calm.files.legs import FileLeg, nodes_of
+from calm.files.mooring_file import (
     leg_numbers,
     legs_of,
-    nodes_of,
     refuse_all_but_moorings,
     refuse_several,
 )
-from calm.files.mooring_file import STAND_IN
+from calm.files.pieces import STAND_IN
 from calm.files.reader import MooringReader
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
@@ -100,7 +99,7 @@ class Design:
         # each of several legs has the water depth at its own anchor
         water = None if self.several else self.given_water
         return tuple(
-            Leg(each.line_of(self.file), self.for_surface, self.memory, line, water)
+            Leg(self.file.leg_alone(each), self.for_surface, self.memory, line, water)
             for each, line in zip(keys, self.lines or (None,) * len(keys), strict=True)
         )
 

@@ -14,8 +14,8 @@ from calm.case.result_tables import ColumnTable
 from calm.case.targets import Figures, figures_of, leg_at
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place
-from calm.files.legs import refuse_tow
-from calm.files.mooring_file import clamps_in
+from calm.files.mooring_file import refuse_tow
+from calm.files.pieces import clamps_in
 from calm.physics.line import Floats, Line, Water
 from calm.solve import expect_many
 

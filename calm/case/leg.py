@@ -12,8 +12,9 @@ from calm.case import parts
 from calm.case.memory import Forgetful, Memory
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Piece
-from calm.files.legs import EndKeys, FileLeg, legs_of
-from calm.files.mooring_file import STAND_IN, parts_of
+from calm.files.legs import EndKeys, FileLeg
+from calm.files.mooring_file import legs_of
+from calm.files.pieces import STAND_IN, parts_of
 from calm.physics.drag import BLOCK_CD, area_drag
 from calm.physics.line import Line, Water
 from calm.physics.materials import STEEL_DENSITY

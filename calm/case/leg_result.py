@@ -23,7 +23,7 @@ from calm.case.result_tables import (
 )
 from calm.case.strumming import Strumming, StrummingBand, band_of, strumming_of
 from calm.files import MooringFile
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.physics.line import Water
 from calm.solve import Solution, Status
 from calm.solve.solution import OtherEquilibrium

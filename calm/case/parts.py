@@ -13,8 +13,8 @@ import numpy as np
 
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.files import Clamp, MooringFile, Piece, read_mooring
-from calm.files.legs import legs_of
-from calm.files.mooring_file import parts_of
+from calm.files.mooring_file import legs_of
+from calm.files.pieces import parts_of
 from calm.files.yaml_document import Location
 from calm.physics.line import Floats
 from calm.solve import Solution

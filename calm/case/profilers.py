@@ -11,7 +11,7 @@ from calm.case.leg import Leg
 from calm.case.measure import clamps_of
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, MooringFile, Place, Profiler
-from calm.files.mooring_file import clamps_in
+from calm.files.pieces import clamps_in
 
 PLACES = 11
 """Where on its way a profiler is solved for, its two stops among them."""

@@ -10,7 +10,7 @@ from calm.case.design import Design, Result
 from calm.case.targets import Figures, Target, figures_of, parse_target
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place
-from calm.files.legs import refuse_tow
+from calm.files.mooring_file import refuse_tow
 from calm.solve import expect_many
 from calm.solve.least_change import LeastChange
 from calm.units import with_unit

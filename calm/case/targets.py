@@ -11,7 +11,7 @@ from calm.case.parts import TOP, one_part
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place
 from calm.errors import UsageError, unknown
 from calm.files import MooringFile, Place
-from calm.files.mooring_file import parts_of
+from calm.files.pieces import parts_of
 from calm.units import DIMENSIONS, QuantityError, parse_quantity
 
 QUANTITIES = {

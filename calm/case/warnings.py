@@ -10,7 +10,7 @@ import numpy as np
 from calm.case.leg_result import LegResult
 from calm.case.parts import below_the_seabed
 from calm.files import Cable, Component
-from calm.files.mooring_file import clamps_in, parts_of
+from calm.files.pieces import clamps_in, parts_of
 from calm.physics.materials import fibre_of, published_stiffnesses
 from calm.quantities import say
 from calm.solve import Solution
@@ -198,7 +198,8 @@ def _on_the_seabed(result: LegResult, solution: Solution) -> Iterator[str]:
     if names:
         yield f"On the seabed: {', '.join(names)}."
     if solution.landed and result.file.environment.seabed is not None:
-        off = below_the_seabed(result.file, solution, solution.water.depth)[solution.hanging :]
+        depth = result.water.depth  # of a leg at its anchor
+        off = below_the_seabed(result.file, solution, depth)[solution.hanging :]
         worst = float(np.nan_to_num(np.abs(off)).max())
         if worst > solution.depth_error + 1e-3:
             yield (

@@ -20,8 +20,8 @@ from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
 from calm.files import Cable, Clamp, Component, Flexible, Piece, Profiler
-from calm.files.mooring_file import clamps_in
-from calm.files.mooring_file import parts_of as every_part
+from calm.files.pieces import clamps_in
+from calm.files.pieces import parts_of as every_part
 from calm.physics.materials import materials_in, potential_of
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import duration, say

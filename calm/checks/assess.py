@@ -43,7 +43,7 @@ from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium, or_why_not
 from calm.files import MooringFile, Place
-from calm.files.mooring_file import STAND_IN
+from calm.files.pieces import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
 from calm.solve import expect_many
 

@@ -18,7 +18,7 @@ from calm.errors import NoEquilibrium
 from calm.files import Accept, Clamp, MooringFile, Piece
 from calm.files.check_limits import LimitKey
 from calm.files.definition import EstimatedFigure
-from calm.files.mooring_file import parts_of
+from calm.files.pieces import parts_of
 from calm.files.rule_texts import RULES
 
 _Part = TypeVar("_Part", Piece, Clamp)

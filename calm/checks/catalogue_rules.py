@@ -18,7 +18,7 @@ from calm.files import Anchor, Cable, Chain, Component, Cylinder, Flexible, Sphe
 from calm.files.catalogue import Assembly, Defined
 from calm.files.components import KINDS, Outline
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
-from calm.files.mooring_file import parts_of
+from calm.files.pieces import parts_of
 from calm.files.rigid import Shaped
 from calm.physics import materials
 from calm.physics.materials import LEAD_DENSITY, MATERIAL_NAMES, STEEL_DENSITY, materials_in

@@ -16,7 +16,7 @@ from calm.case.strumming import FACTOR
 from calm.checks.finding import Rule, State, Verdict, rule, unknown, verdict_on
 from calm.files import Component, MooringFile, Place, StrummingFactor
 from calm.files.check_limits import Checks, LimitKey, limit_keys
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.units import DIMENSIONS
 
 AT_SURFACE = 0.1

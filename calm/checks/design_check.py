@@ -27,8 +27,9 @@ from calm.checks.handling import backup
 from calm.checks.inventory import inventory_of
 from calm.checks.leg_graph import LegGraph
 from calm.errors import NoEquilibrium
-from calm.files.legs import refuse_tow, stand_in_anchor
-from calm.files.mooring_file import STAND_IN
+from calm.files.legs import stand_in_anchor
+from calm.files.mooring_file import refuse_tow
+from calm.files.pieces import STAND_IN
 from calm.solve import Status, expect_many
 
 NOT_HANDLED = (

@@ -11,7 +11,7 @@ from calm.checks import criterion
 from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, parts_of, pieces_of
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.files import MooringFile
-from calm.files.legs import legs_of
+from calm.files.mooring_file import legs_of
 from calm.quantities import say
 from calm.solve.finish import watch_circle_radius
 

@@ -13,7 +13,7 @@ from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
 from calm.checks.posture import reaches_the_surface
 from calm.files import Cable, Component, MooringFile, Piece, SafetyFactors
-from calm.files.legs import legs_of
+from calm.files.mooring_file import legs_of
 from calm.quantities import say
 
 WEAK_LINK = 0.5

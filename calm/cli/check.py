@@ -123,7 +123,7 @@ def _read(
     `ready` is called while other processes read.
     """
     from calm.case import load
-    from calm.files.legs import refuse_tow
+    from calm.files.mooring_file import refuse_tow
 
     problems: list[Problem] = []
     earlier: Design | None = None

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from calm.case import Design, uncertain
     from calm.checks.assessment import Assessment, MooringInEnvironment
     from calm.cli.reading import DesignFile
-    from calm.report.blocks import Section
+    from calm.report.check_report import CheckedSection
 
 
 class DrawnSection(NamedTuple):
     """A mooring's section of the report: its heading for the summary, its HTML and its PDF leaf."""
 
-    section: Section
+    section: CheckedSection
     html: str
     pdf: str
 
@@ -34,7 +34,7 @@ class CheckedMooring(NamedTuple):
     drawn: DrawnSection | None
 
 
-def drawn_section(section: Section, number: int) -> DrawnSection:
+def drawn_section(section: CheckedSection, number: int) -> DrawnSection:
     """Draw the `number`th section of a report for HTML and PDF."""
     from calm.report.folder import pdf_leaf
     from calm.report.html import leaf

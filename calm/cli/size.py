@@ -61,7 +61,7 @@ def size(
     outputs = Outputs((file,), json)
     from calm.case import load
     from calm.case.size import size as sized
-    from calm.files.legs import refuse_tow
+    from calm.files.mooring_file import refuse_tow
     from calm.report.explanation import refusal, sizing_part
 
     mooring = load(file, environment, catalog or [])

@@ -24,7 +24,7 @@ from calm.drop.launch import SHIP_SPEED
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable, MooringFile
 from calm.files.components import FLEXIBLE_KINDS
-from calm.files.legs import leg_numbers
+from calm.files.mooring_file import leg_numbers
 from calm.solve import Status
 
 HANDLED = ("float", "instrument", "release", "line")

@@ -10,8 +10,8 @@ from itertools import groupby
 from calm.case import Result
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place, rows_down
 from calm.files import Clamp, Flexible, Piece
-from calm.files.legs import leg_numbers
 from calm.files.logbook import DeployedItem
+from calm.files.mooring_file import leg_numbers
 from calm.quantities import QUANTITIES
 
 _SIZED = re.compile(r"(shackle|ring|swivel|link)(?:-[a-z]+)?-(\d+)\b.*")

@@ -13,8 +13,8 @@ from calm.deck.deck_items import DeckItem, Order
 from calm.errors import NoEquilibrium
 from calm.files import Cable, Chain, Component, Cylinder, Flexible, MooringFile, Piece, Sphere
 from calm.files.components import FLEXIBLE_KINDS
-from calm.files.legs import leg_numbers
-from calm.files.mooring_file import parts_of
+from calm.files.mooring_file import leg_numbers
+from calm.files.pieces import parts_of
 from calm.solve import expect_many
 
 LENGTH_ERROR = 0.005

@@ -10,7 +10,7 @@ from calm.drop.chain import BarChain
 from calm.drop.fall import Motion
 from calm.drop.motion import ChainState, Mover
 from calm.files import Clamp, Piece
-from calm.files.mooring_file import clamps_in
+from calm.files.pieces import clamps_in
 from calm.physics.line import Floats, Integers
 
 REPORTED_ROLES = ("float", "instrument", "release")

@@ -273,3 +273,11 @@ class ExportedLine:
             return part.net, own[1] * middle / end
         tilt, pull = radians(row.tilt), row.tension_bottom
         return pull * cos(tilt), pull * sin(tilt) / (0.5 * density * end)
+
+
+@dataclass(frozen=True)
+class ExportedDesign:
+    """A design for another program: its name, and the legs of a net or else a single line."""
+
+    name: str
+    legs: tuple[ExportedLine, ...]

@@ -1,7 +1,7 @@
-"""Export a mooring file to another program: its line as parts, written by one of the writers."""
+"""Export a mooring file to another program: its line as parts, written in one of the formats."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -11,29 +11,19 @@ from calm.case import load
 from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
 from calm.errors import NoEquilibrium, UsageError, unknown
-from calm.exchange.cable_writer import cbl_file
-from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow, Levels
-from calm.exchange.mdd_file import mdd_file
-from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
+from calm.exchange.exported_parts import (
+    ExportedDesign,
+    ExportedLine,
+    ExportedPart,
+    ExportedTow,
+    Levels,
+)
+from calm.exchange.registry import Exported, FileFormat, file_format, file_formats
 from calm.physics.line import Water
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.records.delimited import table_csv
 from calm.records.profile_tables import components
 
-_HEADER = (
-    "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
-    "whole buoyancy[N]", "whole Cd x area[m^2]", "whole tangential Cd x area[m^2]", "EA[N]",
-)  # fmt: skip
 _DIGITS = 9  # of a speed in m/s
-
-
-@dataclass(frozen=True)
-class Exported:
-    """Hold the content of a file for another program, what it cannot hold, and files beside it."""
-
-    content: bytes
-    lost: tuple[str, ...]
-    beside: dict[str, bytes]
 
 
 def export_file(
@@ -43,7 +33,7 @@ def export_file(
 
     Parameters
     ----------
-    to : one of `WRITERS`
+    to : name of a format that is written, as `registry.register_format` has it
     environment : a name in the file, or an environment file
     catalogs : as `calm.load` takes them
 
@@ -53,27 +43,35 @@ def export_file(
         The file has mistakes, no length of a piece that is cut to fit is right, or `to` is no
         program.
     """
-    if to not in WRITERS:
-        raise UsageError(
-            unknown(f"--to: `{to}` is not a program that CALM writes for", to, WRITERS)
-        )
+    chosen = _format_of(to)
+    assert chosen.write is not None
     read = load(path, environment, list(catalogs))
-    if read.several:
-        if to != "moordyn":
-            raise UsageError(f"{path} is a net of legs; `--to moordyn` takes it, {to} single lines")
-        designs = []
-        for found in read.solve().legs:
-            design = _exported_line(found.leg, partial(_known, found))
-            designs.append(replace(design, ends=(found.leg.top, found.leg.bottom)))
-        deepest = max(designs, key=lambda design: design.depth)
-        designs[0] = replace(designs[0], name=read.file.name, depth=deepest.depth)
-        content, lost = moordyn_file(*designs)
-        design = deepest
-    else:
-        design = _exported_line(read.leg, lambda: read.solve().leg)
-        content, lost = WRITERS[to](design)
-    beside = {CURRENTS: current_profile(design)} if to == "moordyn" else {}
-    return Exported(content, lost, beside)
+    if not read.several:
+        line = _exported_line(read.leg, lambda: read.solve().leg)
+        return chosen.write(ExportedDesign(line.name, (line,)))
+    if not chosen.writes_nets:
+        others = ", ".join(f"`--to {one.name}`" for one in file_formats() if one.writes_nets)
+        raise UsageError(f"{path} is a net of legs; {others} takes it, {to} single lines")
+    legs = tuple(
+        replace(
+            _exported_line(found.leg, partial(_known, found)),
+            ends=(found.leg.top, found.leg.bottom),
+        )
+        for found in read.solve().legs
+    )
+    return chosen.write(ExportedDesign(read.file.name, legs))
+
+
+def _format_of(to: str) -> FileFormat:
+    try:
+        chosen = file_format(to)
+    except KeyError:
+        chosen = None
+    if chosen is None or chosen.write is None:
+        written = [one.name for one in file_formats() if one.write is not None]
+        what = f"--to: `{to}` is not a program that CALM writes for"
+        raise UsageError(unknown(what, to, written))
+    return chosen
 
 
 def _known(leg: LegResult) -> LegResult:
@@ -218,47 +216,3 @@ def _omitted(leg: Leg) -> tuple[str, ...]:
     if any(leg.line.lift) or any(leg.line.clamp_lift):
         omitted.append("lift of towed bodies")
     return tuple(omitted)
-
-
-def _csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
-    """Return the content of the file, and what it cannot hold."""
-    lost = ["the water", "hulls and wind: floats drag in full at the surface"]
-    if design.tow is not None:
-        lost.append("the speed of the ship: a list is a mooring's")
-    losses = design.losses(lost)
-    rows = [
-        row
-        for part in design.parts
-        for row in (_row(part, None), *(_row(clamp, at) for clamp, at in part.clamps))
-    ]
-    if design.anchor is not None:
-        anchor, weight = design.anchor
-        figures = [None, anchor.length, None, anchor.mass, -weight, None, None, None]
-        rows.append([*["anchor"] * 4, *figures])
-    comments = (f"{design.name}, by CALM; lost:", *losses)
-    above = "".join(f"# {' '.join(line.split())}\n" for line in comments)
-    return (above + table_csv(_HEADER, rows)).encode(), losses
-
-
-def _row(part: ExportedPart, at: float | None) -> list[str | float | None]:
-    whole = part.length if part.flexible else 1.0
-    return [
-        part.use,
-        part.label,
-        part.component.kind,
-        part.role,
-        at,
-        part.length,
-        part.diameter or None,
-        None if part.mass is None else part.mass * whole,
-        part.buoyancy * whole,
-        part.area() * whole,
-        part.area(along=True) * whole if part.directional else None,
-        part.stiffness or None,
-    ]
-
-
-WRITERS: dict[str, Callable[[ExportedLine], tuple[bytes, tuple[str, ...]]]] = {
-    "mdd": mdd_file, "cbl": cbl_file, "csv": _csv_file, "moordyn": moordyn_file,
-}  # fmt: skip
-"""What a mooring can be written for."""

@@ -10,12 +10,12 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationInfo
 
-from calm.errors import UsageError, unknown
+from calm.errors import unknown
 from calm.files.components import Anchor
 from calm.files.definition import Model, QuantityField, Text, described, optional
 from calm.files.environment import Position
 from calm.files.line_items import LineReader
-from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered, placed
+from calm.files.pieces import STAND_IN, Piece, Place, numbered, placed
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
 from calm.positions import HEMISPHERES, Frame
@@ -95,7 +95,7 @@ class EndKeys(Model):
         return self.join is None and self.anchor is None and self.held is None
 
 
-_FREE, _ANCHORED = EndKeys(), EndKeys(anchor=AnchoredKeys())
+FREE, ANCHORED = EndKeys(), EndKeys(anchor=AnchoredKeys())
 
 
 def _end_given(value: object) -> object:
@@ -120,7 +120,7 @@ class LegKeys(Model):
         [{"use": "wire-jacketed-8", "length": "150 m"}],
     )
     top: _End = Field(
-        default=_FREE, description="what holds its upper end", examples=["free", {"join": "A"}]
+        default=FREE, description="what holds its upper end", examples=["free", {"join": "A"}]
     )
     bottom: _End | None = Field(
         default=None,
@@ -141,34 +141,6 @@ class FileLeg:
     end: int
     top: EndKeys
     bottom: EndKeys
-
-    def line_of(self, file: MooringFile) -> MooringFile:
-        """Return the leg as the file of a single line: its pieces, counted from its upper end.
-
-        One of several without an anchor has a stand-in for it, of the id `STAND_IN`.
-        """
-        if not file.legs:
-            return file
-        own = file.pieces[self.first : self.end]
-        pieces = [replace(piece, index=index) for index, piece in enumerate(own)]
-        if self.bottom.anchor is None:
-            pieces.append(stand_in_anchor(len(pieces), own[-1].place.item + 1))
-        environment, anchor = file.environment, self.bottom.anchor
-        if anchor is not None and anchor.depth is not None:
-            environment = replace(environment, depth=anchor.depth)
-        elif anchor is not None and environment.seabed is not None and environment.depth:
-            deeper = float(environment.seabed.deeper(np.array([anchor.at]))[0])
-            environment = replace(environment, depth=environment.depth + deeper)
-        if anchor is not None and environment.seabed is not None:
-            environment = replace(environment, seabed=environment.seabed.at(*anchor.at))
-        return replace(
-            file,
-            name=self.name,
-            environment=environment,
-            pieces=tuple(pieces),
-            legs=(self,),
-            notices=(),
-        )
 
     def grown(self, index: int, more: int) -> FileLeg:
         """Return the leg where there are more pieces after that of an index in the file."""
@@ -231,7 +203,7 @@ def read_legs(
         if keys is None:
             whole = False
             continue
-        ends = keys.top, keys.bottom or _FREE
+        ends = keys.top, keys.bottom or FREE
         if len(top.problems) == before:
             ends = _ends(keys, own, pieces[first:])
         legs.append(FileLeg(str(name), first, len(pieces), *ends))
@@ -248,7 +220,7 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
 
     ends = []
     for name, end in (("top", keys.top), ("bottom", keys.bottom)):
-        end = _FREE if end is None else end
+        end = FREE if end is None else end
         given = sorted(end.model_fields_set)
         if len(given) != 1 and name in own.data and own.data[name] != "free":
             each = " and ".join(f"`{one}`" for one in given) or "nothing"
@@ -274,7 +246,7 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
         refuse(("line",), "nothing stands above the anchor")
     if upper.join is not None and upper.join == lower.join:
         refuse(("bottom",), f"both ends join at `{upper.join}`")
-    if upper == lower == _FREE and (keys.bottom is not None or not stands):
+    if upper == lower == FREE and (keys.bottom is not None or not stands):
         refuse(("bottom",), "both ends are free: join one to another leg, or hold it")
     for piece in pieces:
         here = piece.line, piece.column
@@ -354,43 +326,6 @@ def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
         if leg.name not in held:
             message = f"nothing holds leg `{leg.name}`: no anchor, no held end"
             section.refuse((leg.name,), message, key=True)
-
-
-def refuse_several(file: MooringFile) -> None:
-    """Reject a file of legs for uses of a single line: UsageError."""
-    if file.legs:
-        raise UsageError(f"{file.path}: {ONE_LEG_ONLY}")
-
-
-def refuse_tow(file: MooringFile) -> None:
-    """Reject a tow for uses of a mooring: UsageError."""
-    if file.tow is not None:
-        raise UsageError(f"{file.path} is a tow; this is for moorings")
-
-
-def refuse_all_but_moorings(file: MooringFile) -> None:
-    """Reject tows and files of legs for uses of a single mooring: UsageError."""
-    refuse_several(file)
-    refuse_tow(file)
-
-
-def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
-    """Legs of a file; a file without `legs` has one.
-
-    The leg of a mooring is free above and anchored below, the leg of a tow is held at the ship.
-    """
-    if file.legs:
-        return file.legs
-    ends = _FREE, _ANCHORED
-    if file.tow is not None:
-        ship = HeldKeys.model_construct(depth=-file.tow.height, at=(0.0, 0.0))
-        ends = EndKeys(held=ship), _FREE
-    return (FileLeg(file.name, 0, len(file.pieces), *ends),)
-
-
-def leg_numbers(file: MooringFile) -> list[int]:
-    """Return the number of the leg that each piece of a file is in."""
-    return [n for n, leg in enumerate(legs_of(file)) for _ in range(leg.first, leg.end)]
 
 
 def nodes_of(legs: Sequence[FileLeg]) -> Mapping[str, int]:

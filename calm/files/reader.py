@@ -12,7 +12,6 @@ import numpy as np
 from pydantic import BeforeValidator, Field
 
 from calm.errors import InputError, Problem, unknown
-from calm.files import mooring_file
 from calm.files.catalogue import Catalogue
 from calm.files.check_limits import Accept, Checks, LimitKey, read_accepts
 from calm.files.components import Anchor, Flexible
@@ -21,7 +20,14 @@ from calm.files.environment import Position, Seabed, read_environment
 from calm.files.legs import FileLeg, LegKeys, check_held_depths, read_legs, stand_in_anchor
 from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, OutputUnits, ReleaseKeys, check_deployed
-from calm.files.mooring_file import MooringFile, Piece, Solver, TowKeys, numbered
+from calm.files.mooring_file import (
+    MooringFile,
+    Solver,
+    TowKeys,
+    check_fit,
+    unknown_releases,
+)
+from calm.files.pieces import Piece, check_one_fit, labels_of, numbered, travelling
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping, compose, read_document, validate
 from calm.units import QuantityError
@@ -182,7 +188,7 @@ class MooringReader:
             if self._legged:
                 check_held_depths(line.legs, top, depth)
             else:
-                mooring_file.check_fit(line.pieces, depth, keys.tow if keys else None, top)
+                check_fit(line.pieces, depth, keys.tow if keys else None, top)
         if problems or keys is None or surroundings is None:
             raise InputError(_in_order(problems, self._path))
         return MooringFile(
@@ -225,17 +231,17 @@ class MooringReader:
             line_is_whole = bool(pieces) and len(problems) == before
         else:
             (_check_tow if towed else _check_anchor)(pieces, top)
-            mooring_file.check_one_fit(pieces, top)
+            check_one_fit(pieces, top)
             pieces = numbered(pieces)
             if line_is_whole:
-                pieces = mooring_file.travelling(pieces, top)
-        labels = mooring_file.labels_of(pieces) if line_is_whole else None
+                pieces = travelling(pieces, top)
+        labels = labels_of(pieces) if line_is_whole else None
         accepts = read_accepts(((keys and keys.checks) or Checks()).accept, labels, top)
         if keys and keys.deployed and labels is not None:
             cut = [p.label for p in pieces if isinstance(p.component, Flexible)]
             check_deployed(keys.deployed, labels, cut, top)
         if keys and keys.releases and labels is not None:
-            notices += mooring_file.unknown_releases(keys.releases, pieces, keys.deployed)
+            notices += unknown_releases(keys.releases, pieces, keys.deployed)
         return _ReadLine(
             pieces, legs, tuple(reader.looser), accepts, tuple(notices), tuple(problems)
         )

@@ -10,7 +10,7 @@ import numpy as np
 
 from calm.case import Design
 from calm.errors import UsageError, nearest
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.motion import line_response
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats

@@ -15,10 +15,11 @@ from itertools import combinations
 import numpy as np
 
 from calm.case import Design
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.motion import line_response
 from calm.motion.correction import Task
-from calm.motion.line_response import FACTORS, STEP, Forward, Linear, LineResponse, ReadCurrents
+from calm.motion.currents_law import Linear, ReadCurrents
+from calm.motion.line_response import FACTORS, STEP, Forward, LineResponse
 from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats

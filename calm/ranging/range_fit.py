@@ -16,7 +16,7 @@ import numpy as np
 from calm.errors import UsageError
 from calm.files import MooringFile, read_mooring
 from calm.files.editing import Draft, EditError, WorkingFile
-from calm.files.legs import refuse_all_but_moorings
+from calm.files.mooring_file import refuse_all_but_moorings
 from calm.physics.line import Booleans, Floats
 from calm.positions import Frame, read_as_minutes
 from calm.quantities import bearing_of, bearing_text

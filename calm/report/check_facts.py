@@ -242,8 +242,10 @@ def _cut(table: Table, lines: float) -> Table:
     total = accumulate(_lines_of(row, table.columns, signs) for row in table.rows)
     kept = max(sum(each <= lines for each in total), 1)
     left = len(table.rows) - kept
-    rows = table.rows[:kept]
-    return replace(table, rows=rows, note=f"{left} more under Checks.") if left else table
+    if not left:
+        return table
+    shown = replace(table, rows=table.rows[:kept], note=f"{left} more under Checks.")
+    return shown.without_empty_columns()
 
 
 def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> float:

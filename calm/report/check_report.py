@@ -1,7 +1,7 @@
 """A design check as a report, on a terminal, as JSON and as CSV."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from itertools import groupby
 from math import inf
 from typing import Any
@@ -28,7 +28,14 @@ from calm.report.sheet import quality_of, summary_of, table_of_line
 from calm.version import __version__
 
 
-def mooring_section(assessment: Assessment, against: Comparison | None = None) -> Section:
+@dataclass(frozen=True)
+class CheckedSection(Section):
+    """The section of a mooring in the report of a design check, with what is concluded of it."""
+
+    facts: CheckFacts
+
+
+def mooring_section(assessment: Assessment, against: Comparison | None = None) -> CheckedSection:
     """All that the report says of one mooring; it draws, so it takes some tenths of a second.
 
     `against` is the mooring compared with the design that it came from.
@@ -54,16 +61,16 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
         ),
         provenance.inputs_part(inputs),
     )
-    return Section(assessment.name, parts, facts)
+    return CheckedSection(assessment.name, parts, facts)
 
 
-def check_report(sections: Sequence[Section]) -> blocks.Report:
+def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
     """The report of a design check: what is signed, then all that it rests on.
 
     Page one is all that an engineer signs, of one mooring; of several, a summary follows it.
     """
     count = len(sections)
-    facts = [each.facts for each in sections if each.facts is not None]
+    facts = [each.facts for each in sections]
     environments = {name for each in facts for name in each.environments}
     moorings = sections[0].name if count == 1 else f"{count} moorings"
     in_all = f"{len(environments)} environment{'s' if len(environments) != 1 else ''}"

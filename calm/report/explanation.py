@@ -17,7 +17,7 @@ from calm.checks.finding import State
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
 from calm.errors import NoEquilibrium
-from calm.files.mooring_file import parts_of
+from calm.files.pieces import parts_of
 from calm.quantities import QUANTITIES, Quantity, duration, say
 from calm.report import blocks
 from calm.report.blocks import Block, Cell, Prose, ReportPart, Span, Table, number, table_of, words

@@ -22,7 +22,7 @@ from calm.case.result_tables import (
 )
 from calm.dataset import netcdf
 from calm.dataset.netcdf import Attributes, labels, numbers
-from calm.files.legs import leg_numbers
+from calm.files.mooring_file import leg_numbers
 from calm.records.delimited import table_csv
 
 

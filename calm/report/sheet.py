@@ -219,7 +219,8 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
             label = Cell(clamp.label, indented=True, strong=strong)
             rows.append((Cell(), label, *cells))
     columns += (blocks.quantity_column(one.quantity) for one in figures if one.quantity)
-    return Table(title, tuple(columns), tuple(rows), f"{of_an_end}: {_NOTE}", dense=True)
+    table = Table(title, tuple(columns), tuple(rows), f"{of_an_end}: {_NOTE}", dense=True)
+    return table.without_empty_columns()
 
 
 def tilt_state(component: Component, tilt: float) -> State | None:

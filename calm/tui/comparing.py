@@ -211,7 +211,7 @@ def changed_lines(before: str, after: str) -> list[str]:
 
 def _bill(result: Result) -> RenderableType:
     from calm.checks.inventory import inventory_of
-    from calm.files.mooring_file import STAND_IN
+    from calm.files.pieces import STAND_IN
     from calm.quantities import QUANTITIES
     from calm.report import blocks, terminal
     from calm.report.check_tables import inventory_table

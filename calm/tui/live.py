@@ -22,7 +22,7 @@ from calm.checks.assessment import MooringInEnvironment, Situation
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.strength import strength
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
-from calm.files import MooringFile, Piece, Place, editing, mooring_file, read_mooring, yaml_document
+from calm.files import MooringFile, Piece, Place, editing, pieces, read_mooring, yaml_document
 from calm.quantities import show_in
 
 UNNAMED = "unnamed.yaml"
@@ -87,7 +87,7 @@ class View:
     @property
     def anchored(self) -> bool:
         """Return whether the line has an anchor of its own, or needs none."""
-        return self.file is not None and self.file.pieces[-1].use != mooring_file.STAND_IN
+        return self.file is not None and self.file.pieces[-1].use != pieces.STAND_IN
 
 
 def judge(
@@ -195,7 +195,7 @@ def _lacking(file: MooringFile) -> Iterator[str]:
     parts = [*(piece.component for piece in file.pieces), *clamps]
     if not any(part.net_buoyancy > 0.0 for part in parts):
         yield "no float"
-    if file.pieces[-1].use == mooring_file.STAND_IN:
+    if file.pieces[-1].use == pieces.STAND_IN:
         yield "no anchor"
 
 
@@ -262,9 +262,9 @@ def rows_of(
     for finding in findings:
         found[finding.place].append(finding)
     for piece in file.pieces:
-        if piece.use == mooring_file.STAND_IN:
+        if piece.use == pieces.STAND_IN:
             continue
-        for part in mooring_file.parts_of([piece]):
+        for part in pieces.parts_of([piece]):
             own, length = found[part.place], part.length if isinstance(part, Piece) else None
             row, figures = solved.get(part.place), {}
             if row is not None:

@@ -834,6 +834,21 @@ def test_a_line_lies_on_the_plane_of_a_grid(tmp_path: Path) -> None:
         assert told == pytest.approx(bowl * grid.anchor.grounded_length**2, rel=0.05, abs=0.06)
 
 
+def test_chain_far_from_the_origin_lies_on_the_plane(tmp_path: Path) -> None:
+    """Legs lie on the plane of their file, which is nowhere off it, wherever their anchors are."""
+    text = SLOPE
+    for leg, at in (("west", -120), ("east", 120)):
+        wire = f"{{use: wire-jacketed-8, length: 60 m}}, {{use: anchor-wheels-4, label: {leg}}}"
+        chain = f"{{use: chain-buoy-16, length: 160 m}}, {{use: anchor-wheels-4, label: {leg}}}"
+        near = f"at: [{at // 4} m, 0 m]"
+        assert wire in text
+        assert near in text
+        text = text.replace(wire, chain).replace(near, f"at: [{at} m, 0 m]")
+    result = load(tmp_path / "slope.yaml", text=text).solve()
+    assert min(anchor.grounded_length for anchor in result.anchors) > 5.0
+    assert not any("lies on the plane" in said for said in result.warnings)
+
+
 def test_an_export_says_that_its_seabed_is_level(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

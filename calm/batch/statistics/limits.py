@@ -16,7 +16,7 @@ from calm.checks.criterion import AT_SURFACE, Criterion, JudgedPart
 from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.situations import equilibrium
-from calm.files.mooring_file import STAND_IN
+from calm.files.pieces import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
 from calm.physics.seabed import required_weight
 

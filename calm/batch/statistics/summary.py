@@ -149,7 +149,6 @@ def summarize(
     dataset: Dataset,
     mooring: Design,
     folder: Path | None = None,
-    check: Callable[[], None] = lambda: None,
     source: Path = Path("the result"),
 ) -> Summary:
     """Gather what a finished result says.
@@ -160,7 +159,6 @@ def summarize(
     mooring : that it was solved for: its limits are judged
     folder : for a temporary file, as large as the result is without compression; the system's
         unless given
-    check : called now and then while the result is read; what it raises ends that
     source : the file of the result, for messages
 
     Profiles that were not solved are left out, and counted. All shares are of profiles: shares of
@@ -169,12 +167,11 @@ def summarize(
 
     Raises
     ------
-    OSError
-        There is no room for the temporary file.
     UsageError
-        The dataset is no result of `calm batch`, or cannot be read.
+        The dataset is no result of `calm batch`, or cannot be read; there is no room for the
+        temporary file.
     """
-    with ResultColumns(dataset, folder, check, source) as series:
+    with ResultColumns(dataset, folder, source) as series:
         ended = endings(series.statuses)
         equilibrium = limits.equilibrium_share(ended)
         unsolved = ended[Ending.NO_EQUILIBRIUM] + ended[Ending.NOT_CONVERGED]

@@ -12,7 +12,7 @@ from calm.drawing.line_picture import alike, together
 from calm.drawing.picture import printable
 from calm.drawing.schematic.symbols import BALLS, LINES, Sign, Symbol, sign_of
 from calm.files import Clamp, MooringFile, Piece, Place, Rigid
-from calm.files.mooring_file import STAND_IN
+from calm.files.pieces import STAND_IN
 from calm.quantities import QUANTITIES, say
 
 HEADINGS = {"cut_length": ("cut", "length"), "depth": ("", "depth"), "height": ("above", "seabed")}

@@ -13,7 +13,7 @@ from calm.batch.solving import lay_profile, levels_for, read_profile
 from calm.batch.statuses import STATUSES
 from calm.case import load
 from calm.physics.line import Water
-from calm.solve.leg_closing import find_way
+from calm.solve.leg_closing import newton_step
 
 NET = """\
 name: Two anchors
@@ -154,7 +154,7 @@ def test_a_step_solves_its_equations(size: int) -> None:
         slopes=slopes.tolist(), paper=np.zeros((size, size + 1)).tolist(), order=[0] * size,
         way=[0.0] * size,
     )  # fmt: skip
-    most = find_way(net, found.tolist())
+    most = newton_step(net, found.tolist())
     assert net.way == pytest.approx(-np.linalg.solve(slopes, found), rel=1e-9)
     assert most == pytest.approx(np.linalg.norm(net.way))
 
@@ -163,5 +163,5 @@ def test_an_unknown_of_which_the_slopes_say_nothing_stays() -> None:
     net: Any = SimpleNamespace(
         slopes=[[2.0, 0.0], [0.0, 0.0]], paper=[[0.0] * 3, [0.0] * 3], order=[0, 0], way=[9.0, 9.0]
     )
-    assert find_way(net, [4.0, 0.0]) == 2.0
+    assert newton_step(net, [4.0, 0.0]) == 2.0
     assert net.way == [-2.0, 0.0]

@@ -6,12 +6,14 @@ from math import atan2, degrees, hypot, pi, sqrt
 
 from calm.exchange.exported_parts import (
     AS_A_POINT,
+    ExportedDesign,
     ExportedLine,
     ExportedPart,
     PartLoad,
     unique_name,
 )
-from calm.exchange.model import is_called
+from calm.exchange.part_names import is_called
+from calm.exchange.registry import Exported
 from calm.files import Chain, Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_hull
@@ -71,8 +73,9 @@ class _Problem:
         self.layout.append(f"    connector = {name}")
 
 
-def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
-    """Return the content of the file, and what it cannot hold."""
+def write_cbl(exported: ExportedDesign) -> Exported:
+    """Write a line as a problem."""
+    (design,) = exported.legs
     lost: list[str] = []
     if design.tow is not None:
         design = _along_the_heading(design, lost)
@@ -112,7 +115,7 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     losses = design.losses(lost)
     head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in losses)]
     comment = "\n   ".join(line.replace("*/", "* /") for line in head)
-    return f"/* {comment} */\n{text}".encode(), losses
+    return Exported(f"/* {comment} */\n{text}".encode(), losses)
 
 
 def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
-from calm.exchange.cable_formulas import Expression, TokenStream, read_expression
-from calm.exchange.cable_source import Preprocessor, Token, tokens_of
+from calm.exchange.cbl.formulas import Expression, TokenStream, read_expression
+from calm.exchange.cbl.preprocessor import Preprocessor
+from calm.exchange.cbl.words import Token, tokens_of
 from calm.exchange.model import ImportOptions
 
 _TEXTS = frozenset([

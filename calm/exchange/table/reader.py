@@ -1,28 +1,25 @@
-"""Read a list of pieces as a design, and libraries of elements, whose figures complete it.
-
-A library is the table of elements of Mooring Design & Dynamics, in character matrices, or a table
-or workbook whose sheets have headings.
-"""
+"""Read a list of pieces as a design."""
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
 
-from calm.errors import nearest, refused
-from calm.exchange import list_rows, model
-from calm.exchange.list_cells import SheetRows, number, read_sheets
-from calm.exchange.list_headings import ListHeadings, check_given, headings_of
-from calm.exchange.mat_file import MatVariables, is_mat, names, read_variables
-from calm.exchange.mdd_file import GROUPS, read_water
+from calm.errors import refused
+from calm.exchange import model
+from calm.exchange.mat_file import MatVariables
+from calm.exchange.mdd.water import read_water
+from calm.exchange.table.cells import SheetRows, number, read_sheets
+from calm.exchange.table.components import component_of
+from calm.exchange.table.headings import ListHeadings, check_given, headings_of
+from calm.exchange.table.library import Library, complete_rows, is_library, key_of, read_library
+from calm.exchange.table.rows import TOTAL, ListRow, count_lines, rows_of, weights_as_buoyancy
 from calm.files.components import FLEXIBLE_KINDS
-from calm.units import KILOGRAM_FORCE
-from calm.whole_file import read_content
 
 _NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
 _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
@@ -54,18 +51,18 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
         problems += headings.problems
         said = _unit_remarks(headings)
         weighed = {"buoyancy", "weight"} & headings.columns.keys()
-        rows = list_rows.rows_of(
+        rows = rows_of(
             cells, headings, problems, design.dropped, said,
             bare=lambda name: bool(library) and (not weighed or key_of(name) in library),
         )  # fmt: skip
-        list_rows.weights_as_buoyancy(rows, design.guessed)
+        weights_as_buoyancy(rows, design.guessed)
         if headings.others:
             design.dropped.append(model.Remark("columns", ", ".join(headings.others)))
     else:
         rows = _names(sheets, design, path, library)
     if elements is not None:
         complete_rows(rows, library, elements.name)
-    list_rows.count_lines(rows, headings.columns if headings else {})
+    count_lines(rows, headings.columns if headings else {})
     if sum(row.count for row in rows) > model.MOST_PIECES:
         raise refused(path, f"has more than {model.MOST_PIECES} pieces")
     rows = _from_the_top(rows, path, design)
@@ -91,7 +88,7 @@ def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:
 
 def _names(
     sheets: Mapping[str, SheetRows], design: model.ImportedDesign, path: Path, library: Library
-) -> list[list_rows.ListRow]:
+) -> list[ListRow]:
     """Return the rows of a list that holds names alone, in the longest sheet.
 
     The first is the name of the mooring where the library has no such element.
@@ -116,15 +113,15 @@ def _names(
     return rows
 
 
-def _names_in(cells: SheetRows) -> list[list_rows.ListRow]:
+def _names_in(cells: SheetRows) -> list[ListRow]:
     """Return the rows of a sheet that holds names alone: the words of the column that has most."""
     words = (i for row in cells for i, cell in enumerate(row) if re.search(r"[^\W\d]{2}", cell))
     counts = Counter(words)
     best = max(range(max(map(len, cells), default=1)), key=counts.__getitem__)
     return [
-        list_rows.ListRow(place, row[best])
+        ListRow(place, row[best])
         for place, row in enumerate(cells, 1)
-        if best < len(row) and row[best] and not list_rows.TOTAL.match(row[best])
+        if best < len(row) and row[best] and not TOTAL.match(row[best])
     ]
 
 
@@ -157,9 +154,7 @@ def _figure(row: list[str], index: int, path: Path) -> float:
     return found.value or 0.0
 
 
-def _from_the_top(
-    rows: list[list_rows.ListRow], path: Path, design: model.ImportedDesign
-) -> list[list_rows.ListRow]:
+def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign) -> list[ListRow]:
     """Return the rows from the top down; lists run either way, clamps follow their piece."""
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:
@@ -181,19 +176,19 @@ def _from_the_top(
         design.notes.append("The list runs from the lower end up: here it is reversed.")
         rows = _turned(rows)
     design.guessed.append(model.Remark("line.anchor", "the list has none"))
-    return [*rows, list_rows.ListRow(0, "anchor", kind="anchor", role="anchor")]
+    return [*rows, ListRow(0, "anchor", kind="anchor", role="anchor")]
 
 
-def _turned(rows: list[list_rows.ListRow]) -> list[list_rows.ListRow]:
+def _turned(rows: list[ListRow]) -> list[ListRow]:
     pieces = accumulate(int("at" not in row.figures) for row in rows)
     numbered = sorted(zip(pieces, rows, strict=True), key=lambda pair: -pair[0])
     return [row for _, row in numbered]
 
 
-def _items(rows: list[list_rows.ListRow]) -> list[model.ImportedPiece]:
+def _items(rows: list[ListRow]) -> list[model.ImportedPiece]:
     items: list[model.ImportedPiece] = []
     for row in rows:
-        component = list_rows.component_of(row, anchor=row is rows[-1] and row.is_anchor)
+        component = component_of(row, anchor=row is rows[-1] and row.is_anchor)
         at = row.figures.get("at")
         if at is None:
             length = row.figures.get("length") if component.kind in FLEXIBLE_KINDS else None
@@ -205,147 +200,3 @@ def _items(rows: list[list_rows.ListRow]) -> list[model.ImportedPiece]:
         elif items:
             items[-1].clamps.append(model.ImportedClamp(component, at, row.guesses.get("at", "")))
     return items
-
-
-_NOT_THEIRS = ("at", "count", "height")  # of an element, whatever the heading says
-_A_METRE = 1e-6  # m by which the length of a line's figures may miss a metre
-_SHEETS = 3  # with headings of their own make a library
-
-_LINES = ("wires", "chains")
-_NAME = 16  # bytes of a name, where the file does not say
-_FIGURES = (6, 7)  # behind it: buoyancy, mass in air of late, length, width, diameter, Cd, material
-_CENTIMETRE = 0.01
-_METRE = 100.0  # cm: the length of a line whose figures are those of a metre
-
-
-Library = Mapping[str, list_rows.ListRow]
-"""Elements by their name without capitals and blanks; figures of a line are those of a metre."""
-
-
-def read_library(path: Path) -> Library:
-    """Return the elements of Mooring Design & Dynamics' `mdcodes.mat`, or of a table or workbook.
-
-    Of several elements of one name the first holds. InputError: the file cannot be read, or holds
-    no elements.
-    """
-    content = read_content(path, largest=200_000_000)
-    elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)
-    library: dict[str, list_rows.ListRow] = {}
-    for element in elements:
-        library.setdefault(key_of(element.name), element)
-    return library
-
-
-def is_library(sheets: Mapping[str, SheetRows]) -> bool:
-    """Return whether sheets are a library: several with headings, or the table of moords."""
-    headed = [found for rows in sheets.values() if (found := headings_of(rows, {})) is not None]
-    moords = {"buoyancy_kg", "length_m", "width_m", "diameter_m"}
-    return len(headed) >= _SHEETS or any(
-        moords <= {column.heading for column in found.columns.values()} for found in headed
-    )
-
-
-def key_of(name: str) -> str:
-    """Return a name without capitals and blanks, as libraries are searched."""
-    return "".join(name.lower().split())
-
-
-def complete_rows(rows: Iterable[list_rows.ListRow], library: Library, source: str) -> None:
-    """Give rows the figures that they lack, from the element of their name.
-
-    Parameters
-    ----------
-    rows : of the list, changed in place
-    library : in which they are looked up
-    source : name of the library in hints
-    """
-    for row in rows:
-        element = library.get(key_of(row.name))
-        if element is None:
-            near = nearest(row.name.lower(), [each.name.lower() for each in library.values()])
-            if "buoyancy" not in row.figures and near is not None:
-                row.hint = f"; {source} has `{near}`"
-            elif "buoyancy" not in row.figures:
-                row.hint = f"; {source} has no element of that name"
-            continue
-        row.line = element.line
-        for what, value in element.figures.items():
-            if what in row.figures or (element.line and what == "length"):
-                continue
-            row.figures[what] = value
-            if element.line:
-                row.metre.add(what)
-
-
-def _of_matrices(path: Path) -> list[list_rows.ListRow]:
-    """Return the elements of character matrices, a row an element, as in `mdcodes.mat`."""
-    variables = read_variables(path, [*GROUPS, "format"])
-    entries = [
-        entry
-        for group in GROUPS
-        for text in names(variables.get(group))
-        if (entry := _entry(text, group, _width(variables))) is not None
-    ]
-    if not entries:
-        raise refused(path, "holds no element library of that program (`floats`, `wires` …)")
-    return entries
-
-
-def _width(variables: MatVariables) -> int:
-    """Bytes of a name: `format` has the columns of the name and of each figure."""
-    try:
-        columns = variables.reals("format")
-    except ValueError:
-        return _NAME
-    return int(columns[0, -1]) if columns.ndim == 2 and 0 < columns.size <= 100 else _NAME
-
-
-def _entry(text: str, group: str, end: int) -> list_rows.ListRow | None:
-    """Return an element of a row; None for a row that cannot be read."""
-    content = text.encode()
-    try:
-        figures = [float(word) for word in content[end:].split()]
-    except ValueError:
-        return None
-    if len(figures) not in _FIGURES:
-        return None
-    length, width, diameter, cd, material = figures[-5:]
-    sizes = {"length": length, "width": width, "diameter": diameter}
-    return list_rows.ListRow(
-        0,
-        content[:end].decode("utf-8", "replace").strip(),
-        line=group in _LINES and length == _METRE,
-        figures={
-            "buoyancy": figures[0] * KILOGRAM_FORCE,
-            **{name: size * _CENTIMETRE for name, size in sizes.items()},
-            "cd": cd,
-            "material": material,
-        },
-    )
-
-
-def _of_sheets(path: Path) -> Iterable[list_rows.ListRow]:
-    found = False
-    for title, cells in read_sheets(path).items():
-        headings = headings_of(cells, {})
-        if headings is None:
-            continue
-        if headings.problems:
-            raise refused(path, *headings.problems)
-        rows = list_rows.rows_of(cells, headings, [], [], [])
-        list_rows.weights_as_buoyancy(rows, [])
-        for row in rows:
-            found = True
-            row.line = _is_line(row, title)
-            row.figures = {k: one for k, one in row.figures.items() if k not in _NOT_THEIRS}
-            yield row
-    if not found:
-        raise refused(path, "holds no elements: no sheet has headings that CALM knows")
-
-
-def _is_line(row: list_rows.ListRow, title: str) -> bool:
-    """Return whether an element is a line, with figures per metre."""
-    floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
-    if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
-        return False
-    return bool(row.metre) or row.is_line or model.is_called(title, "line")

@@ -6,11 +6,12 @@ arguments, cut numbers such as `6e3` where `e3` is a macro, and let a comment wi
 
 import os
 import re
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from calm.errors import InputError, UsageError, refused
+from calm.exchange.cbl.formulas import constant
+from calm.exchange.cbl.words import SourceLine
 from calm.exchange.model import ImportOptions
 from calm.whole_file import decoded, read_content
 
@@ -23,23 +24,6 @@ _MOST_TEXT = 4_000_000  # characters that a file may become
 _MOST_EXPANSIONS = 20_000
 _DEEPEST = 20  # files within files, macros within macros, conditions within conditions
 _LONGEST = 100_000  # characters of one line once expanded
-_TOKEN = re.compile(
-    r"""(?P<key>[A-Za-z_][\w.-]*)[ \t]*=(?!=)
-    |(?P<text>"[^"]*"|'[^']*')
-    |(?P<number>(?:\d+\.\d*|\.\d+|\d+)(?:[eE][+-]?\d+)?)
-    |(?P<name>[A-Za-z_][\w/.:]*)
-    |(?P<sign>&&|\|\||==|!=|<=|>=|<<|>>|[-+*/%<>!~?:|^&(){}\[\],])""",
-    re.VERBOSE,
-)
-
-
-@dataclass(frozen=True)
-class SourceLine:
-    """Hold a line of text and where it stands."""
-
-    text: str
-    path: str
-    number: int
 
 
 @dataclass(frozen=True)
@@ -118,8 +102,6 @@ class Preprocessor:
             if name is None:
                 raise ValueError(f"`#{word}` needs a name")
             return (name[0] in self._macros) == (word == "ifdef")
-        from calm.exchange.cable_formulas import constant
-
         known = re.sub(
             r"\bdefined\s*(?:\(\s*(\w+)\s*\)|(\w+))",
             lambda found: str(int((found[1] or found[2]) in self._macros)),
@@ -263,58 +245,3 @@ def _without_comments(text: str, path: str) -> list[str]:
             lines.append(line.removesuffix("\\"))
             joined = 1 if line.endswith("\\") else 0
     return lines
-
-
-@dataclass(frozen=True)
-class Token:
-    """Hold a word and where it stands.
-
-    `kind` is ``key`` (a name with its `=`), ``name``, ``text`` (in quotes), ``number``, ``sign`` or
-    ``end``.
-    """
-
-    kind: str
-    text: str
-    path: str
-    line: int
-    column: int
-    number: float = 0.0
-
-    def refuse(self, message: str) -> Exception:
-        """Return a problem at this word."""
-        return refused(self.path, message, line=self.line, column=self.column)
-
-
-def tokens_of(lines: Iterable[SourceLine]) -> Iterator[Token]:
-    """Return the words of the lines, and an ``end``.
-
-    InputError: a sign that has no place in such a file.
-    """
-    last = SourceLine("", "", 0)
-    for line in lines:
-        yield from _words(line)
-        last = line
-    yield Token("end", "the end", last.path, last.number, 1)
-
-
-def _words(line: SourceLine) -> Iterator[Token]:
-    text, at = line.text, 0
-    while at < len(text):
-        if text[at].isspace():
-            at += 1
-            continue
-        place = line.path, line.number, at + 1
-        found = _TOKEN.match(text, at)
-        if found is None:
-            message = f"`{text[at]}` has no place in a problem of WHOI Cable"
-            raise refused(line.path, message, line=line.number, column=at + 1)
-        kind = found.lastgroup or ""
-        word, at = found[kind], found.end()
-        if kind == "key":
-            word = word.lower()
-        elif kind == "text":
-            word = word[1:-1]
-        elif kind == "name":  # of a list: `meter: (3 5)`
-            at -= len(word) - len(word.rstrip(":"))
-            word = word.rstrip(":")
-        yield Token(kind, word, *place, number=float(word) if kind == "number" else 0.0)

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, refused
 from calm.exchange import model
-from calm.exchange.cable_components import ComponentMaker
-from calm.exchange.cable_formulas import UnknownNameError
-from calm.exchange.cable_grammar import (
+from calm.exchange.cbl.components import ComponentMaker
+from calm.exchange.cbl.formulas import UnknownNameError
+from calm.exchange.cbl.grammar import (
     CableBranch,
     CableProblem,
     CableTerminal,
@@ -22,7 +22,7 @@ from calm.exchange.cable_grammar import (
     KeyValues,
     read_problem,
 )
-from calm.exchange.cable_layout import CableLayout
+from calm.exchange.cbl.layout import CableLayout
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.quantities import bearing_of
 from calm.whole_file import read_text

@@ -1,25 +1,18 @@
-"""Make components of the elements of Mooring Design & Dynamics, with that program's drag.
-
-The designs that moords exports have them as rows, from the anchor up.
-"""
+"""Make components of the elements of Mooring Design & Dynamics, with that program's drag."""
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import re
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-from calm.errors import refused
 from calm.exchange import model
 from calm.exchange.mat_file import MatVariables, RealArray, names
+from calm.exchange.part_names import role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
-from calm.whole_file import read_text
 
 _SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
 _FLAT = 1e-3  # m: height of a float that the file gives none
@@ -27,6 +20,9 @@ _SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
 _LARGEST = 1e9  # m, kg: of no piece
 _ROWS = ("B", "Cd", "ME", "Wt")
+GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
+"""The variables of a library that hold elements."""
+
 MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
 """Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
 polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
@@ -47,7 +43,7 @@ def rigid(element: MddElement) -> model.ImportedComponent:
     faces.
     """
     lift = element.lift * KILOGRAM_FORCE
-    role = model.role_of(element.name, lift, fastener=element.is_fastener)
+    role = role_of(element.name, lift, fastener=element.is_fastener)
     figures: dict[str, model.FigureOrWord]
     if element.diameter > 0.0:
         kind = "sphere"
@@ -278,83 +274,3 @@ def _modulus(value: float) -> float | None:
     if not value > 0.0:
         return None
     return MODULI[int(value) - 1] if value in range(1, len(MODULI) + 1) else value
-
-
-_MARKS = {"name", "length", "buoyancy", "bool_line", "bool_clampon", "height_along_inline"}
-_FIGURES = ("length", "buoyancy", "material", "width", "diameter", "drag")
-_OFF = 1e-6  # m by which a clamp may stand off its piece
-_NOTE = "It solves the equations of Mooring Design & Dynamics. See `calm docs import-table`."
-
-
-def is_moords(content: bytes) -> bool:
-    """Return whether a file is such a design, by its headings."""
-    head = content.split(b"\n", 1)[0].decode("utf-8", "replace")
-    return set(head.strip().split(",")) >= _MARKS
-
-
-def read_moords(path: Path) -> model.ImportedDesign:
-    """Read a design (InputError: its headings or figures are not those of that program)."""
-    rows = list(csv.DictReader(io.StringIO(read_text(path))))
-    if not rows or not rows[0].keys() >= _MARKS:
-        raise refused(path, "is not a design of moords: its headings are others")
-    if len(rows) > model.MOST_PIECES:
-        raise refused(path, f"has {len(rows)} rows; more than {model.MOST_PIECES} are not read")
-    problems: list[str] = []
-    elements = [_element(row, place, problems) for place, row in enumerate(rows, 2)]
-    if not problems and rows[0].get("bool_clampon") == "True":
-        problems.append("row 2: a clamp stands before the first piece")
-    if problems:
-        raise refused(path, *problems)
-    anchor = anchor_of(elements[0])
-    if not elements[0].lift:
-        del anchor.figures["weight"]
-    items = [model.ImportedPiece(anchor)]
-    for row, element in zip(rows[1:], elements[1:], strict=True):
-        if row.get("bool_clampon") == "True":
-            host, length = items[-1], items[-1].extent
-            at = length - float(row["height_along_inline"] or 0.0)
-            guess = "" if -_OFF <= at <= length + _OFF else "its place was off the piece"
-            host.clamp(rigid(element), min(max(at, 0.0), length), guess)
-        else:
-            items.append(piece_of(element))
-    name = rows[0].get("mooring") or path.stem
-    return model.ImportedDesign("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
-
-
-def _element(row: dict[str, str], place: int, problems: list[str]) -> MddElement:
-    clamped = row.get("bool_clampon") == "True"
-    keys = (*_FIGURES, "height_along_inline") if clamped else _FIGURES
-    figures = {key: _number(row, key, place, problems) for key in keys}
-    is_line, length, lift = row.get("bool_line") == "True", figures["length"], figures["buoyancy"]
-    if is_line and length <= 0.0:
-        problems.append(f"row {place}, {row['name']}: a line needs its length")
-        length = 1.0
-    material = figures["material"]
-    known = is_line and 1.0 <= material <= len(MODULI)
-    element = MddElement(
-        name=row["name"] or f"row {place}",
-        length=length,
-        width=figures["width"],
-        diameter=figures["diameter"],
-        is_line=is_line,
-        is_fastener=row.get("type") == "rigging",
-        lift=lift / length if is_line else lift,
-        cd=figures["drag"],
-        mass=None,
-        modulus=MODULI[round(material) - 1] if known else None,
-        number=place,
-    )
-    problems += mistakes_of(element, f"row {place}, {element.name}")
-    return element
-
-
-def _number(row: dict[str, str], key: str, place: int, problems: list[str]) -> float:
-    text = (row.get(key) or "").strip()
-    try:
-        value = float(text) if text and text.lower() not in ("nan", "none") else 0.0
-    except ValueError:
-        value = math.nan
-    if math.isfinite(value):
-        return value
-    problems.append(f"row {place}, {row.get('name')}: {key} is `{text}`")
-    return 0.0

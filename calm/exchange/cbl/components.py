@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from calm.errors import refused
-from calm.exchange.cable_grammar import CableDefinition, KeyValue, KeyValues
-from calm.exchange.model import FigureOrWord, ImportedComponent, Remark, role_of
+from calm.exchange.cbl.grammar import CableDefinition, KeyValue, KeyValues
+from calm.exchange.model import FigureOrWord, ImportedComponent, Remark
+from calm.exchange.part_names import role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 

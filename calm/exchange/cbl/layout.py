@@ -5,9 +5,10 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 
 from calm.errors import refused
-from calm.exchange import cable_grammar, model
-from calm.exchange.cable_components import ComponentMaker, counts_on_depth, varies
-from calm.exchange.cable_source import Token
+from calm.exchange import model
+from calm.exchange.cbl import grammar
+from calm.exchange.cbl.components import ComponentMaker, counts_on_depth, varies
+from calm.exchange.cbl.words import Token
 from calm.quantities import bearing_of
 
 _REACHES = 0.97  # of the depth: a line as long reaches the surface
@@ -18,7 +19,7 @@ _ON_THE_BED = 0.05
 """Share of the depth: an anchor no higher above the seabed stands on it."""
 
 
-_End = cable_grammar.CableTerminal | str
+_End = grammar.CableTerminal | str
 """Where a leg of the layout begins or ends: a terminal, or the name of a node."""
 
 
@@ -34,7 +35,7 @@ class CableLayout:
     nodes : where legs of a net join, so far; legs begin where the layout has their first segment
     """
 
-    problem: cable_grammar.CableProblem
+    problem: grammar.CableProblem
     makers: ComponentMaker
     design: model.ImportedDesign
     nodes: int = 0
@@ -92,10 +93,10 @@ class CableLayout:
         InputError: a branch has no end, or nothing stands between two anchors.
         """
         first, *others = self.problem.layout
-        assert isinstance(first, cable_grammar.CableTerminal)
+        assert isinstance(first, grammar.CableTerminal)
         self._lay(others, first)
 
-    def _anchor(self, end: cable_grammar.CableTerminal) -> model.ImportedComponent:
+    def _anchor(self, end: grammar.CableTerminal) -> model.ImportedComponent:
         """Return the anchor of an end, as high as that stands."""
         name = end.values["anchor"].text
         known, height = self.problem.anchors.get(name), end.values.number("z")
@@ -104,11 +105,11 @@ class CableLayout:
             anchor.figures["length"] = height
         return anchor
 
-    def _buoy(self, end: cable_grammar.CableTerminal, *, afloat: bool) -> model.ImportedPiece:
+    def _buoy(self, end: grammar.CableTerminal, *, afloat: bool) -> model.ImportedPiece:
         found = _defined(self.problem.buoys, end.buoy, end.token)
         return model.ImportedPiece(self.makers.buoy(found, afloat=afloat))
 
-    def _pieces_of(self, segments: list[cable_grammar.CableSegment]) -> list[model.ImportedPiece]:
+    def _pieces_of(self, segments: list[grammar.CableSegment]) -> list[model.ImportedPiece]:
         """Return the pieces of segments and their connectors, from the lower one up."""
         items: list[model.ImportedPiece] = []
         below, seabed = 0.0, self.water.depth or self.problem.length
@@ -131,8 +132,8 @@ class CableLayout:
 
     def _pieces(
         self,
-        segment: cable_grammar.CableSegment,
-        material: cable_grammar.CableDefinition,
+        segment: grammar.CableSegment,
+        material: grammar.CableDefinition,
         length: float,
         lower: float,
     ) -> list[model.ImportedPiece]:
@@ -173,7 +174,7 @@ class CableLayout:
         return math.hypot(row[1], row[2])
 
     def _clamps(
-        self, segment: cable_grammar.CableSegment, length: float
+        self, segment: grammar.CableSegment, length: float
     ) -> list[tuple[float, model.ImportedComponent]]:
         """Return what hangs on the nodes of a segment, with the height above its lower end."""
         heights = _heights(segment, length) if segment.attachments else []
@@ -192,36 +193,36 @@ class CableLayout:
             raise token.refuse(f"the connector `{token.text}` is defined nowhere")
         return self.makers.connector(found)
 
-    def _lay(self, layout: cable_grammar.CableItems, start: _End) -> None:
+    def _lay(self, layout: grammar.CableItems, start: _End) -> None:
         """Lay what follows a terminal or a node, and the branches at the nodes on the way."""
-        segments: list[cable_grammar.CableSegment] = []
-        branched = any(isinstance(each, cable_grammar.CableBranch) for each in layout)
+        segments: list[grammar.CableSegment] = []
+        branched = any(isinstance(each, grammar.CableBranch) for each in layout)
         last = layout[-1] if layout else None
         anchored = (
-            isinstance(end, cable_grammar.CableTerminal) and "anchor" in end.values
+            isinstance(end, grammar.CableTerminal) and "anchor" in end.values
             for end in (start, last)
         )
         # a line from anchor to anchor is cut where it first can be
         whole = not branched and all(anchored)
         for each, following in zip_longest(layout, layout[1:]):
-            if isinstance(each, cable_grammar.CableTerminal):
+            if isinstance(each, grammar.CableTerminal):
                 self._leg(start, segments, each)
                 segments = []
-            elif isinstance(each, cable_grammar.CableBranch):
+            elif isinstance(each, grammar.CableBranch):
                 self._lay(each.layout, start)
             else:
                 segments.append(each)
                 cut = whole and not isinstance(start, str) and each.connector is not None
-                if isinstance(following, cable_grammar.CableBranch) or cut:
+                if isinstance(following, grammar.CableBranch) or cut:
                     self.nodes += 1
                     node = f"node-{self.nodes}"
                     self._leg(start, segments, node)
                     start, segments = node, []
-        if segments or not isinstance(last, cable_grammar.CableTerminal):
+        if segments or not isinstance(last, grammar.CableTerminal):
             message = "the layout has no `terminal` at the end of a line"
             raise last.token.refuse(message) if last else refused(self.problem.path, message)
 
-    def _leg(self, start: _End, segments: list[cable_grammar.CableSegment], end: _End) -> None:
+    def _leg(self, start: _End, segments: list[grammar.CableSegment], end: _End) -> None:
         """Add a leg, turned where what the layout has last is its lower end."""
         items = self._pieces_of(segments)[::-1]
         first, lower, low = self._end(start)
@@ -262,7 +263,7 @@ def _alike(one: model.ImportedComponent, other: model.ImportedComponent) -> bool
     return all(abs(a - b) <= _CHANGE * max(abs(a), abs(b)) for a, b in pairs)
 
 
-def _heights(segment: cable_grammar.CableSegment, length: float) -> list[float]:
+def _heights(segment: grammar.CableSegment, length: float) -> list[float]:
     """Return the heights of the nodes of a segment above its lower end [m]."""
     nodes = segment.values.get("nodes")
     if nodes is None or not nodes.rows or any(len(row) != 2 for row in nodes.rows):
@@ -279,10 +280,10 @@ def _heights(segment: cable_grammar.CableSegment, length: float) -> list[float]:
 
 
 def _defined(
-    definitions: dict[str, cable_grammar.CableDefinition],
-    value: cable_grammar.KeyValue | None,
+    definitions: dict[str, grammar.CableDefinition],
+    value: grammar.KeyValue | None,
     token: Token,
-) -> cable_grammar.CableDefinition:
+) -> grammar.CableDefinition:
     """Return the definition that a value names; a problem stands at the value, or at `token`."""
     if value is None or not value.text:
         raise token.refuse("a name is missing: a material, or a buoy")

@@ -16,9 +16,12 @@ import numpy as np
 from calm.assemble.catalogue_search import Index
 from calm.errors import InputError, Problem, refused
 from calm.exchange import model
-from calm.exchange.list_cells import number, unit_called
-from calm.exchange.list_reader import Library, complete_rows, key_of, read_library
-from calm.exchange.list_rows import ListRow, component_of
+from calm.exchange.part_names import is_called
+from calm.exchange.registry import register_format
+from calm.exchange.table.cells import number, unit_called
+from calm.exchange.table.components import component_of
+from calm.exchange.table.library import Library, complete_rows, key_of, read_library
+from calm.exchange.table.rows import ListRow
 from calm.files import Anchor, Catalogue
 from calm.files.components import FLEXIBLE_KINDS, Component
 from calm.files.yaml_document import Document, read_document
@@ -108,7 +111,7 @@ class _Entry:
     @property
     def is_anchor(self) -> bool:
         """Return whether it is called an anchor."""
-        return model.is_called(" ".join(self.names), "anchor")
+        return is_called(" ".join(self.names), "anchor")
 
     def lower_end(self, extent: float) -> float | None:
         """Return the height of its lower end, so long as it is [m]."""
@@ -222,7 +225,7 @@ class _Parts:
                 reading = self.reading
                 reading.problems += refused(reading.document.path, *row.problems).problems
                 return component, ""
-        if model.is_called(" ".join(names), "anchor"):
+        if is_called(" ".join(names), "anchor"):
             return self._anchor(names), ""
         for name in names:
             if self.catalogue.entry(name) is not None:
@@ -373,3 +376,8 @@ def _heading(reading: _Reading) -> dict[str, str]:
         text = ", ".join(f"{key}: {quoted(str(value))}" for key, value in known.items() if value)
         lines["document"] = f"{{{text}}}"
     return lines
+
+
+register_format(
+    "oceanarray", is_oceanarray, read_oceanarray, program="oceanarray", takes_elements=True
+)

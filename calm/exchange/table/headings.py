@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from calm.errors import refused, unknown
-from calm.exchange.list_cells import SheetRows, decimal_sign, number, unit_called, unit_of_heading
+from calm.exchange.table.cells import SheetRows, decimal_sign, number, unit_called, unit_of_heading
 from calm.units import KILOGRAM_FORCE
 
 COLUMNS = (

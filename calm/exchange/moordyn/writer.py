@@ -1,6 +1,6 @@
 """Write a mooring as an input file of MoorDyn 2, its points where they stand in equilibrium."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import groupby
 from math import pi, sqrt
 
@@ -8,16 +8,18 @@ from calm.errors import UsageError
 from calm.exchange.exported_parts import (
     AS_A_POINT,
     Coordinates,
+    ExportedDesign,
     ExportedLine,
     ExportedPart,
     PartLoad,
     place_along,
     unique_name,
 )
+from calm.exchange.registry import Exported
 from calm.files.legs import EndKeys
 from calm.physics.line import Floats
 
-CURRENTS = "current_profile.txt"
+_CURRENTS = "current_profile.txt"
 """The name under which that program looks for the current, beside its input."""
 
 _RIGID = 1e7  # N: EA of what does not stretch; stiffer lines need shorter steps
@@ -120,12 +122,8 @@ class _System:
         )
 
 
-def moordyn_file(*designs: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
-    """Return the content of the file, and what it cannot hold.
-
-    Parameters
-    ----------
-    designs : a line, or the legs of a net
+def write_moordyn(exported: ExportedDesign) -> Exported:
+    """Write a line, or the legs of a net, with the current in a file beside the input.
 
     Raises
     ------
@@ -134,24 +132,27 @@ def moordyn_file(*designs: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     NoEquilibrium
         There is none: its points have no places.
     """
-    first = designs[0]
+    lines = exported.legs
+    deepest = max(lines, key=lambda line: line.depth)
+    first = replace(lines[0], name=exported.name, depth=deepest.depth)
     if first.tow is not None:
         raise UsageError("a tow has no anchor; MoorDyn is given moorings alone")
     system = _System(first.mean_density, first.gravity)
     lost = ["rigid pieces in a row: each row is one stiff length"]
-    for design in designs:
+    for design in lines:
         _lay_line(system, design)
     if any(first.wind):
         lost.append("wind")
-    if any(design.afloat for design in designs):
+    if any(design.afloat for design in lines):
         lost.append(
             "the hull of the float: the upper end is held where it is; its point keeps the float's "
             "mass, volume and drag as it floats here"
         )
     else:
         lost.append(AS_A_POINT)
-    losses = first.losses([*lost, *(each for design in designs for each in design.omitted)])
-    return _text(first, system, losses).encode(), losses
+    losses = first.losses([*lost, *(each for design in lines for each in design.omitted)])
+    text = _text(first, system, losses)
+    return Exported(text.encode(), losses, {_CURRENTS: _current_profile(deepest)})
 
 
 def _lay_line(system: _System, design: ExportedLine) -> None:
@@ -255,7 +256,7 @@ def _word(text: str) -> str:
 
 def _text(design: ExportedLine, system: _System, lost: tuple[str, ...]) -> str:
     points, rows = system.rows()
-    title = f"{design.name}, by CALM; the current stands in {CURRENTS}; lost:"
+    title = f"{design.name}, by CALM; the current stands in {_CURRENTS}; lost:"
     options = (
         ("0", "writeLog"), ("0.1", "CFL"), ("RK2", "tScheme"), ("3.0e5", "kBot"),
         ("3.0e4", "cBot"), (f"{system.density:.9g}", "rho"), (f"{design.gravity:.9g}", "g"),
@@ -286,7 +287,7 @@ def _text(design: ExportedLine, system: _System, lost: tuple[str, ...]) -> str:
     return "\n".join(lines)
 
 
-def current_profile(design: ExportedLine) -> bytes:
+def _current_profile(design: ExportedLine) -> bytes:
     """Return the current for that program: heights from below the seabed to above the water."""
     rows = [[0.0 - row[0], *row[1:4]] for row in reversed(design.levels)]
     rows = [[rows[0][0] - 10.0, *rows[0][1:]], *rows, [10.0, *rows[-1][1:]]]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from calm.errors import InputError, Problem, one_line
-from calm.exchange.cable_source import SourceLine, Token, tokens_of
+from calm.exchange.cbl.words import SourceLine, Token, tokens_of
 
 Formula: TypeAlias = Callable[[Mapping[str, float]], float]
 """A value, computed from the values of the names it depends on."""
