@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import prod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -272,15 +272,15 @@ class Batch:
     @cached_property
     def _starts(self) -> Floats:
         """From where every profile of a line is sought."""
-        assert isinstance(self.mooring, Mooring)
-        line, none = self.mooring.line, np.zeros((0, 1))
+        mooring = cast("Mooring", self.mooring)
+        line, none = mooring.line, np.zeros((0, 1))
         rows = Results(
             np.zeros((0, len(OF_PIECE), len(line.length))),
             np.zeros((0, len(OF_CLAMP), len(line.clamp_piece))),
             np.zeros((0, len(OF_ENDS))),
         )
         current = np.zeros((1, 1)), none, none, none
-        return self._march(self.mooring, current, rows, np.zeros(0, np.int64), MANY_ROOM, None)
+        return self._march(mooring, current, rows, np.zeros(0, np.int64), MANY_ROOM, None)
 
     def _solve_rows(
         self,

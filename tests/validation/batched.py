@@ -112,10 +112,5 @@ def _solved(batch: Batch, water: Water, shares: tuple[float, ...]) -> tuple[Resu
     )
     endings = np.zeros(count, np.int64)
     mooring: Any = batch.mooring
-    for block in (slice(0, 0), slice(0, count)):  # the first makes its starts
-        few = Results(*(array[block] for array in rows))
-        parts = [np.ascontiguousarray(part[block]) for part in current]
-        batch._solve_rows(
-            mooring, (water.level[None].copy(), *parts), few, endings[block], MANY_ROOM
-        )
+    batch._solve_rows(mooring, (water.level[None].copy(), *current), rows, endings, MANY_ROOM)
     return rows, endings
