@@ -97,6 +97,7 @@ def _batch(line: Line, water: Water, settings: Settings) -> Batch:
     may_lie = SimpleNamespace(component=SimpleNamespace(kind="chain"))
     file = SimpleNamespace(pieces=[may_lie] * (len(line.length) + 1))
     mooring: Any = SimpleNamespace(line=line, water=water, settings=settings, file=file)
+    mooring.moored = mooring
     batch = Batch(mooring)
     vars(batch)["water"] = water.still()
     return batch
@@ -112,10 +113,5 @@ def _solved(batch: Batch, water: Water, shares: tuple[float, ...]) -> tuple[Resu
     )
     endings = np.zeros(count, np.int64)
     mooring: Any = batch.mooring
-    for block in (slice(0, 0), slice(0, count)):  # the first makes its starts
-        few = Results(*(array[block] for array in rows))
-        parts = [np.ascontiguousarray(part[block]) for part in current]
-        batch._solve_rows(
-            mooring, (water.level[None].copy(), *parts), few, endings[block], MANY_ROOM
-        )
+    batch._solve_rows(mooring, (water.level[None].copy(), *current), rows, endings, MANY_ROOM)
     return rows, endings
