@@ -130,16 +130,29 @@ def read_text(path: Path, *, largest: int = LARGEST_FILE) -> str:
 
 def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
     """Return the bytes of a small regular file, or raise InputError; nothing else is opened."""
-    try:
-        if path.is_dir():
-            raise refused(path, "is a folder; a file is needed")
-        if not path.is_file():
-            raise refused(path, "is not a regular file" if path.exists() else "no such file")
+    with _regular(path):
         if path.stat().st_size > largest:
             megabytes = path.stat().st_size / 1e6
             message = f"is {megabytes:.1f} MB; more than {largest / 1e6:g} MB is not read"
             raise refused(path, message)
         return path.read_bytes()
+
+
+def read_head(path: Path, most: int) -> bytes:
+    """Return the first bytes of a regular file, or raise InputError; nothing else is opened."""
+    with _regular(path), path.open("rb") as file:
+        return file.read(most)
+
+
+@contextlib.contextmanager
+def _regular(path: Path) -> Iterator[None]:
+    """Refuse what is no regular file, and a file that the system does not give."""
+    try:
+        if path.is_dir():
+            raise refused(path, "is a folder; a file is needed")
+        if not path.is_file():
+            raise refused(path, "is not a regular file" if path.exists() else "no such file")
+        yield
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise refused(path, f"cannot be read: {reason}") from None

@@ -158,6 +158,8 @@ def _record_of(target: Path) -> Path:
 
 
 def _tell(imported: Imported, target: Path, record: Path | None) -> None:
+    if imported.understood:
+        narrate(f"{imported.file}: read: {imported.understood}")
     for remark in imported.guessed:
         narrate(f"{imported.file}: guessed: {remark}")
     for remark in imported.dropped:
@@ -175,6 +177,7 @@ def _document(imported: Imported, target: Path) -> dict[str, Any]:
         "format": imported.format,
         "output": str(target),
         "record": None if imported.record is None else str(_record_of(target)),
+        "understood": imported.understood,
         "guessed": [vars(each) for each in imported.guessed],
         "dropped": [vars(each) for each in imported.dropped],
         "matched": [vars(each) for each in imported.matched],

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from math import inf
 
 from pydantic import ValidationError
 
@@ -15,6 +16,7 @@ _TOLERANCE = 0.05
 """Share by which size, net force and drag may differ from those of a catalogue entry."""
 
 _COMMON_WORDS = 0.5  # share of the words of a name that an entry must have, two at least
+_GRADE = re.compile(r"\b(?:g|gr|grade)[ -]?(\d{1,3})\b", re.I)
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,9 @@ def match_catalogue_entries(design: model.ImportedDesign) -> tuple[CatalogueMatc
     """Use catalogue entries for the components whose name and figures agree with one.
 
     A component is of the same kind, shares half the words of its name, and is within `_TOLERANCE`
-    in diameter, length, net force, normal drag and stiffness, as far as both give them.
+    in diameter, length, net force, normal drag, stiffness and loads, as far as both give them.
+    Where both names tell a grade, it is the same one. Of several entries that agree, the one whose
+    id or name is that of the component is taken, or else the one that shares most words.
     """
     catalogue = Catalogue.load()
     entries = {id: entry for id, entry in catalogue.all().items() if isinstance(entry, Component)}
@@ -38,10 +42,11 @@ def match_catalogue_entries(design: model.ImportedDesign) -> tuple[CatalogueMatc
         model = _model(component)
         if model is None or component.entry:
             continue
-        for id, entry in entries.items():
-            if _alike(component.name, f"{id} {entry.name or ''}") and _agree(
-                model, entry, sizeless="drag_area" in component.guesses
-            ):
+        ranks = {
+            id: _likeness(component.name, id, entry.name or "") for id, entry in entries.items()
+        }
+        for id in sorted((id for id, rank in ranks.items() if rank), key=lambda id: -ranks[id]):
+            if _agree(model, entries[id], sizeless="drag_area" in component.guesses):
                 component.entry = id
                 matched[id + component.name] = CatalogueMatch(component.name, id)
                 break
@@ -60,12 +65,21 @@ def _model(component: model.ImportedComponent) -> Component | None:
         return None
 
 
-def _alike(name: str, other: str) -> bool:
+def _likeness(name: str, id: str, other: str) -> float:
+    """Return how alike a name and an entry are called: inf if they are called the same, else the
+    share of all their words that both have; 0 where they may not be the same.
+    """
+    if name.casefold() in (id, other.casefold()):
+        return inf
+    grades = [set(_GRADE.findall(text)) for text in (name, f"{id} {other}")]
+    if all(grades) and not grades[0] & grades[1]:
+        return 0.0
     words, others = (
-        set(re.findall(r"[a-z]+|\d+(?:[./]\d+)?", text.lower())) for text in (name, other)
+        set(re.findall(r"[a-z]+|\d+(?:[./]\d+)?", text.lower())) for text in (name, f"{id} {other}")
     )
     shared = words & others
-    return len(shared) >= 2 and len(shared) >= _COMMON_WORDS * len(words)
+    alike = len(shared) >= 2 and len(shared) >= _COMMON_WORDS * len(words)
+    return len(shared) / len(words | others) if alike else 0.0
 
 
 def _agree(one: Component, other: Component, *, sizeless: bool) -> bool:
@@ -77,8 +91,8 @@ def _agree(one: Component, other: Component, *, sizeless: bool) -> bool:
     elif one.kind != other.kind or isinstance(one, Anchor):
         return False
     else:
-        sizes = ("diameter", "length", "stiffness")
-        pairs += [(getattr(one, key, None), getattr(other, key, None)) for key in sizes]
+        keys = ("diameter", "length", "stiffness", "breaking_load", "working_load")
+        pairs += [(getattr(one, key, None), getattr(other, key, None)) for key in keys]
         # at 1 m/s across it [N], of a cable or chain per metre
         pairs.append((drag_of(one)[0], drag_of(other)[0]))
     given = [(a, b) for a, b in pairs if a is not None and b is not None]

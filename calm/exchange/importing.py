@@ -17,9 +17,11 @@ from calm.exchange.catalogue_matching import CatalogueMatch, match_catalogue_ent
 from calm.exchange.current_record import CurrentRecord
 from calm.exchange.design_writer import mooring_text
 from calm.exchange.registry import FileFormat, file_format, file_formats
+from calm.exchange.surface_floats import sink_what_stays_under_water
 from calm.files import read_mooring
 from calm.files.editing.writing import WritingStyle
 from calm.files.yaml_document import read_document
+from calm.whole_file import read_head
 
 _HEAD = 70_000  # bytes from which a format is recognised
 
@@ -36,6 +38,7 @@ class Imported:
     guessed, dropped : what was guessed, and what was left out
     matched : components that the catalogue has
     record : currents at several times, where the file has them
+    understood : how the file was read; empty where its format leaves no choice
     """
 
     file: Path
@@ -45,6 +48,7 @@ class Imported:
     dropped: tuple[model.Remark, ...]
     matched: tuple[CatalogueMatch, ...]
     record: CurrentRecord | None
+    understood: str = ""
 
 
 def import_file(
@@ -94,13 +98,14 @@ def import_file(
     elif design.water is None and design.tow is None:
         message = "has no environment; give one: --environment FILE (depth, current, density)"
         raise refused(path, message)
+    sink_what_stays_under_water(design, output)
     matched = match_catalogue_entries(design) if match_catalogue else ()
     secure_anchors(design, output)
     text, guessed = mooring_text(design, path.name)
     _check(path, output, text)
     return Imported(
         path, chosen.name, text, tuple(guessed + design.guessed),
-        tuple(design.dropped), matched, design.record,
+        tuple(design.dropped), matched, design.record, design.understood,
     )  # fmt: skip
 
 
@@ -111,11 +116,7 @@ def _format_of(path: Path, name: str | None, *, listed: bool = False) -> FileFor
     """
     if name is not None:
         return _format_named(name)
-    try:
-        with path.open("rb") as file:
-            content = file.read(_HEAD)
-    except OSError as error:
-        raise refused(path, f"cannot be read: {error.strerror}") from None
+    content = read_head(path, _HEAD)
     for each in (formats := _readable()):
         if each.detect is not None and each.detect(content):
             return each

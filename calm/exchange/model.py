@@ -219,6 +219,9 @@ class ImportedDesign:
     notes : what else the heading of the mooring file says
     heading : further keys of the mooring file, as it has them
     in_kilograms : whether the file counts forces in kilograms-force
+    sunken : the uppermost component where the line, once solved, leaves it under water; None where
+        there is no question
+    understood : how the file was read, for people; empty where its format leaves no choice
     """
 
     program: str
@@ -236,6 +239,8 @@ class ImportedDesign:
     heading: dict[str, str] = field(default_factory=dict)
     in_kilograms: bool = False
     legs: list[ImportedLeg] = field(default_factory=list)
+    sunken: ImportedComponent | None = None
+    understood: str = ""
 
     def lay(self, items: list[ImportedPiece], top: str, bottom: str) -> None:
         """Add a leg, from its upper end, to those of a net."""

@@ -77,6 +77,7 @@ def _lay_mooring(design: model.ImportedDesign, elements: list[MddElement], path:
     design.items.append(model.ImportedPiece(anchor_of(last)))
     depth = design.water.depth if design.water is not None else None
     if depth is None or _STRETCHED * sum(item.extent for item in design.items) >= depth:
+        design.sunken = design.items[0].component
         design.items[0] = piece_of(replace(elements[0], mass=None))
         rides_by_buoyancy(design.items[0].component)
 

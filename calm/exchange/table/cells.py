@@ -1,7 +1,9 @@
 """Read the cells of a list: its sheets, its numbers as people write them, and their units."""
 
+import html
 import io
 import re
+import zipfile
 from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -62,10 +64,12 @@ _NUMERAL = re.compile(
     r"(?P<power>[eE][-+]?\d{1,3}(?!\d))?"
 )
 _RATIO = re.compile(r"(?P<sign>[-+−]?)(?:(?P<whole>\d+)[ -])?(?P<over>\d+)/(?P<under>[1-9]\d*)")
+_MULTIPLIED = re.compile(r"\s*[x×*]\s*\d", re.I)
 _BEFORE = re.compile(r"^(?:[~≈≃<>øØ±\s]|ca\.|env\.|etwa\b|approx\.?|aprox\.?)+")
 _SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")  # xlsx, xls
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _LARGEST = 20_000_000
+_SHOWN = 5  # hidden rows that are named
 _MOST_ROWS, _MOST_COLUMNS = 20_000, 500
 _NOTHING = {
     "", "-", "–", "—", "/", "*", "**", "n/a", "na", "nan", "none", "?", "nil", "x", "sans", "null",
@@ -206,6 +210,9 @@ def number(cell: str, decimal: str = "") -> CellNumber:
     rest = (
         bare[found.start("digits") + len(digits) :] if not found["power"] else bare[found.end() :]
     )
+    if _MULTIPLIED.match(rest):
+        wrong = f"`{cell}` is a count and a figure; give the count a column of its own"
+        return CellNumber(None, wrong=wrong)
     if isinstance(cell, WorkbookNumber):
         decimal = "."
     sure, doubtful = _signs(digits)
@@ -290,19 +297,29 @@ def is_table(content: bytes) -> bool:
     return b"\0" not in content and cut
 
 
-def read_sheets(path: Path) -> dict[str, SheetRows]:
+class ReadSheets(NamedTuple):
+    """Hold the rows of every sheet by its name, and what of a sheet its owner has hidden."""
+
+    rows: dict[str, SheetRows]
+    hidden: dict[str, str]
+
+
+def read_sheets(path: Path) -> ReadSheets:
     """Return the rows of every sheet by its name; lines that begin with # are comments.
 
     A sheet without a cell is left out; text has one sheet, without a name. InputError: it cannot be
     read.
     """
     content = read_content(path, largest=_LARGEST)
-    workbook = content.startswith(_SPREADSHEETS)
-    sheets = _workbook(path, content) if workbook else {"": cells_in(_text(path, content))}
+    if content.startswith(_SPREADSHEETS):
+        sheets, hidden = _workbook(path, content)
+    else:
+        sheets, hidden = {"": cells_in(_text(path, content))}, {}
     for rows in sheets.values():
         if len(rows) > _MOST_ROWS or any(len(row) > _MOST_COLUMNS for row in rows):
             raise refused(path, f"has more than {_MOST_ROWS} rows or {_MOST_COLUMNS} columns")
-    return {name: cleaned for name, rows in sheets.items() if (cleaned := _cleaned(rows))}
+    kept = {name: cleaned for name, rows in sheets.items() if (cleaned := _cleaned(rows))}
+    return ReadSheets(kept, hidden)
 
 
 def _cleaned(rows: SheetRows) -> SheetRows:
@@ -329,7 +346,7 @@ def _text(path: Path, content: bytes) -> str:
         return content.decode("cp1252", "replace")
 
 
-def _workbook(path: Path, content: bytes) -> dict[str, SheetRows]:
+def _workbook(path: Path, content: bytes) -> tuple[dict[str, SheetRows], dict[str, str]]:
     if find_spec("python_calamine") is None:
         raise refused(
             path, "is a workbook; install `calm-mooring[sheets]`, or save the sheet as CSV"
@@ -340,14 +357,53 @@ def _workbook(path: Path, content: bytes) -> dict[str, SheetRows]:
         raise refused(path, f"is a damaged workbook ({error})") from None
 
 
-def _sheets(content: bytes) -> dict[str, SheetRows]:
+def _sheets(content: bytes) -> tuple[dict[str, SheetRows], dict[str, str]]:
     import python_calamine
 
     book = python_calamine.load_workbook(io.BytesIO(content))
-    return {
+    rows = {
         name: [[_shown(cell) for cell in row] for row in book.get_sheet_by_name(name).to_python()]
         for name in book.sheet_names
     }
+    visible = python_calamine.SheetVisibleEnum.Visible
+    whole = {each.name: "the sheet" for each in book.sheets_metadata if each.visible != visible}
+    return rows, _hidden_within(content) | whole
+
+
+def _hidden_within(content: bytes) -> dict[str, str]:
+    """Return the rows and columns that are hidden, by the name of their sheet, of an .xlsx."""
+    if not zipfile.is_zipfile(io.BytesIO(content)):
+        return {}
+    hidden = {}
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        parts = set(archive.namelist())
+        if not {"xl/workbook.xml", "xl/_rels/workbook.xml.rels"} <= parts:
+            return {}
+        relations = _tags(archive.read("xl/_rels/workbook.xml.rels"), "Relationship")
+        targets = {each.get("Id"): each.get("Target", "").lstrip("/") for each in relations}
+        for sheet in _tags(archive.read("xl/workbook.xml"), "sheet"):
+            target = targets.get(sheet.get("r:id"), "")
+            part = target if target in parts else f"xl/{target}"
+            if part not in parts:
+                continue
+            text = archive.read(part)
+            rows = [each.get("r", "?") for each in _tags(text, "row") if _is_hidden(each)]
+            columns = sum(_is_hidden(each) for each in _tags(text, "col"))
+            said = [f"row{'s' * (len(rows) > 1)} {', '.join(rows[:_SHOWN])}"] if rows else []
+            said += ["columns"] if columns else []
+            if said:
+                hidden[html.unescape(sheet.get("name", ""))] = " and ".join(said)
+    return hidden
+
+
+def _tags(text: bytes, name: str) -> list[dict[str, str]]:
+    """Return the attributes of every element of a name in an XML file."""
+    found = re.findall(rf"<(?:\w+:)?{name}\s([^<>]*)>", text.decode("utf-8", "replace"))
+    return [dict(re.findall(r'([\w:]+)="([^"]*)"', each)) for each in found]
+
+
+def _is_hidden(attributes: dict[str, str]) -> bool:
+    return attributes.get("hidden") in ("1", "true")
 
 
 def _shown(cell: object) -> str:

@@ -6,6 +6,7 @@ from calm.exchange import model
 from calm.exchange.mdd.elements import MODULI
 from calm.exchange.part_names import is_called, role_of, size_in
 from calm.exchange.table.rows import ROLES, ListRow
+from calm.files.definition import STANDARD_GRAVITY
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
@@ -62,9 +63,27 @@ def _rigid(row: ListRow) -> _Definition:
     else:
         kept = {"diameter": across, "length": length or across, **_coefficient(row, kind)}
     kept["buoyancy"] = lift
+    _check_lift(row, kind, across, length)
     kept |= _further(row, lift, "breaking_load")
     kept["role"] = row.role if row.role in ROLES else role_of(row.name, lift)
     return kind, kept
+
+
+def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
+    """Refuse or report a lift that is more than the water that a piece of this size displaces."""
+    if kind not in ("sphere", "cylinder"):
+        return
+    volume = math.pi * across**2 * max(across / 6.0, length / 4.0)
+    lift, most = row.figure("buoyancy"), volume * REFERENCE_DENSITY * STANDARD_GRAVITY
+    if lift <= most:
+        return
+    kilograms = (
+        f"lifts {lift / KILOGRAM_FORCE:.4g} kg, its size displaces {most / KILOGRAM_FORCE:.4g} kg"
+    )
+    if row.count > 1 and lift <= row.count * most:
+        row.refuse(f"one {kilograms}; is that of all {row.count}? Head the column `total`")
+    else:
+        row.guesses["buoyancy"] = f"as in the list: it {kilograms}"
 
 
 def _shape(row: ListRow) -> tuple[str, float]:

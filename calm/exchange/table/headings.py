@@ -58,7 +58,7 @@ _PATTERNS: tuple[tuple[str, str], ...] = (
     ("label", r"\b(label|etiquette|etiqueta|serial|s/?n|repere)\b|seriennummer|serie\b"),
 )
 _NAMES = (
-    r"name|^nom\b|element|description|designation|component|composant|materiel|bezeichnung"
+    r"name|^navn\b|^nom\b|element|description|designation|component|composant|materiel|bezeichnung"
     r"|benennung|beschreibung|descripcion|komponente?|bauteil",
     r"^(item|article|artikel|teil)\b|equip|instrument|piece|pieza|part|gerat",
 )

@@ -136,7 +136,7 @@ def _entry(text: str, group: str, end: int) -> ListRow | None:
 
 def _of_sheets(path: Path) -> Iterable[ListRow]:
     found = False
-    for title, cells in read_sheets(path).items():
+    for title, cells in read_sheets(path).rows.items():
         headings = headings_of(cells, {})
         if headings is None:
             continue

@@ -18,7 +18,14 @@ from calm.exchange.table.cells import SheetRows, number, read_sheets
 from calm.exchange.table.components import component_of
 from calm.exchange.table.headings import ListHeadings, check_given, headings_of
 from calm.exchange.table.library import Library, complete_rows, is_library, key_of, read_library
-from calm.exchange.table.rows import TOTAL, ListRow, count_lines, rows_of, weights_as_buoyancy
+from calm.exchange.table.rows import (
+    TOTAL,
+    ListRow,
+    count_lines,
+    growing_lengths,
+    rows_of,
+    weights_as_buoyancy,
+)
 from calm.files.components import FLEXIBLE_KINDS
 
 _NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
@@ -32,7 +39,7 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     InputError: no headings are recognised, a figure is missing, or no end is an anchor.
     """
     columns, elements = options.columns, options.elements
-    sheets = read_sheets(path)
+    sheets, hidden = read_sheets(path)
     check_given(sheets, columns, path)
     if elements is None and not columns and is_library(sheets):
         raise refused(
@@ -43,13 +50,12 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     design = model.ImportedDesign("a list", path.stem, [], None, notes=[_NOTE])
     design.water = _water(sheets, design, path)
     problems: list[str] = []
-    ordered = sorted(sheets.values(), key=len, reverse=True)
-    headed = ((cells, headings_of(cells, columns)) for cells in ordered)
-    cells, headings = next((each for each in headed if each[1] is not None), ([], None))
     said = list[model.Remark]()
-    if headings is not None:
+    headings = None
+    if chosen := _headed(sheets, hidden, columns, said):
+        sheet, cells, headings = chosen
         problems += headings.problems
-        said = _unit_remarks(headings)
+        said += _unit_remarks(headings)
         weighed = {"buoyancy", "weight"} & headings.columns.keys()
         rows = rows_of(
             cells, headings, problems, design.dropped, said,
@@ -58,6 +64,8 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
         weights_as_buoyancy(rows, design.guessed)
         if headings.others:
             design.dropped.append(model.Remark("columns", ", ".join(headings.others)))
+        problems += growing_lengths(rows)
+        design.understood = _understood(sheet, headings, rows)
     else:
         rows = _names(sheets, design, path, library)
     if elements is not None:
@@ -74,6 +82,44 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
         headings.columns[key].by_mass for key in ("buoyancy", "weight") if key in headings.columns
     )
     return design
+
+
+def _headed(
+    sheets: Mapping[str, SheetRows], hidden: Mapping[str, str], columns: Mapping[str, str],
+    said: list[model.Remark],
+) -> tuple[str, SheetRows, ListHeadings] | None:  # fmt: skip
+    """Return the longest sheet with headings, of those to be seen if there is one: its name, cells
+    and headings. What others there are, and what is hidden in it, is `said`.
+    """
+    found = [
+        (name, cells, headings)
+        for name, cells in sheets.items()
+        if (headings := headings_of(cells, columns)) is not None
+    ]
+    if not found:
+        return None
+    found.sort(key=lambda each: (hidden.get(each[0]) == "the sheet", -len(each[1])))
+    (taken, *_), *others = found
+    if others:
+        what = f"taken of {len(found)} with headings; not read: "
+        what += ", ".join(f"`{name}`" for name, *_ in others)
+        said.append(model.Remark(f"sheet `{taken}`", what))
+    if taken in hidden:
+        said.append(model.Remark(f"sheet `{taken}`", f"{hidden[taken]} hidden, read all the same"))
+    return found[0]
+
+
+def _understood(sheet: str, headings: ListHeadings, rows: list[ListRow]) -> str:
+    """Return how many pieces were read, how long they are together, and from which columns."""
+    pieces = [row for row in rows if "at" not in row.figures]
+    length = sum(row.count * row.figure("length") for row in pieces)
+    columns = ", ".join(
+        f"{what.replace('_', ' ')} = `{column.heading}`"
+        for what, column in headings.columns.items()
+        if column.heading
+    )
+    of = f" of sheet `{sheet}`" if sheet else ""
+    return f"{sum(row.count for row in rows)} pieces{of}, {length:.5g} m long together; {columns}"
 
 
 def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:

@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from calm.exchange import model
 from calm.exchange.part_names import is_called, is_long, size_in
@@ -15,6 +16,7 @@ TOTAL = re.compile(
 )
 _DITTO = re.compile(r"^(ditt?o|do|idem|id|dto|[\"'\u2033\u201d\u201e\u3003]+)\.?$", re.I)
 _COUNTED = re.compile(r"^\(?([2-9]|[1-9]\d)\s?[x\u00d7]\s?(?=\S)", re.I)  # 10x glass, 6 x 17 in
+_LENGTHS = re.compile(r"^\(?\d+\s?[x\u00d7]\s?\d+([.,]\d+)?\s?m\b", re.I)  # 2 x 200 m wire
 _ANCHOR_KINDS = re.compile(r"\banchors?\b|\bancre|\blest\b", re.I)
 _ENOUGH = {"length", "buoyancy", "weight"}  # one of them makes a piece
 _MOST = 1000  # of one row's count
@@ -23,6 +25,10 @@ _FULL = 5.0  # times its diameter: a metre of line shows no larger area
 _METRES = re.compile(r"/\s*(\d+)")  # kg/100 m
 _SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")  # along a line
 ROLES = ("float", "instrument", "release", "connector")
+_TALLEST = 20.0  # m of a float, release or anchor
+_FEWEST = 4  # pieces of which it is no chance that each is longer than the one before
+_GROWN = 3.0  # m: longer than what ends a line is likely to be
+_SHARED = ("length", "buoyancy", "weight", "mass", "area", "drag_area", "tangential_area")
 _FITTING = 1.0  # m: a shorter link or shackle of a rope is none
 
 
@@ -128,9 +134,10 @@ def rows_of(
             row.line = True
             guessed.append(model.Remark(row.where, "taken as a rope, since it is long and thin"))
         several = _COUNTED.match(name)
-        if several and row.count == 1 and not row.is_line:
+        if several and row.count == 1 and not (row.is_line and not _LENGTHS.match(name)):
             said = f"read as one piece with the figures of its row, not as {several[1]} of them"
             guessed.append(model.Remark(row.where, said))
+        _divide(row, known, guessed)
         rows.append(row)
     return rows
 
@@ -176,6 +183,46 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
         row.refuse(f"{count:.12g} of them")
         row.count = 1
     return row
+
+
+def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Remark]) -> None:
+    """Divide by the count of a row what a heading says to be the total."""
+    totals = [what for what in _SHARED if what in row.figures and what in known]
+    totals = [what for what in totals if known[what].whole and what not in row.metre]
+    if row.count == 1 or not totals:
+        return
+    for what in totals:
+        row.figures[what] /= row.count
+    headings = ", ".join(f"`{known[what].heading}`" for what in totals)
+    guessed.append(model.Remark(row.where, f"{headings} divided by the count, {row.count}"))
+
+
+def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
+    """Return what is wrong with lengths that are not those of pieces.
+
+    Lengths that grow from piece to piece, to that of an end of the line, are counted from the
+    other end.
+    """
+    pieces = [row for row in rows if "at" not in row.figures and "length" in row.figures]
+    lengths = [row.figures["length"] for row in pieces]
+    if len(lengths) >= _FEWEST and max(lengths) >= _GROWN:
+        longest = pieces[lengths.index(max(lengths))]
+        grow = any(
+            all(a < b for a, b in pairwise(each)) for each in (lengths, lengths[::-1])
+        )  # fmt: skip
+        if grow and not longest.is_line:
+            return [
+                f"the lengths grow from one piece to the next, {min(lengths):g} m to "
+                f"{max(lengths):g} m, {longest.name}: they are counted from an end of the line; "
+                "give each piece its own length"
+            ]
+    return [
+        f"{row.where}: is {row.figures['length']:g} m long; which unit is that in?"
+        for row in pieces
+        if row.figures["length"] > _TALLEST
+        and not row.is_line
+        and (row.is_anchor or row.role in ("float", "release") or is_called(row.name, "release"))
+    ]
 
 
 def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) -> None:

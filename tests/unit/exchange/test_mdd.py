@@ -421,6 +421,17 @@ def test_a_float_without_a_height_rides_by_its_buoyancy(tmp_path):
     assert high[1] == pytest.approx(300 / 1025, rel=1e-5)
 
 
+@pytest.mark.parametrize(("wire", "kind"), [(98.0, "subsurface"), (130.0, "surface")])
+def test_a_float_is_at_the_surface_where_the_solved_line_reaches_it(wire, kind, tmp_path):
+    """The first is long enough if it stretched by a fifth, but wire does not."""
+    height = np.array(HEIGHT)
+    height[0, 2] = wire
+    made = imported(tmp_path, mooring(H=height))
+    result = load(tmp_path / "design.yaml", text=made.text).solve()
+    assert result.type == kind
+    assert ("hull" in made.text) == (kind == "surface")
+
+
 NASTY = ['"]\n  - {use: x}', "a: b # c", "- [1, 2]", "{use: x}", "\x1b[31mred", "null", "é↑ 🐟"]
 
 

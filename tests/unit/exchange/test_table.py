@@ -1,6 +1,7 @@
 """Lists in CSV and workbooks: headings in two languages, both directions, what people write."""
 
 import io
+import os
 import zipfile
 
 import pytest
@@ -10,6 +11,7 @@ from calm.errors import InputError
 from calm.exchange.importing import import_file
 from calm.exchange.model import ImportOptions
 from calm.exchange.table.cells import number
+from calm.files import Catalogue
 
 SITE = """\
 environment:
@@ -607,3 +609,122 @@ def test_columns_of_numbers_name_nothing(read, tmp_path):
         assert [piece.component.name for piece in pieces(read(text), tmp_path)][:2] == [
             "Ball 40 in", "1/2 in shackle",
         ]  # fmt: skip
+
+
+SHORT = """\
+Name,Qty,Length (m),Diameter (mm),Weight in water (kg)
+Float,1,1,1000,-350
+Wire rope,1,100,8,16
+Glass ball,12,0.43,430,-25
+Release,1,0.9,130,25
+Anchor,1,0.8,900,900
+"""
+
+
+@pytest.mark.parametrize("upward", [False, True])
+def test_lengths_that_are_counted_from_an_end_are_refused(upward, read):
+    heading, *rows = SHORT.splitlines()
+    for i, length in enumerate(("1", "101", "101.43", "102.4", "103.2")):
+        words = rows[i].split(",")
+        rows[i] = ",".join([*words[:2], length, *words[3:]])
+    rows = rows[::-1] if upward else rows
+    with pytest.raises(InputError, match="counted from an end of the line"):
+        read("\n".join([heading, *rows]))
+
+
+def test_a_release_of_400_m_is_asked_for_its_unit(read):
+    with pytest.raises(InputError, match="Release: is 900 m long; which unit"):
+        read(SHORT.replace("1,0.9,", "1,900,"))
+
+
+def test_totals_are_divided_by_their_count(read, tmp_path):
+    told = SHORT.replace("Weight in", "Total weight in").replace("-25", "-300")
+    made = read(told)
+    assert pieces(made, tmp_path) == pieces(read(SHORT), tmp_path)
+    assert any("divided by the count, 12" in str(each) for each in made.guessed)
+
+
+def test_a_weight_of_all_that_is_given_as_of_one_is_refused(read):
+    with pytest.raises(InputError, match=r"Glass ball: one lifts 300 kg.*is that of all 12"):
+        read(SHORT.replace("-25", "-300"))
+
+
+def test_a_float_that_lifts_more_than_it_displaces_is_reported(read):
+    made = read(SHORT.replace("-350", "-900"))
+    assert any("lifts 900 kg, its size displaces 80" in str(each) for each in made.guessed)
+
+
+def test_a_count_times_a_length(read):
+    with pytest.raises(InputError, match="`2 x 200 m` is a count and a figure"):
+        read(SHORT.replace("1,100,8", "1,2 x 200 m,8"))
+    made = read(SHORT.replace("Wire rope", "2 x 50 m wire rope"))
+    assert any("not as 2 of them" in str(each) for each in made.guessed)
+
+
+def test_norwegian_tables_with_headings_and_parts(read, tmp_path):
+    text = """\
+Navn\tLengde [m]\tDiameter [mm]\tVekt i vann [kg]
+Bøye\t1\t1000\t-350
+Stålvaier\t100\t8\t16
+Utløser\t0,9\t130\t25
+Anker\t0,8\t900\t900
+"""
+    made = read(text.encode("cp1252"))
+    assert len(pieces(made, tmp_path)) == 4
+    assert "4 pieces, 102.7 m long together" in made.understood
+    assert "length = `Lengde [m]`" in made.understood
+
+
+def test_other_sheets_and_what_is_hidden_are_reported(read):
+    openpyxl = pytest.importorskip("openpyxl", reason="writes the workbook")
+    pytest.importorskip("python_calamine", reason="needs the extra `sheets`")
+    book = openpyxl.Workbook()
+    old, new = book.active, book.create_sheet("rev C & D")
+    for row in SHORT.splitlines():
+        for sheet in (old, new):
+            sheet.append([float(c) if c.strip("-").isdigit() else c for c in row.split(",")])
+    old.append(["Shackle", 1, 0.1, 20, 0.3])
+    old.title, old.sheet_state = "old", "hidden"
+    new.row_dimensions[3].hidden = True
+    content = io.BytesIO()
+    book.save(content)
+    made = read(content.getvalue(), "list.xlsx")
+    said = [str(each) for each in made.guessed]
+    assert "sheet `rev C & D`: taken of 2 with headings; not read: `old`" in said
+    assert "sheet `rev C & D`: row 3 hidden, read all the same" in said
+    assert "16 pieces of sheet `rev C & D`" in made.understood
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+def test_a_pipe_is_refused_at_once(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(InputError, match="not a regular file"):
+        import_file(tmp_path / "pipe", tmp_path / "m.yaml")
+
+
+GRADED = """\
+Name,Length (m),Diameter (mm),Weight in water (kg),Breaking load (kN)
+Float,1,1000,-350,
+13 mm {} chain,5,13,{},{}
+Anchor,0.8,900,900,
+"""
+
+
+def test_a_chain_keeps_its_grade(tmp_path, site):
+    """Chain of grades 30 and 80 is alike but for its strength: 80 and 206 kN at 13 mm."""
+
+    def matched(*figures):
+        path = tmp_path / "list.csv"
+        path.write_text(GRADED.format(*figures))
+        made = import_file(path, tmp_path / "m.yaml", environment=site, match_catalogue=True)
+        return [each.entry for each in made.matched if "chain" in each.entry]
+
+    entries = Catalogue.load().all()
+    for grade, id in (("30", "chain-short-g30-13"), ("80", "chain-g80-13")):
+        chain = entries[id]
+        weight = -5 * chain.net_buoyancy / 9.80665
+        load = chain.breaking_load / 1e3
+        assert matched(f"grade {grade}", weight, load)[0] == id
+        other = "80" if grade == "30" else "30"
+        assert not any(f"g{grade}" in each for each in matched(f"G{other}", weight, ""))
+        assert not any(f"g{other}" in each for each in matched("alloy", weight, load))
