@@ -137,11 +137,16 @@ class QuantityError(ValueError):
         What is wrong, to be read after the offending text: "needs a unit".
     suggestion : str or None
         The text corrected, where a correction is known.
+    is_other : bool
+        Whether the text is of another dimension, so that its unit or its number may be wrong.
     """
 
-    def __init__(self, complaint: str, suggestion: str | None = None) -> None:
+    def __init__(
+        self, complaint: str, suggestion: str | None = None, *, is_other: bool = False
+    ) -> None:
         self.complaint = complaint
         self.suggestion = suggestion
+        self.is_other = is_other
         super().__init__(f"{complaint}: `{suggestion}`?" if suggestion else complaint)
 
 
@@ -187,6 +192,12 @@ def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
             if error.suggestion is None:
                 raise
             corrected = text.removesuffix(unit) + error.suggestion
+            if error.is_other and usual_unit not in (None, wanted.unit, error.suggestion):
+                # kilograms of what is usual in kN are kilograms-force, or a slip of the unit
+                usual = f"{text.removesuffix(unit)}{usual_unit}"
+                raise QuantityError(
+                    f"{error.complaint}; write `{corrected}` or `{usual}`"
+                ) from None
             raise QuantityError(error.complaint, corrected) from None
     elif number == 0 or not wanted.unit:
         value = number
@@ -252,6 +263,7 @@ def unit_factor(text: str, dimension: str) -> float:
             raise QuantityError(
                 f"is {other.noun}; {_described(wanted)} is needed",
                 twin if twin in wanted.units else None,
+                is_other=True,
             )
     words = re.findall(r"[A-Za-z_]+", unit)
     for word, (complaint, meant) in _MISTAKEN.items():
@@ -286,7 +298,7 @@ def _split(text: str, wanted: Dimension) -> tuple[float, str]:
     if comma:
         unit = text[comma.end() :]
         if len(comma[2]) == 3 and float(comma[1]) != 0:
-            choice = f"`{comma[1]}.{comma[2]}{unit}` or `{comma[1]}{comma[2]}{unit}`"
+            choice = f"`{comma[1]}{comma[2]}{unit}` or `{comma[1]}.{comma[2]}{unit}`"
             raise QuantityError(f"has a comma; write {choice}")
         raise QuantityError("has a decimal comma", f"{comma[1]}.{comma[2]}{unit}")
     number = _NUMBER.match(text)

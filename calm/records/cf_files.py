@@ -32,7 +32,7 @@ _FIRST, _LAST = "1678-01-01", "2262-01-01"
 _ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
 _ZONED = ("time_zone", "timezone", "tz", "time_reference")
 _SAID_IN = re.compile(r"(?i)long_name|title|summary|(time_)?(comments?|notes?|description)|history")
-_MOST_LISTED = 24
+_MOST_LISTED = 5
 _NORTH_NAMED = re.compile(
     r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
 )
@@ -53,6 +53,16 @@ _KINDS = {
 """What files begin with that hold currents, and are of a kind that is not read."""
 
 
+_SHELLS = {
+    rb"(?m)^\s*ODF_HEADER\b": "an ODF file of Fisheries and Oceans Canada; turn it into NetCDF "
+    "(`ocean-data-parser` does)",
+    rb"(?m)^\*IOS HEADER VERSION": "an IOS Shell file; turn it into NetCDF "
+    "(`ocean-data-parser` does)",
+}
+"""What stands in a line among the first of texts of a kind that is not read."""
+
+_SHELL = 400  # bytes in which it stands
+
 _ENGINES = {b"\x89HDF": "h5netcdf", **dict.fromkeys((b"CDF\x01", b"CDF\x02", b"CDF\x05"), "scipy")}
 _ZARR = ("zarr.json", ".zgroup", ".zmetadata")
 
@@ -71,10 +81,11 @@ def holds_arrays(path: Path) -> bool:
             raise refused(path, "is a folder, and not a zarr store; join its files into one first")
         return True
     with path.open("rb") as file:
-        signature = file.read(8)
-    for begin, kind in _KINDS.items():
-        if signature.startswith(begin):
-            raise refused(path, f"is {kind}; NetCDF, zarr or CSV is read")
+        head = file.read(_SHELL)
+    begun = [kind for begin, kind in _KINDS.items() if head.startswith(begin)]
+    named = [kind for mark, kind in _SHELLS.items() if re.search(mark, head)]
+    for kind in (*begun, *named):
+        raise refused(path, f"is {kind}; NetCDF, zarr or CSV is read")
     return bool(engine_of(path) or reader_of(path))
 
 
@@ -145,7 +156,8 @@ def engine_of(path: Path) -> str:
 def holdings(dataset: xr.Dataset) -> str:
     """Return the variables of a dataset with their dimensions, units and standard names."""
     listed = []
-    for name, variable in dataset.variables.items():
+    # what has most dimensions first: it may be what was meant
+    for name, variable in sorted(dataset.variables.items(), key=lambda each: -each[1].ndim):
         sizes = ", ".join(f"{dim} {size}" for dim, size in variable.sizes.items())
         words = [f"{name} ({sizes})" if sizes else str(name)]
         if "units" in variable.attrs:

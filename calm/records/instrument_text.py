@@ -219,12 +219,19 @@ def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats
     there = [i for i in range(first, len(lines)) if lines[i].strip()]
     rows, problems = [], []
     for i in there:
+        named = f"its head names {count} columns"
         try:
             rows.append([float(word) for word in lines[i].replace(",", " ").split()])
+            wrong = f"the row has {len(rows[-1])} numbers; {named}"
         except ValueError:
             rows.append([])
+            wrong = f"is no row of numbers; {named}"
         if len(rows[-1]) != count:
-            problems.append(Problem(str(path), i + 1, 1, f"is no row of {count} numbers"))
+            problems.append(Problem(str(path), i + 1, 1, wrong))
+    widths = {len(row) for row in rows}
+    if len(problems) == len(rows) > 1 and len(widths) == 1 and widths != {0}:
+        wrong = f"its head names {count} columns; every row has {widths.pop()} numbers"
+        raise refused(path, wrong, line=there[0] + 1)
     if problems or not rows:
         raise InputError(problems[:20] or [Problem(str(path), first, 1, "has no rows")])
     values = np.array(rows, np.float64)

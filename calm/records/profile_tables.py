@@ -16,7 +16,7 @@ from calm.quantities import bearing_of
 from calm.records.current_terms import DEEPEST, Terms, too_deep, too_fast
 from calm.records.delimited import is_gap, plain_numbers
 from calm.records.headings import column_unit, heading, magnetic_columns
-from calm.units import QuantityError, QuantityRange, unit_factor
+from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 Report = Callable[[Sequence[str | int], str], Problem]
 """Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
@@ -76,6 +76,13 @@ def read_columns(
         if together is not None:
             values[name][whole] = together
             continue
+        quantity = known[name]
+        if not unit and DIMENSIONS[quantity.dimension].unit and _bare(cells):
+            try:
+                column_unit(columns[j], "", [quantity.dimension], quantity.usual_unit or "")
+            except QuantityError as error:  # once for the column, whatever its length
+                table.refuse(("columns", j), str(error))
+                continue
         for i, cell in zip(whole, cells, strict=True):
             try:
                 if gaps is None or not (gaps[i] and cell == "nan"):
@@ -84,6 +91,12 @@ def read_columns(
             except QuantityError as error:
                 table.refuse(("rows", i, j), about_quantity(name, cell, error))
     return values
+
+
+def _bare(cells: Sequence[str | None]) -> bool:
+    """Return whether two cells at least are numbers without a unit; zero needs none."""
+    numbers = (cell for cell in cells if cell is not None and _BARE_NUMBER.fullmatch(cell))
+    return sum(any(digit in "123456789" for digit in number) for number in numbers) > 1
 
 
 def _read_together(

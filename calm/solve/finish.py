@@ -228,11 +228,19 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
     if ending == solution.NOT_LYING:
         return Status.GROUNDED.because("The line does not lie on the seabed.")
     if ending == solution.BELOW_SEABED:
-        return touching(piece, value)
+        return touching(piece, value, _longer_than_deep(line, water))
     if ending == solution.ABOVE_SURFACE:
-        depth, length = water.depth, float(line.length.sum())
-        return risen(piece, value, doubted_depth(depth) if length > 2.0 * depth else "")
+        return risen(piece, value, _longer_than_deep(line, water))
     return audit_refusal(ending, value)
+
+
+def _longer_than_deep(line: Line, water: Water) -> str:
+    """Return that a line is longer than its water is deep; empty where it is not."""
+    depth, length = water.depth, float(line.length.sum())
+    if length <= depth:
+        return ""
+    said = f" The line is {length:.1f} m long: its float would reach the surface."
+    return said + (doubted_depth(depth) if length > 2.0 * depth else "")
 
 
 def watch_circle_radius(length: float, height: float) -> float:
@@ -260,8 +268,9 @@ def risen(piece: int, above: float, likely: str = "") -> NoEquilibrium:
     )
 
 
-def touching(piece: int, below: float) -> NoEquilibrium:
+def touching(piece: int, below: float, likely: str = "") -> NoEquilibrium:
     """A line that would touch the seabed."""
     return Status.GROUNDED.because(
-        f"The line would touch the seabed: {{piece}} comes {below:.2f} m below it.", piece
+        f"The line would touch the seabed: {{piece}} comes {below:.2f} m below it." + likely,
+        piece,
     )

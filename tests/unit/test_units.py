@@ -115,7 +115,7 @@ def test_other_units_are_asked_of_pint(text: str, dimension: str, value: float) 
         ("5,000.0 N", "force", "has marks between thousands", "5000.0 N"),
         ("5.000,5 N", "force", "has marks between thousands", "5000.5 N"),
         ("-1,250,000 N", "force", "has marks between thousands", "-1250000 N"),
-        ("1,000 m", "length", "has a comma; write `1.000 m` or `1000 m`", None),
+        ("1,000 m", "length", "has a comma; write `1000 m` or `1.000 m`", None),
         ("5 metr", "length", "has an unknown unit, `metr`", "5 metre"),
         ("5 KN", "force", "has an unknown unit, `KN`", "5 kN"),
         ("77 lbs", "force", "is a mass; a force", "77 lbf"),
@@ -194,3 +194,13 @@ def test_everyday_units_do_without_pint() -> None:
 def test_a_unit_of_many_letters_that_cannot_be_one_is_refused_at_once(unit: str) -> None:
     with pytest.raises(QuantityError):  # one that tries every way to part it never ends
         unit_factor(unit, "force")
+
+
+def test_kilograms_of_what_is_usual_in_kilonewtons_may_be_either() -> None:
+    with pytest.raises(QuantityError) as error:
+        parse_quantity("49.8 kg", "force", usual_unit="kN")
+    assert error.value.complaint.endswith("is needed; write `49.8 kgf` or `49.8 kN`")
+    assert error.value.suggestion is None
+    with pytest.raises(QuantityError) as error:
+        parse_quantity("49.8 kg", "force", usual_unit="N")  # as of buoyancies, given in kilograms
+    assert error.value.suggestion == "49.8 kgf"

@@ -56,6 +56,15 @@ def test_cells_with_units_of_their_own(csv: Path) -> None:
         assert (u[0, 0], w[0, 0]) == (0.5, 0.01)
 
 
+def test_a_column_without_a_unit_is_one_mistake(csv: Path) -> None:
+    rows = [f"2026-03-01,{depth},0.1,0" for depth in range(0, 900, 5)]
+    csv.write_text("\n".join(["time,depth,u,v[m/s]", *rows]))
+    assert problems(csv, csv.read_text()) == [
+        (1, 6, "column `depth` needs a unit; did you mean `depth[m]`?"),
+        (1, 12, "column `u` needs a unit; did you mean `u[m/s]`?"),
+    ]
+
+
 @pytest.mark.parametrize("name", ["csv", "csv-speed"])
 def test_how_much_is_read_together_does_not_matter(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str

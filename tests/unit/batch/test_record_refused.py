@@ -30,14 +30,16 @@ def test_what_it_holds_is_listed(tmp_path: Path) -> None:
         "looked for by CF standard name, then by usual name; it holds "
         "u (time 7, bin 5) [mm s-1] eastward_sea_water_velocity; "
         "w (time 7, bin 5) [mm s-1] upward_sea_water_velocity; "
-        "time (time 7) [seconds since 2026-03-01] time; bin (bin 5); bin_depths (time 7, bin 5) [m]"
+        "bin_depths (time 7, bin 5) [m]; time (time 7) [seconds since 2026-03-01] time; bin (bin 5)"
     )
 
 
 def test_a_long_list_is_cut_short(tmp_path: Path) -> None:
     dataset = xr.Dataset({f"t{i}": ("n", [0.0]) for i in range(40)})
     message = refusal(dataset, tmp_path)
-    assert message.endswith("t23 (n 1); and 16 more")
+    assert message.endswith(
+        "; it holds t0 (n 1); t1 (n 1); t2 (n 1); t3 (n 1); t4 (n 1); and 35 more"
+    )
 
 
 def staggered() -> xr.Dataset:
@@ -183,3 +185,17 @@ def test_damaged_files(tmp_path: Path, signature: bytes) -> None:
 
 def test_a_record_without_a_profile(tmp_path: Path) -> None:
     assert "has no times" in refusal(adcp().isel(time=np.array([], int)), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("ODF_HEADER,\n EVENT_HEADER,\n  DATA_TYPE='MCM',\n -- DATA --\n", "an ODF file"),
+        ("*2020/01/01 12:00:00.00\n*IOS HEADER VERSION 2.0\n*FILE\n", "an IOS Shell file"),
+    ],
+)
+def test_texts_of_archives_are_named(text: str, kind: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    path.write_text(text)
+    with pytest.raises(InputError, match=f"is {kind}"):
+        open_record(path, Terms(SEABED))

@@ -157,7 +157,7 @@ def test_texts_that_are_pasted(written: Callable[[Table], str]) -> None:
 def test_lists_of_pieces_are_cut_alike(name: str, tmp_path: Path) -> None:
     path = tmp_path / "list.csv"
     path.write_bytes(DIALECTS[name]([["item", "length[m]"], ["8 mm wire", "50.5"]]).encode())
-    (rows,) = read_sheets(path).values()
+    (rows,) = read_sheets(path).rows.values()
     assert (rows[0][0], rows[1][0]) == ("item", "8 mm wire")
     assert rows[1][1].replace(",", ".") == "50.5"
 

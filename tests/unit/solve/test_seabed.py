@@ -6,6 +6,7 @@ from math import asinh, radians, sqrt
 import numpy as np
 import pytest
 
+from calm.errors import NoEquilibrium
 from calm.files.definition import STANDARD_GRAVITY
 from calm.solve import Settings, solve_mooring
 from tests.unit.solve.simple import line, rigid, rope, water
@@ -175,3 +176,14 @@ def test_only_what_the_pull_reaches_into_is_stretched_on_the_seabed():
     assert pull / (0.6 * 60) < 0.5 * solution.grounded_length
     stretch = solution.strain[solution.hanging :] @ cut
     assert stretch == pytest.approx(pull**2 / (2 * 0.6 * 60 * 1e7), rel=1e-9)
+
+
+@pytest.mark.parametrize(("depth", "doubted"), [(55.0, False), (50.0, True)])
+def test_a_line_too_long_for_its_water_says_so(depth, doubted):
+    """Of 102 m of line a weight in the middle touches the seabed, for want of water."""
+    long = line(rigid(1.0, 5000.0, drag=250.0), rope(60, 6), rigid(1.0, -300.0), rope(40, -1))
+    with pytest.raises(NoEquilibrium, match="touch the seabed") as refused:
+        solve_mooring(long, water(depth, CURRENT))
+    said = str(refused.value)
+    assert "The line is 102.0 m long: its float would reach the surface." in said
+    assert (f"The water is {depth:.1f} m deep: check `depth`" in said) is doubted
