@@ -6,11 +6,13 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import date
+from functools import partial
 from typing import TypeVar
 
 from calm.case import Mooring, Result
 from calm.checks.finding import AS_GIVEN, Finding, Rule, State, Verdict, worst_state
 from calm.checks.inventory import InventoryItem
+from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss, Recovery
 from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
@@ -209,16 +211,20 @@ class Acceptance:
 
 
 def estimated(mooring: Mooring) -> Mooring:
-    """Return the mooring with the low bounds of estimates for figures that are not given."""
+    """Return the mooring with the low bounds of estimates for figures that are not given.
+
+    Waves move it where its environment has them, or its float is at the surface.
+    """
     file = mooring.file
+    if not any(part.component.estimates for part in parts_of(file.pieces)):
+        return mooring
+    filled = partial(_filled, file.environment.waves is not None or reaches_the_surface(mooring))
     pieces = tuple(
-        _filled(piece.with_clamps(_filled))
+        filled(piece.with_clamps(filled))
         if any(part.component.estimates for part in parts_of([piece]))
         else piece
         for piece in file.pieces
     )
-    if pieces == file.pieces:
-        return mooring
     file = replace(file, pieces=pieces)
     return Mooring(file, mooring.for_surface, mooring.memory, mooring.line, mooring.water)
 
@@ -229,6 +235,7 @@ def estimated_result(result: Result) -> Result:
     return result if judged is result.mooring else replace(result, mooring=judged)
 
 
-def _filled(part: _Part) -> _Part:
-    low = {name: one.low for name, one in part.component.estimates.items()}
+def _filled(in_waves: bool, part: _Part) -> _Part:
+    estimates = part.component.estimates
+    low = {name: one.bound(in_waves=in_waves) for name, one in estimates.items()}
     return replace(part, component=part.component.model_copy(update=low)) if low else part
