@@ -26,10 +26,10 @@ label, its component, the length to cut, the depth and the height above the seab
 
 ## In the terminal
 
-`calm run FILE --schematic` draws it above the table, and so does `calm tow FILE --schematic`. It is
-drawn even where there is no equilibrium. It is as wide as the terminal (80 columns where there is
-none) and needs no colour. Where the output cannot show the characters for cables, ASCII characters
-replace them. `calm run lines/{drawn[0]}.yaml --schematic` begins:
+`calm run FILE --schematic` draws it above the table, even if there is no equilibrium. It is as wide
+as the terminal (80 columns without one) and needs no colour. If the output cannot show the
+characters for cables, ASCII characters replace them.
+`calm run lines/{drawn[0]}.yaml --schematic` begins:
 
 ```text
 {text}

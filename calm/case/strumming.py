@@ -1,23 +1,18 @@
-"""Strumming of cables: what a solution gives for it, what it could do at worst, a cable alone."""
+"""Strumming of cables: frequency and drag of a solution, and its band with amplified drag."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from calm.case.leg import Leg
 from calm.errors import NoEquilibrium
 from calm.files import Solver
 from calm.physics.drag import line_drag
-from calm.physics.strumming import BourgetMarichal, shedding_frequency
+from calm.physics.strumming import shedding_frequency
 from calm.solve import Solution, Status
 from calm.solve.audit import amplification, flow_across
-
-if TYPE_CHECKING:
-    from calm.case.mooring import Mooring
-    from calm.case.tow import Tow
 
 
 @dataclass(frozen=True)
@@ -73,17 +68,17 @@ class StrummingBand:
     tension: float | None = None
 
 
-def band_of(case: Mooring | Tow, still_depth: float | None = None) -> StrummingBand | None:
-    """The band of a tow, or of a mooring that is `still_depth` deep in still water [m].
+def band_of(leg: Leg, still_depth: float | None = None) -> StrummingBand | None:
+    """The band of a line, of a mooring that is `still_depth` deep in still water [m].
 
     None where nothing can strum or a law of strumming is already in use.
     """
-    line, cables = case.line, case.line.diameter > 0.0
-    if case.file.solver.strumming is not None or not (line.normal_drag[cables] > 0.0).any():
+    line, cables = leg.line, leg.line.diameter > 0.0
+    if leg.file.solver.strumming is not None or not (line.normal_drag[cables] > 0.0).any():
         return None
     try:
         raised = np.where(cables, FACTOR, 1.0) * line.normal_drag
-        solution = case.solved(replace(line, normal_drag=raised))
+        solution = leg.solved(replace(line, normal_drag=raised))
     except NoEquilibrium as failure:
         return StrummingBand(FACTOR, failure.status)
     node = solution.body_node if solution.line.towed else 0
@@ -95,36 +90,3 @@ def band_of(case: Mooring | Tow, still_depth: float | None = None) -> StrummingB
         None if still_depth is None else depth - still_depth,
         float(solution.tension[-1]),
     )
-
-
-@dataclass(frozen=True)
-class BareCable:
-    """A cable towed with nothing at its end.
-
-    Attributes
-    ----------
-    angle : to the horizontal, measured [degrees], above 0 and below 90
-    speed : of the ship through the water [m/s], > 0
-    diameter : [m], > 0
-    weight : of a metre in water [N/m], > 0
-    density : of the water [kg/m³], > 0
-    """
-
-    angle: float
-    speed: float
-    diameter: float
-    weight: float
-    density: float
-
-    @property
-    def vibration(self) -> tuple[float, float]:
-        """C* and a/D, by `BourgetMarichal.from_bare_cable`."""
-        return BourgetMarichal().from_bare_cable(
-            math.radians(self.angle), self.speed, self.diameter, self.weight, self.density
-        )
-
-    @property
-    def frequency(self) -> float:
-        """Frequency of the vibration [Hz]."""
-        angle = math.radians(self.angle)
-        return BourgetMarichal().frequency(self.speed, angle, self.diameter)

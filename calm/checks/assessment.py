@@ -9,7 +9,8 @@ from datetime import date
 from functools import partial
 from typing import TypeVar
 
-from calm.case import Mooring, Result
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
 from calm.checks.finding import AS_GIVEN, Finding, Rule, State, Verdict, worst_state
 from calm.checks.inventory import InventoryItem
 from calm.checks.posture import reaches_the_surface
@@ -19,7 +20,7 @@ from calm.errors import NoEquilibrium
 from calm.files import Accept, Clamp, MooringFile, Piece
 from calm.files.check_limits import LimitKey
 from calm.files.definition import EstimatedFigure
-from calm.files.mooring_file import parts_of
+from calm.files.pieces import parts_of
 from calm.files.rule_texts import RULES
 
 _Part = TypeVar("_Part", Piece, Clamp)
@@ -33,7 +34,7 @@ class Situation:
     """
 
     name: str
-    result: Result | None
+    result: LegResult | None
     failure: NoEquilibrium | None
 
 
@@ -44,7 +45,7 @@ class MooringInEnvironment:
     Attributes
     ----------
     environment : its name
-    mooring : in it
+    leg : of the design in it, which has as many of these as legs
     situations : what was solved, the first as given
     findings : all as given, and of the other situations those whose state is worse
     tighter : of each rule the finding of another situation that leaves less margin than all those
@@ -52,14 +53,14 @@ class MooringInEnvironment:
     """
 
     environment: str
-    mooring: Mooring
+    leg: Leg
     situations: tuple[Situation, ...]
     findings: tuple[Finding, ...]
     tighter: tuple[Finding, ...] = ()
     accepted: tuple[Finding, ...] = ()
 
     @property
-    def result(self) -> Result | None:
+    def result(self) -> LegResult | None:
         """As given; None where that has no equilibrium."""
         return self.situations[0].result
 
@@ -101,9 +102,9 @@ class Assessment:
         return f"{self.name}: {self.state} ({told})"
 
     @property
-    def mooring(self) -> Mooring:
-        """In its first environment."""
-        return self.stands[0].mooring
+    def file(self) -> MooringFile:
+        """The file, of several legs that of the first, in its first environment."""
+        return self.stands[0].leg.file
 
     def all_findings(self) -> Iterator[Finding]:
         """Return those of every environment, then those of launch, recovery and breaks."""
@@ -136,7 +137,7 @@ class Assessment:
 class Handling:
     """Hold what the rules of launch, recovery and breaks look at, or why it could not be solved."""
 
-    mooring: Mooring
+    leg: Leg
     launch: Launch | NoEquilibrium
     recovery: Recovery | NoEquilibrium
     backup: tuple[Break, ...]
@@ -210,15 +211,15 @@ class Acceptance:
                 yield f"{what} is not needed: nothing there fails or is unknown"
 
 
-def estimated(mooring: Mooring) -> Mooring:
-    """Return the mooring with the low bounds of estimates for figures that are not given.
+def estimated(leg: Leg) -> Leg:
+    """Return a leg with the low bounds of estimates for figures that are not given.
 
     Waves move it where its environment has them, or its float is at the surface.
     """
-    file = mooring.file
+    file = leg.file
     if not any(part.component.estimates for part in parts_of(file.pieces)):
-        return mooring
-    filled = partial(_filled, file.environment.waves is not None or reaches_the_surface(mooring))
+        return leg
+    filled = partial(_filled, file.environment.waves is not None or reaches_the_surface(leg))
     pieces = tuple(
         filled(piece.with_clamps(filled))
         if any(part.component.estimates for part in parts_of([piece]))
@@ -226,13 +227,13 @@ def estimated(mooring: Mooring) -> Mooring:
         for piece in file.pieces
     )
     file = replace(file, pieces=pieces)
-    return Mooring(file, mooring.for_surface, mooring.memory, mooring.line, mooring.water)
+    return Leg(file, leg.for_surface, leg.memory, leg.line, leg.water)
 
 
-def estimated_result(result: Result) -> Result:
-    """Return a result whose mooring has the low bounds of estimates, as `estimated`."""
-    judged = estimated(result.mooring)
-    return result if judged is result.mooring else replace(result, mooring=judged)
+def estimated_result(result: LegResult) -> LegResult:
+    """Return a result whose leg has the low bounds of estimates, as `estimated`."""
+    judged = estimated(result.leg)
+    return result if judged is result.leg else replace(result, leg=judged)
 
 
 def _filled(in_waves: bool, part: _Part) -> _Part:

@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import replace
-from datetime import date, datetime
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from calm.cli import options, progress, run
+from calm.cli import options
+from calm.cli.judging import DrawnSection, drawn_section, judge, load_ahead
 from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate
 from calm.cli.reading import DesignFile, read_designs
-from calm.errors import InputError, Problem, UsageError, internal_failure
+from calm.errors import InputError, Problem, UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, uncertain
-    from calm.case.net import Net
-    from calm.checks.assessment import Assessment, MooringInEnvironment
-    from calm.report.blocks import Section
+    from calm.case import Design
+    from calm.checks.assessment import Assessment
 
 
 def check(
@@ -78,23 +75,23 @@ def check(
     options.from_one(workers=workers)
     if against is not None and (report is None or len(files) > 1):
         raise UsageError("--against compares one mooring with an earlier design in its --report")
-    draws = run.draws_of(uncertainty, samples, seed)
+    draws = options.draws_of(uncertainty, samples, seed)
     if report is not None:
         given = [*files, *map(Path, environment or ()), *(catalog or ()), *filter(None, [against])]
         _check_report(report, json, given)
     drawn = report is not None and against is None  # one that is compared is drawn with that
     count = len(files) * len(environment or [None])
-    ready = partial(_ready, count, drawn)
+    ready = partial(load_ahead, count, drawn)
     designs, tows, earlier = _read(files, environment, catalog or [], workers, against, ready)
     if tows:
         narrate(f"not checked, because they are tows: {', '.join(map(str, tows))}")
-    nets = [design.path for design in designs if design.moorings[0].file.legs]
+    nets = [design.path for design in designs if design.moorings[0].several]
     if nets and uncertainty:
         from calm.files.legs import NET_SURE
 
         raise UsageError(f"--uncertainty is for {NET_SURE}: {nets[0]}")
     options.show_units(units, [one.file for design in designs for one in design.moorings])
-    judged = _judged(designs, workers, drawn, draws)
+    judged = judge(designs, workers, drawn, draws)
     assessments = [each.assessment for each in judged]
     for design, assessment in zip(designs, assessments, strict=True):
         of_files = (notice for one in design.moorings for notice in one.file.notices)
@@ -107,7 +104,7 @@ def check(
 
         names = str(against), str(designs[0].path)
         compared = comparison_of(names, earlier, designs[0].moorings[0])
-        drawings = [_drawn(mooring_section(assessments[0], compared), 1)]
+        drawings = [drawn_section(mooring_section(assessments[0], compared), 1)]
     _answer(assessments, drawings, outputs, report)
     return gravest(_code(each, allow_unknown) for each in assessments)
 
@@ -119,16 +116,17 @@ def _read(
     workers: int | None,
     against: Path | None,
     ready: Callable[[], None],
-) -> tuple[list[DesignFile], list[Path], Mooring | Net | None]:
+) -> tuple[list[DesignFile], list[Path], Design | None]:
     """Return what is judged, the tows among the files, and the earlier design; or all their
     mistakes.
 
     `ready` is called while other processes read.
     """
-    from calm.case import Tow, net
+    from calm.case import load
+    from calm.files.mooring_file import refuse_tow
 
     problems: list[Problem] = []
-    earlier: Mooring | Tow | Net | None = None
+    earlier: Design | None = None
     designs: list[DesignFile] = []
     tows: list[Path] = []
     try:
@@ -137,37 +135,14 @@ def _read(
         problems += error.problems
     try:
         first = environments[0] if environments else None
-        earlier = None if against is None else net.load(against, first, catalogs)
+        earlier = None if against is None else load(against, first, catalogs)
     except InputError as error:
         problems += error.problems
     if problems:
         raise InputError(list(dict.fromkeys(problems)))
-    if isinstance(earlier, Tow):
-        raise UsageError(f"{against} is a tow; calm check is for moorings")
+    if earlier is not None:
+        refuse_tow(earlier.file)
     return designs, tows, earlier
-
-
-class DrawnSection(NamedTuple):
-    """A mooring's part of the report: what a summary takes of it, and what each form shows."""
-
-    section: Section
-    html: str
-    pdf: str
-
-
-class CheckedMooring(NamedTuple):
-    """A mooring that is judged, and its part of the report where there is one."""
-
-    assessment: Assessment
-    drawn: DrawnSection | None
-
-
-def _drawn(section: Section, number: int) -> DrawnSection:
-    """The `number`th section of a report."""
-    from calm.report.folder import pdf_leaf
-    from calm.report.html import leaf
-
-    return DrawnSection(replace(section, parts=()), leaf(section, number), pdf_leaf(section))
 
 
 def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> None:
@@ -184,109 +159,6 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
         for path in given:
             if os.path.realpath(path) == real:
                 raise UsageError(f"{path} is read here; the report would overwrite it")
-
-
-def _judged(
-    designs: Sequence[DesignFile], workers: int | None, drawn: bool, draws: tuple[int, int] | None
-) -> list[CheckedMooring]:
-    """All of them on one day: that of the report, today where it has none.
-
-    Many moorings are shared out whole, each judged and drawn where it was solved; of a few, their
-    environments are.
-    """
-    from calm.checks.situations import SOLVES
-    from calm.report.provenance import moment
-    from calm.solve import expect_many
-
-    day = (moment() or datetime.now()).date()
-    stands = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
-    expect_many(SOLVES * len(stands))
-    if len(designs) > progress.FEW:
-        _ready(len(stands), drawn)
-        whole = [(number, design, day, drawn, draws) for number, design in enumerate(designs, 1)]
-        return progress.mapped(_solve_and_conclude, whole, workers, "moorings judged")
-    solved = iter(progress.mapped(_stands, stands, workers, "environments solved"))
-    shared = partial(progress.mapped, workers=workers, what="blocks of samples solved")
-    found = ([stand for _ in design.moorings for stand in next(solved)] for design in designs)
-    return [
-        _concluded(number, design.name, stands, day, drawn, draws, shared)
-        for number, (design, stands) in enumerate(zip(designs, found, strict=True), 1)
-    ]
-
-
-def _ready(stands: int, drawn: bool) -> None:
-    """Load what judging so many takes, once: other processes begin as copies of this one.
-
-    The march is fetched, but not compiled before the files are found good.
-    """
-    import calm.checks.assess
-    import calm.checks.recovery
-    from calm.checks.situations import SOLVES
-    from calm.solve.solution import COLD, expect_many
-
-    expect_many(min(SOLVES * stands, COLD - 1))
-    if drawn:
-        import calm.report.check_report
-        import calm.report.html  # noqa: F401
-        from calm.drawing.typesetting import signs
-
-        signs()  # has the font read
-
-
-def _solve_and_conclude(
-    task: tuple[int, DesignFile, date, bool, tuple[int, int] | None],
-) -> CheckedMooring:
-    number, design, day, drawn, draws = task
-    stands = [each for one in design.moorings for each in _stands((design.name, one, day))]
-    return _concluded(number, design.name, stands, day, drawn, draws, map)
-
-
-def _concluded(
-    number: int,
-    name: str,
-    stands: Sequence[MooringInEnvironment],
-    day: date,
-    drawn: bool,
-    draws: tuple[int, int] | None,
-    shared: uncertain.Mapped,
-) -> CheckedMooring:
-    """Return what is judged of a mooring as a whole, and the `number`th section of the report.
-
-    `draws` are samples and seed of the probabilities, where they are asked for; `shared` has blocks
-    of them solved.
-    """
-    from calm.checks import assess, net_check
-    from calm.report.check_report import mooring_section
-
-    if stands[0].mooring.file.legs:
-        assessment = net_check.assessment_of_net(name, stands, day)
-    else:
-        assessment = assess.assessment_of(name, stands, day)
-    if draws is not None:
-        assessment = assess.with_probabilities(assessment, *draws, shared)
-    return CheckedMooring(
-        assessment, _drawn(mooring_section(assessment), number) if drawn else None
-    )
-
-
-def _stands(task: tuple[str, Mooring | Net, date]) -> list[MooringInEnvironment]:
-    """A mooring in an environment, or each leg of a net; CALM's own failure there does not stop
-    the others.
-    """
-    from calm.case.net import Net
-    from calm.checks.assess import failed_stand, stand_of
-    from calm.checks.net_check import stands_of_net
-
-    name, mooring, day = task
-    try:
-        if isinstance(mooring, Net):
-            return stands_of_net(mooring, name, day)
-        return [stand_of(mooring, name, day)]
-    except Exception as error:
-        if os.environ.get("CALM_DEBUG") == "1":
-            raise
-        of = mooring.lines[0] if isinstance(mooring, Net) else mooring
-        return [failed_stand(of, name, internal_failure(error))]
 
 
 def _answer(

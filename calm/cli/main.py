@@ -5,31 +5,36 @@ from __future__ import annotations
 import atexit
 import gc
 import os
-import re
 import sys
 import traceback
 import warnings
-from collections.abc import Callable, Sequence
-from inspect import cleandoc
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from collections.abc import Sequence
+from typing import Any, Literal
 
 from cyclopts import App, CycloptsError, Group, Parameter, UnusedCliTokensError
 
-from calm.cli import at_sea, designs, exchange, starter
 from calm.cli.batch import batch
+from calm.cli.build import build
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import check
-from calm.cli.motion import grid, motion
+from calm.cli.deck import deck
+from calm.cli.diff import diff
+from calm.cli.docs import docs
+from calm.cli.export import export
+from calm.cli.grid import grid
+from calm.cli.help import HelpAtWidth, examples
+from calm.cli.import_ import import_
+from calm.cli.locate import locate
+from calm.cli.motion import motion
+from calm.cli.new import new
 from calm.cli.outputs import ExitCode, narrate, prepare, show
 from calm.cli.run import run
-from calm.cli.tow import strumming, tow
+from calm.cli.schema import schema
+from calm.cli.size import size
 from calm.cli.verify import verify
+from calm.cli.waves import waves
 from calm.errors import CalmError, InputError, NoEquilibrium
-
-if TYPE_CHECKING:
-    from cyclopts.help import HelpPanel
-    from rich.console import Console, ConsoleOptions
 
 _EPILOGUE = """Examples:
 
@@ -38,87 +43,11 @@ _EPILOGUE = """Examples:
   calm run --help
 
 Exit codes: 0 done, 1 a check found something, 2 bad input or usage,
-3 no equilibrium, 70 internal error, 75 a batch incomplete that the same command
-finishes, 130 interrupted."""
+3 no equilibrium, 70 internal error, 130 interrupted."""
 
 _SELDOM = 100_000
 """New objects after which unused circles of them are looked for. Python's own 700 cost a command a
 tenth of its time: what it imports is all looked through again and again."""
-
-_VALUES = {
-    "FILE|-": "json csv netcdf",
-    "FILE": "html pdf plot catalog currents pressures sea-level onto against update scatter "
-    "elements",
-    "DIR": "report",
-    "NAME": "environment",
-    "LABEL,...": "hold-out",
-    "LAT,LON": "at near",
-    "LENGTH": "diameter streamed length distance",
-    "DEPTH": "depth transducer",
-    "HEIGHT": "above-seabed height hs swell",
-    "ANGLE": "angle course declination toward phi-a phi-b",
-    "SPEED": "speed ship-speed",
-    "RANGE": "speeds",
-    "CONDITION": "target",
-    "CHANGE": "change",
-    "FLAGS": "flags",
-    "WORD": "match format to method",
-    "WORD,...": "fit variables",
-    "LEVELS": "levels",
-    "VALUE": "between",
-    "SPEED|FILE": "sound-speed",
-    "COLUMNS": "columns",
-    "HOST": "allow-host",
-    "NUMBER": "port gamma k cd",
-    "MINUTES": "idle-timeout",
-    "A/B": "time",
-    "TIME": "deck-time gap step tp swell-tp duration",
-    "COUNT": "samples workers",
-    "N": "every seed",
-    "ADDRESS": "scheduler",
-    "DENSITY": "density solid-density",
-    "N/m": "weight",
-    "FORCE": "tension-a tension-b",
-    "UNITS": "units",
-    "WORD|FILE": "spectrum",
-    "NAME=VALUE": "define",
-}
-"""What stands for the value of an option in `--help`; an option not listed tells its type."""
-
-_VALUE_OF = {f"--{name}": value for value, names in _VALUES.items() for name in names.split()}
-
-
-class HelpAtWidth:
-    """Sets `--help` to the width of the terminal, and says what the value of each option is."""
-
-    def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
-        """Print a panel; texts of options lose their line breaks."""
-        from cyclopts.help import DefaultFormatter
-        from rich.text import Text
-
-        for place, entry in enumerate(panel.entries):
-            written = getattr(entry.description, "primary_renderable", None)
-            if isinstance(written, Text):
-                entry.description.primary_renderable = Text(" ".join(written.plain.split()))
-            value = next((_VALUE_OF[name] for name in entry.names if name in _VALUE_OF), None)
-            if value and entry.metavar:
-                several = "..." if entry.metavar.endswith("...") else ""
-                panel.entries[place] = entry.copy(metavar=f"{value}{several}")
-        DefaultFormatter()(console, options, panel)
-
-    def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
-        """Print the line of usage, with what each option wants in place of its type."""
-        from cyclopts.help import DefaultFormatter
-
-        known = re.compile(r"(--[\w-]+) ([A-Z]+)")
-        text = known.sub(lambda m: f"{m[1]} {_VALUE_OF.get(m[1], m[2])}", str(usage))
-        DefaultFormatter().render_usage(console, options, text)
-
-
-def _examples(command: Callable[..., object]) -> str:
-    """The section of a docstring that ends it, as `--help` has it."""
-    text = cleandoc(command.__doc__ or "").partition("Examples\n--------\n")[2]
-    return f"Examples:\n\n{text}"
 
 
 def _version() -> str:
@@ -164,37 +93,31 @@ app = App(
     suppress_keyboard_interrupt=False,
     result_action="return_value",
 )
-_TOW = App(
-    name="tow",
-    usage="Usage: calm tow [OPTIONS] FILE...\n       calm tow strumming [OPTIONS]",
-    help_epilogue=_examples(tow),
-)
-_TOW.default(tow)
-_TOW.command(strumming, help_epilogue=_examples(strumming))
+_SYNONYMS = {"run": ("tow", "solve")}
+"""Other words for commands, which the message about an unknown command answers."""
 
 _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
     "Design": (
-        (starter.new, ""),
-        (starter.build, ""),
+        (new, ""),
+        (build, ""),
         (run, "[OPTIONS] FILE..."),
-        (designs.size, ""),
-        (designs.waves, ""),
+        (size, ""),
+        (waves, ""),
         (check, "[OPTIONS] FILE..."),
-        (designs.diff, "[OPTIONS] FILE [FILE]"),
+        (diff, "[OPTIONS] FILE [FILE]"),
     ),
-    "At sea": ((at_sea.deck, "[OPTIONS] FILE..."), (at_sea.locate, "[OPTIONS] FILE")),
+    "At sea": ((deck, "[OPTIONS] FILE..."), (locate, "[OPTIONS] FILE")),
     "Records": ((batch, ""), (motion, ""), (grid, "[OPTIONS] DEPTHS VALUES...")),
     "Files": (
-        (exchange.import_, "[OPTIONS] FILE..."),
-        (exchange.export, ""),
+        (import_, "[OPTIONS] FILE..."),
+        (export, ""),
         (catalog, ""),
-        (starter.schema, ""),
+        (schema, ""),
     ),
     "More": (
-        (_TOW, ""),
         (chart, ""),
         (verify, "[OPTIONS] [WORD...]"),
-        (starter.docs, "[OPTIONS] [PAGE]"),
+        (docs, "[OPTIONS] [PAGE]"),
         (completion, "SHELL"),
     ),
 }
@@ -212,18 +135,9 @@ for _number, (_name, _commands) in enumerate(_GROUPS.items()):
         app.command(
             _command, name=_called, group=_group, sort_key=_place,
             usage=f"Usage: calm {_called} {_usage}" if _usage else None,
-            help_epilogue=_examples(_command),
+            help_epilogue=examples(_command), synonym=_SYNONYMS.get(_called),
         )  # fmt: skip
 app["--help"].group = app["--version"].group = Group("Options", sort_key=len(_GROUPS))
-
-
-@app.command(name="strumming", show=False)
-def _strumming(*words: Annotated[str, Parameter(allow_leading_hyphen=True)]) -> Any:
-    """Run `calm tow strumming`, which was `calm strumming` before."""
-    narrate(
-        "calm strumming is now calm tow strumming; the old name will be removed in the next version"
-    )
-    return app(["tow", "strumming", *words], exit_on_error=False, print_error=False)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

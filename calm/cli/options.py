@@ -1,8 +1,7 @@
-"""Options of several commands, quantities given as options, the range of speeds of a sweep."""
+"""Options of several commands, and quantities given as options."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -57,11 +56,6 @@ Units = Annotated[
     ),
 ]
 
-MOST_SPEEDS = 10_000
-"""No more speeds than this in one sweep."""
-
-_ROUNDING = 1e-9  # of a step: what unit conversion may leave between the last step and the end
-
 
 def option(name: str) -> str:
     """Return how a parameter is written on the command line."""
@@ -69,7 +63,7 @@ def option(name: str) -> str:
 
 
 def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
-    """Show quantities to people in the units given, else in those that all files ask for.
+    """Choose the units of tables and reports: those given, else those in which all files agree.
 
     UsageError: of a text that names no such dimension or unit.
     """
@@ -99,9 +93,9 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
 
 
 def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
-    """The quantities that were given, in SI and degrees; or all that is wrong with them.
+    """Convert quantities given as options to SI units and degrees.
 
-    They are given as text (None where absent) and dimension by the name of the parameter.
+    Each parameter has its text (None if absent) and its dimension.
     UsageError: with every text that is no quantity of its dimension.
     """
     from calm.units import QuantityError, parse_quantity
@@ -129,7 +123,7 @@ def from_one(**given: int | None) -> None:
 
 
 def span_of(option: str, text: str, between: tuple[float, float], in_words: str) -> np.timedelta64:
-    """A span of time such as ``2 h``, as an option gives it.
+    """Parse an option that is a span of time, such as ``2 h``.
 
     Parameters
     ----------
@@ -153,37 +147,20 @@ def span_of(option: str, text: str, between: tuple[float, float], in_words: str)
     return np.timedelta64(round(seconds * 1e9), "ns")
 
 
-def speed_range(text: str) -> list[float]:
-    """The speeds [m/s] of ``A:B:STEP``, from A to B, both included; the last step may be shorter.
+def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | None:
+    """Samples and seed of `--uncertainty`; None without it.
 
-    UsageError: not three speeds with their units; A not above 0, B below A, a step not above 0;
-    more than `MOST_SPEEDS`.
+    UsageError: the number of samples is not a power of two, the seed is negative, or either was
+    given without `--uncertainty`.
     """
-    from calm.units import QuantityError, parse_quantity
+    from calm.case.draws import SAMPLES, checked_samples
 
-    parts = text.split(":")
-    if len(parts) != 3:
-        raise UsageError(f"--speeds: `{text}` is not A:B:STEP, such as `1 knot:12 knot:0.5 knot`")
-    values: list[float] = []
-    complaints: list[str] = []
-    for part in parts:
-        try:
-            values.append(parse_quantity(part, "speed"))
-        except QuantityError as error:
-            complaints.append(f"`{part.strip()}` {error}")
-    if complaints:
-        raise UsageError(f"--speeds: {'; '.join(complaints)}")
-    first, last, step = values
-    if first <= 0.0:
-        raise UsageError(f"--speeds: `{text}` begins at {first:g} m/s; a tow needs a speed above 0")
-    if last < first:
-        raise UsageError(
-            f"--speeds: `{text}` ends at {last:g} m/s, below its beginning, {first:g} m/s"
-        )
-    if step <= 0.0:
-        raise UsageError(f"--speeds: `{text}` has a step of {step:g} m/s; it must be above 0")
-    whole = math.floor((last - first) / step + _ROUNDING)
-    if whole >= MOST_SPEEDS:
-        raise UsageError(f"--speeds: `{text}` makes more than {MOST_SPEEDS} speeds; widen the step")
-    speeds = (first + number * step for number in range(whole + 1))
-    return [*(each for each in speeds if last - each > _ROUNDING * step), last]
+    if not uncertainty:
+        for option, value, usual in (("--samples", samples, SAMPLES), ("--seed", seed, 0)):
+            if value != usual:
+                raise UsageError(f"{option}: {value} needs --uncertainty")
+        return None
+    checked_samples(samples)
+    if seed < 0:
+        raise UsageError(f"--seed: {seed} is below 0")
+    return samples, seed

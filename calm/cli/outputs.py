@@ -12,23 +12,19 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Protocol
 
 from cyclopts import Parameter
 
 from calm.drawing.picture import encodable, printable
-from calm.errors import NoEquilibrium, UsageError
+from calm.errors import UsageError
 from calm.version import __version__
 
 if TYPE_CHECKING:
-    from calm.case.explain import Explanation
-    from calm.case.result import AnyResult
-    from calm.case.uncertain import Uncertain
-    from calm.cli.tow import TabulatedTow
     from calm.drawing.schematic.in_terminal import TerminalSchematic
     from calm.report.blocks import ReportPart
 
-    Shows = ReportPart | TerminalSchematic
+    TerminalPart = ReportPart | TerminalSchematic
 
 _NARROWEST = 40  # columns: figures are no longer cut, but wrapped by the terminal
 _WRITTEN_OUT = "calm-written-out"  # the handler of signs that a stream cannot carry
@@ -70,7 +66,7 @@ def show(text: str, *, styled: bool = False) -> None:
         raise UsageError(f"cannot write to the standard output: {error.strerror}") from None
 
 
-def show_parts(*parts: Shows) -> None:
+def show_parts(*parts: TerminalPart) -> None:
     """Write to the standard output as the terminal allows, a blank line between two things."""
     from rich.console import Console
 
@@ -121,9 +117,6 @@ class ExitCode(IntEnum):
     INTERNAL_ERROR = 70
     """CALM itself failed: a bug, worth a report."""
 
-    INCOMPLETE = 75
-    """A batch was stopped; what is done is kept, and the same command does the rest."""
-
     INTERRUPTED = 130
     """Stopped by Ctrl-C."""
 
@@ -144,83 +137,25 @@ STDOUT = Path("-")
 """What a path says that stands for the standard output."""
 
 
-@dataclass(frozen=True)
-class FileOutcome:
-    """The outcome of one file: a result, or the reason why there is none."""
-
-    file: Path
-    name: str
-    result: AnyResult | None = None
-    failure: NoEquilibrium | None = None
-    explanation: Explanation | None = None
-    schematic: tuple[TerminalSchematic, ...] = ()
-    uncertain: Uncertain | None = None
-    verbose: bool = False
+class Shown(Protocol):
+    """What a command shows of one of its files."""
 
     @property
-    def code(self) -> ExitCode:
-        """The exit code of this file alone."""
-        return ExitCode.NO_EQUILIBRIUM if self.failure else ExitCode.DONE
+    def file(self) -> Path:
+        """The file."""
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Those of the result."""
-        return self.result.warnings if self.result else ()
+        """Warnings to narrate if only CSV is printed."""
 
     def document(self) -> dict[str, Any]:
-        """The JSON object of the result, or of the failure."""
-        if self.failure:
-            return {"name": self.name, **self.failure.to_dict()}
-        assert self.result is not None
-        document = self.result.to_dict()
-        if self.explanation is not None:
-            document["explain"] = self.explanation.to_dict()
-        if self.uncertain is not None:
-            document["uncertainty"] = self.uncertain.to_dict()
-        return document
+        """The JSON object."""
 
-    def parts(self) -> list[Shows]:
-        """The table of the line, with its schematic and its explanation where asked for."""
-        parts: list[Shows] = [*self.schematic]
-        if self.result is not None:
-            from calm.report.explanation import line_facts
-            from calm.report.sheet import result_part
-
-            facts = line_facts(self.result)
-            parts.append(result_part(self.result, facts, verbose=self.verbose))
-        if self.explanation is not None:
-            from calm.report.explanation import explanation_part
-
-            parts.append(explanation_part(self.explanation))
-        if self.uncertain is not None:
-            from calm.report.result_report import uncertainty_part
-
-            parts.append(uncertainty_part(self.uncertain))
-        return parts
+    def parts(self) -> list[TerminalPart]:
+        """Tables and drawings for the terminal."""
 
     def rendered(self, suffix: str) -> bytes | None:
-        """The line drawn, or its report."""
-        if self.result is None:
-            return None
-        if suffix in (".html", ".pdf"):
-            from calm.report.result_report import result_report
-
-            report = result_report(self.result, self.uncertain)
-            if suffix == ".pdf":
-                from calm.report.folder import printed
-
-                return printed(report)
-            from calm.report.html import page
-
-            return page(report).encode("utf-8", "replace")
-        if suffix == ".nc":
-            from calm.report.result_files import result_netcdf
-
-            return result_netcdf(self.result)
-        from calm.drawing.line_drawing import line_drawing
-        from calm.drawing.picture import image
-
-        return image(line_drawing(self.result, self.uncertain), suffix)
+        """A picture, page or dataset by the suffix of its file; None if there is no result."""
 
 
 @dataclass(frozen=True)
@@ -310,7 +245,7 @@ class Outputs:
         if self.json is not None:
             write_file(self.json, text().encode())
 
-    def write(self, shown: Sequence[FileOutcome | TabulatedTow], to_csv: Callable[[], str]) -> None:
+    def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
         """Write the files, then the standard output: what was asked for there, or the tables.
 
         There is something to show of each of `files`, in order; the CSV table of all of them is

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
-from itertools import zip_longest
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli import options, reading
-from calm.cli.outputs import ExitCode, FileOutcome, OutputPath, Outputs, gravest, narrate
-from calm.errors import NoEquilibrium, UsageError
+from calm.cli import options, reading, tow_speeds
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest
+from calm.cli.solved_file import solve_files
+from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Result, Tow
-    from calm.case.explain import Explanation
-    from calm.case.net import Net
-    from calm.case.result import AnyResult, NetResult
-    from calm.case.uncertain import Uncertain
-    from calm.drawing.schematic.in_terminal import TerminalSchematic
+    from calm.case import Design
 
 
 def run(
@@ -36,6 +29,7 @@ def run(
     plot: Path | None = None,
     html: Path | None = None,
     pdf: Path | None = None,
+    speeds: options.Signed = None,
     explain: bool = False,
     schematic: bool = False,
     uncertainty: bool = False,
@@ -57,7 +51,8 @@ def run(
     json
         Write the result as JSON, - to print it; several files give an array.
     csv
-        Write the components as CSV, units in the header, - to print it.
+        Write the components, or with --speeds the speeds, as CSV, units in the header,
+        - to print it.
     netcdf
         Write the result as NetCDF, with the names of `calm batch`; for several files one
         each, as with --plot.
@@ -68,6 +63,10 @@ def run(
         self-contained .html file; for several files one each, as with --plot.
     pdf
         Write the same report as .pdf.
+    speeds
+        Solve tows at the speeds A:B:STEP, both ends included, and print a row for each;
+        --plot draws depth, layback and tension against speed. A speed without
+        equilibrium is a row with its status and makes the exit code 3.
     explain
         Show how much of the knockdown each drag causes, and the effect of more
         buoyancy, less drag or another current; in the JSON too. Not of tows.
@@ -92,73 +91,32 @@ def run(
       calm run mooring.yaml --schematic
       calm run mooring.yaml --html mooring.html --pdf mooring.pdf
       calm run spring.yaml neap.yaml tow.yaml --json -
+      calm run tow.yaml --speeds "1 knot:12 knot:0.5 knot" --plot speeds.png
     """
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
-    draws = draws_of(uncertainty, samples, seed)
-    from calm.case import Tow, net
+    draws = options.draws_of(uncertainty, samples, seed)
+    chosen = None if speeds is None else tow_speeds.speed_range(speeds)
+    single = {
+        "--netcdf": netcdf, "--html": html, "--pdf": pdf, "--explain": explain,
+        "--schematic": schematic, "--uncertainty": uncertainty, "--verbose": verbose,
+    }  # fmt: skip
+    if chosen is not None and (asked := [option for option, value in single.items() if value]):
+        raise UsageError(f"{', '.join(asked)} cannot be combined with --speeds")
+    from calm.case import load
     from calm.files.legs import NET_SURE
 
-    lines = reading.read_all(net.load, files, environment, catalog or [])
+    lines = reading.read_all(load, files, environment, catalog or [])
     options.show_units(units, [line.file for line in lines])
     drawn = {"--uncertainty": uncertainty}
-    _refuse({"--explain": explain} | drawn, "moorings; these are tows", Tow, files, lines)
-    _refuse(drawn, NET_SURE, net.Net, files, lines)
-    return solve_and_show(
-        lines, outputs, explain=explain, schematic=schematic, draws=draws, verbose=verbose
+    towed, moored = ([line for line in lines if line.towed is moves] for moves in (True, False))
+    _refuse({"--explain": explain} | drawn, "moorings; these are tows", towed)
+    _refuse(drawn, NET_SURE, [line for line in lines if line.several])
+    _refuse({"--speeds": chosen}, "tows; these are moorings", moored)
+    if chosen is not None:
+        return tow_speeds.tabulate(lines, outputs, chosen)
+    outcomes = solve_files(
+        files, lines, explain=explain, schematic=schematic, draws=draws, verbose=verbose
     )
-
-
-def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | None:
-    """Samples and seed by which to say how sure the figures are; None where that is not asked.
-
-    UsageError: a number of samples that is not a power of two; a seed below zero; either without
-    need.
-    """
-    from calm.case.draws import SAMPLES, checked_samples
-
-    if not uncertainty:
-        for option, value, usual in (("--samples", samples, SAMPLES), ("--seed", seed, 0)):
-            if value != usual:
-                raise UsageError(f"{option}: {value} needs --uncertainty")
-        return None
-    checked_samples(samples)
-    if seed < 0:
-        raise UsageError(f"--seed: {seed} is below 0")
-    return samples, seed
-
-
-def solve_and_show(
-    lines: Sequence[Mooring | Tow | Net],
-    outputs: Outputs,
-    *,
-    explain: bool = False,
-    schematic: bool = False,
-    draws: tuple[int, int] | None = None,
-    verbose: bool = False,
-) -> ExitCode:
-    """Solve what was read from the files of the outputs, and write those.
-
-    Parameters
-    ----------
-    explain, schematic : explain what was solved; draw each line for the terminal
-    draws : samples and seed by which to say how sure the figures are
-    verbose : say how each solution was reached
-    """
-    from calm.case import Result
-    from calm.case.result import NetResult
-
-    drawn_often = None if draws is None else _to_draw_often(*draws)
-    outcomes = []
-    for file, line in zip(outputs.files, lines, strict=True):
-        result, failure = _solved(file, line)
-        mooring = result if isinstance(result, Result) else None
-        moored = result if isinstance(result, Result | NetResult) else None
-        outcomes.append(FileOutcome(
-            file, line.file.name, result, failure, verbose=verbose,
-            explanation=_explained(moored) if moored and explain else None,
-            schematic=_schematic(line, result) if schematic else (),
-            uncertain=drawn_often(mooring) if mooring and drawn_often else None,
-        ))  # fmt: skip
 
     def to_csv() -> str:
         from calm.report.result_files import to_csv
@@ -169,61 +127,8 @@ def solve_and_show(
     return gravest(outcome.code for outcome in outcomes)
 
 
-def _solved(file: Path, line: Mooring | Tow | Net) -> tuple[AnyResult | None, NoEquilibrium | None]:
-    """Return the result, or why there is none."""
-    try:
-        return line.solve(), None
-    except NoEquilibrium as failure:
-        for notice in line.file.notices:  # a result has them among its warnings
-            narrate(f"{file}: {notice}")
-        narrate(f"{file}: {failure}")
-        return None, failure
-
-
-def _refuse(
-    options: Mapping[str, object],
-    what: str,
-    kind: type,
-    files: Sequence[Path],
-    lines: Sequence[Mooring | Tow | Net],
-) -> None:
-    """Refuse the first option that is asked for, where a file is of a kind it is not for."""
+def _refuse(options: Mapping[str, object], what: str, designs: Sequence[Design]) -> None:
+    """Reject the first of the options if there are designs that it does not apply to."""
     asked = [option for option, value in options.items() if value]
-    those = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, kind)]
-    if asked and those:
-        raise UsageError(f"{asked[0]} is for {what}: {', '.join(those)}")
-
-
-def _explained(result: Result | NetResult) -> Explanation:
-    from calm.case.explain import explain
-
-    return explain(result)
-
-
-def _to_draw_often(samples: int, seed: int) -> Callable[[Result], Uncertain]:
-    """Return what says how sure the figures of a mooring that stands are.
-
-    The sequence is begun now: scipy takes as long to load as the compiled march.
-    """
-    from calm.case.draws import normals_of
-    from calm.case.uncertain import uncertain
-    from calm.cli.progress import begun, mapped
-
-    normals = begun(normals_of, samples, seed)
-    solved = partial(mapped, workers=None, what="blocks of samples solved")
-    return lambda result: uncertain(result, samples, seed, solved, normals)
-
-
-def _schematic(
-    line: Mooring | Tow | Net, result: AnyResult | None
-) -> tuple[TerminalSchematic, ...]:
-    """Draw a line, or its legs, in the signs that the standard output can carry."""
-    from calm.case.net import Net
-    from calm.case.result import NetResult
-    from calm.drawing.schematic.in_terminal import TerminalSchematic, can_carry
-
-    plain = not can_carry(getattr(sys.stdout, "encoding", None))
-    results = result.legs if isinstance(result, NetResult) else [result]
-    lines = line.lines if isinstance(line, Net) else [line]
-    pairs = zip_longest(lines, results)
-    return tuple(TerminalSchematic(of.file, one, plain) for of, one in pairs)
+    if asked and designs:
+        raise UsageError(f"{asked[0]} is for {what}: {', '.join(one.file.path for one in designs)}")

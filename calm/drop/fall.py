@@ -7,10 +7,10 @@ import numpy as np
 
 from calm.drop.chain import chain_of
 from calm.drop.loads import WaterColumn
-from calm.drop.motion import ChainState, Mover, NoStep
+from calm.drop.motion import ChainState, FallingAnchor, Mover, NoStep
 from calm.errors import NoEquilibrium, UsageError
 from calm.physics.line import Line, Water
-from calm.solve import FallingAnchor, Status
+from calm.solve import Status
 
 SKIN, THICKEST_SKIN = 5e-4, 0.3
 """Of the layer in which what floats loses its buoyancy: share of the depth, and at most [m]."""

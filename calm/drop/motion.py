@@ -16,7 +16,6 @@ from calm.drop.loads import SLOWEST, Loads, WaterColumn, loads_on
 from calm.physics.line import Floats, Integers
 from calm.physics.reynolds import Smooth, drag_variation
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.solve import FallingAnchor
 
 MOST_ROUNDS = 16
 """Of Newton's method; a step that takes more is too long."""
@@ -43,6 +42,20 @@ def _overturned(before: Floats, after: Floats) -> bool:
         return False
     sizes = np.prod([np.linalg.norm(chord, axis=1) for chord in chords], axis=0)
     return bool((along < -0.5 * sizes).any())
+
+
+@dataclass(frozen=True)
+class FallingAnchor:
+    """An anchor below a line that falls.
+
+    Attributes
+    ----------
+    weight : in the water at the seabed [N]
+    drag : K of its drag K|V|V in reference water [N/(m/s)²]; 0 where none is known
+    """
+
+    weight: float
+    drag: float = 0.0
 
 
 @dataclass(frozen=True)

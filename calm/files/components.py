@@ -15,7 +15,13 @@ from pydantic import AfterValidator, ConfigDict, Field, ValidationInfo, model_va
 
 from calm.errors import about_quantity
 from calm.files import definition
-from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, QuantityField, optional
+from calm.files.definition import (
+    CATALOGUE_DENSITY,
+    STANDARD_GRAVITY,
+    ColumnHeading,
+    QuantityField,
+    optional,
+)
 from calm.files.rigid import DRAG_FORMS, Body, Cylinder, Profiler, Rigid, Sphere
 from calm.files.yaml_document import unknown_key
 from calm.physics.materials import STEEL_DENSITY, density_of, fibre_of
@@ -37,7 +43,13 @@ def _refuse_what_is_no_curve(points: Points) -> Points:
 
 
 Elongation = Annotated[
-    tuple[tuple[Annotated[float, _LOAD], Annotated[float, _STRAIN]], ...],
+    tuple[
+        tuple[
+            Annotated[float, _LOAD, ColumnHeading("load / breaking load")],
+            Annotated[float, _STRAIN, ColumnHeading("strain")],
+        ],
+        ...,
+    ],
     AfterValidator(_refuse_what_is_no_curve),
 ]
 """Load over breaking load, and the strain under it: rows by growing load."""

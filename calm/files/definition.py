@@ -72,6 +72,12 @@ class QuantityField(QuantityRange):
         }
 
 
+class ColumnHeading(str):
+    """Annotate a value of a row with the heading of its column, where tables are shown."""
+
+    __slots__ = ()
+
+
 def described(description: str, example: object, **default: Any) -> Any:
     """Return the field of a key, required without a `default` or a `default_factory`."""
     return Field(description=description, examples=[example], **default)

@@ -185,6 +185,26 @@ def validate(
         return None
 
 
+def complaint(model: type[BaseModel], name: str, value: object) -> str:
+    """Return why a value cannot stand under a key of a model, by itself; empty where it can."""
+    data = {name: value}
+    try:
+        model.model_validate(data)
+    except ValidationError as error:
+        own = [one for one in error.errors(include_url=False) if one["loc"][:1] == (name,)]
+        for details in sorted(own, key=lambda one: one["type"] == "missing"):
+            _, inner = _existing(data, details["loc"])
+            keys = [part for part in details["loc"] if isinstance(part, str)]
+            if details["type"] == "missing":
+                return f"`{keys[-1]}` is missing"
+            if details["type"] == "extra_forbidden":
+                forms = _models_in(_form(model, details["loc"][:-1]))
+                known = [key for form in forms for key in form.model_fields]
+                return _about_key(keys[-1], inner, known, None)
+            return _about_value(details, keys[-1], inner, model)
+    return ""
+
+
 def _explain(
     error: ValidationError,
     model: type[BaseModel],

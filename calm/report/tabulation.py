@@ -1,11 +1,9 @@
-"""One tow solved many times, a row each, and drawn; what the angle of a bare cable gives."""
+"""A tow at many speeds: a table with a row for each, JSON, CSV and a picture."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import starmap
 from math import floor, isfinite, log10
 from typing import TYPE_CHECKING, Any
 
@@ -17,18 +15,15 @@ from calm.drawing.line_drawing import LINE_COLOUR, WATER_COLOUR
 from calm.drawing.schematic.pen import shortened
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats
-from calm.physics.strumming import BourgetMarichal
 from calm.quantities import QUANTITIES, Quantity
 from calm.records.delimited import table_csv
 from calm.report import blocks
-from calm.report.blocks import Cell, Field, Pairs, ReportPart, number, quiet, table_of, warned
+from calm.report.blocks import Cell, Field, ReportPart, number, quiet, table_of, warned
 from calm.units import KNOT
 from calm.version import __version__
 
 if TYPE_CHECKING:
-    from calm.case import Tow, TowResult
-    from calm.case.strumming import BareCable
-    from calm.case.tow import Variation
+    from calm.case import Design, Result
 
 FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
 """What a row tells of a result: depth and layback of the body, tension and angle at the ship."""
@@ -42,14 +37,13 @@ _KNOTS = replace(QUANTITIES["speed"], display="knot")
 
 @dataclass(frozen=True)
 class TabulationRow:
-    """One solve: what was chosen, as data and in the words of the table, and what came out."""
+    """A speed of the ship over the ground [m/s], and the result or the failure at that speed."""
 
-    chosen: Mapping[str, float | str]
-    shown: tuple[str, ...]
-    outcome: TowResult | NoEquilibrium
+    speed: float
+    outcome: Result | NoEquilibrium
 
     @property
-    def result(self) -> TowResult | None:
+    def result(self) -> Result | None:
         """The equilibrium, where there is one."""
         return None if isinstance(self.outcome, NoEquilibrium) else self.outcome
 
@@ -71,22 +65,16 @@ class TabulationRow:
 
 @dataclass(frozen=True)
 class Tabulation:
-    """A tow solved many times.
-
-    Attributes
-    ----------
-    name : of the tow
-    subject : what differs between the rows: the key of the rows in the document
-    title : of the table
-    headings : over the first columns of the table, those of `TabulationRow.shown`
-    rows : in the order chosen
-    """
+    """The name of a tow, and a row for each speed."""
 
     name: str
-    subject: str
-    title: str
-    headings: tuple[str, ...]
     rows: tuple[TabulationRow, ...]
+
+    @property
+    def title(self) -> str:
+        """The title of the table."""
+        count = len(self.rows)
+        return f"{self.name}: tow at {count} speed{'s' if count != 1 else ''}"
 
     @property
     def strumming(self) -> bool:
@@ -102,69 +90,43 @@ class Tabulation:
 
 
 def by_speed(
-    tow: Tow, speeds: Sequence[float], outcomes: Sequence[TowResult | NoEquilibrium]
+    tow: Design, speeds: Sequence[float], outcomes: Sequence[Result | NoEquilibrium]
 ) -> Tabulation:
-    """Return a row for each speed.
-
-    Parameters
-    ----------
-    tow : as its file has it
-    speeds : over the ground [m/s]
-    outcomes : what came out at each speed
-    """
-    speed = QUANTITIES["speed"]
-    rows = (
-        TabulationRow({"speed": value}, (speed.format(value), _KNOTS.format(value)), outcome)
-        for value, outcome in zip(speeds, outcomes, strict=True)
-    )
-    name, headings = tow.file.name, (f"speed\n{speed.display_unit}", _KNOTS.display)
-    title = f"{name}: tow at {len(speeds)} speed{'s' if len(speeds) != 1 else ''}"
-    return Tabulation(name, "speeds", title, headings, tuple(rows))
-
-
-def by_coefficient(tow: Tow, variations: Sequence[Variation]) -> Tabulation:
-    """A row for each coefficient and change, after one for the tow as it is."""
-    rows = []
-    for one in variations:
-        said = f"{one.coefficient.upper()} {one.change:+.0%}" if one.coefficient else "nothing"
-        chosen: dict[str, float | str] = {"coefficient": one.coefficient, "change": one.change}
-        rows.append(TabulationRow(chosen, (said,), one.outcome))
-    title = f"{tow.file.name}: how A1, B1 and C1 affect its strumming"
-    return Tabulation(tow.file.name, "sensitivity", title, ("changed",), tuple(rows))
+    """Tabulate the outcomes at speeds over the ground [m/s]."""
+    rows = map(TabulationRow, speeds, outcomes)
+    return Tabulation(tow.file.name, tuple(rows))
 
 
 def to_document(tabulation: Tabulation) -> dict[str, Any]:
-    """The JSON object: `calm`, `name`, `type` and, under the subject, an object for each row.
+    """The JSON object: `calm`, `name`, `type` and `speeds`, an object for each row.
 
-    A row has what was chosen, `status` and `FIGURES` (SI and degrees; `frequency` only where the
+    A row has `speed`, `status` and `FIGURES` (SI and degrees; `frequency` only where the
     cable strums), and its `warnings`, or, without an equilibrium, `message` and `advice`.
     """
     return {
         "calm": __version__,
         "name": tabulation.name,
         "type": "tow",
-        tabulation.subject: [_row_document(tabulation, row) for row in tabulation.rows],
+        "speeds": [_row_document(tabulation, row) for row in tabulation.rows],
     }
 
 
 def to_csv(tabulations: Sequence[Tabulation]) -> str:
-    """The rows of one tow or several, of one subject, as CSV text (UTF-8, comma, point, LF)."""
-    chosen = list(tabulations[0].rows[0].chosen) if tabulations else []
-    names = [QUANTITIES[name].header if name in QUANTITIES else name for name in chosen]
+    """The rows of one tow or several as CSV text (UTF-8, comma, point, LF)."""
     figures = (QUANTITIES[name].header for name in FIGURES)
     rows = (
-        [tabulation.name, *row.chosen.values(), row.outcome.status, *row.figures.values()]
+        [tabulation.name, row.speed, row.outcome.status, *row.figures.values()]
         for tabulation in tabulations
         for row in tabulation.rows
     )
-    return table_csv(["tow", *names, "status", *figures], rows)
+    return table_csv(["tow", QUANTITIES["speed"].header, "status", *figures], rows)
 
 
 def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
     figures = row.figures
     if not tabulation.strumming:
         del figures["frequency"]
-    document = {**row.chosen, "status": row.outcome.status, **figures}
+    document = {"speed": row.speed, "status": row.outcome.status, **figures}
     if isinstance(row.outcome, NoEquilibrium):
         return document | row.outcome.to_dict()
     return document | {"warnings": list(row.outcome.warnings)}
@@ -176,15 +138,13 @@ def tabulation_part(tabulation: Tabulation) -> ReportPart:
     A row without equilibrium shows its status, one with warnings of its own a mark; warnings that
     all rows share stand below.
     """
+    speed = QUANTITIES["speed"]
     names = [name for name in FIGURES if name != "frequency" or tabulation.strumming]
 
     def figure(name: str) -> Field:
         shown, fine = QUANTITIES[name], _fine(name, tabulation)
         heading = _HEADINGS.get(name, shown.heading)
         return number(heading, lambda row: fine.format(row.figures[name]), shown.display_unit)
-
-    def chosen(at: int, heading: str) -> Field:
-        return number(heading, lambda row: row.shown[at])
 
     def remark(row: TabulationRow) -> Cell:
         text = _remark(tabulation, row)
@@ -193,7 +153,8 @@ def tabulation_part(tabulation: Tabulation) -> ReportPart:
     table = table_of(
         "",
         tabulation.rows,
-        *starmap(chosen, enumerate(tabulation.headings)),
+        number(f"speed\n{speed.display_unit}", lambda row: speed.format(row.speed)),
+        number(_KNOTS.display, lambda row: _KNOTS.format(row.speed)),
         *map(figure, names),
         blocks.words("", remark, 0.0),
     )
@@ -218,53 +179,6 @@ def _remark(tabulation: Tabulation, row: TabulationRow) -> str:
     return "!" if set(row.outcome.warnings) - set(tabulation.warnings) else ""
 
 
-def bare_cable_document(cable: BareCable) -> dict[str, Any]:
-    """The JSON object: what was given (SI, degrees), `cn`, `amplitude` a/D, `frequency`, `notes`.
-
-    `frequency` is None where the cable does not vibrate.
-    """
-    cn, amplitude = cable.vibration
-    return {
-        **vars(cable),
-        "cn": cn,
-        "amplitude": amplitude,
-        "frequency": cable.frequency if amplitude else None,
-        "notes": list(_notes(cable)),
-    }
-
-
-def bare_cable_part(cable: BareCable) -> ReportPart:
-    """The answer, and what to keep in mind with it."""
-    cn, amplitude = cable.vibration
-    pairs = [
-        ("weight in water", f"{cable.weight:.3f} N/m"),
-        ("drag coefficient C*", f"{cn:.3f}"),
-        ("amplitude a/D", f"{amplitude:.3f}"),
-    ]
-    if amplitude:
-        pairs += [
-            ("amplitude a", f"{1000.0 * amplitude * cable.diameter:.1f} mm"),
-            ("frequency", f"{cable.frequency:.2f} Hz"),
-        ]
-    title = f"Bare cable at {cable.angle:g}° behind a ship at {cable.speed:.3g} m/s"
-    return ReportPart(title, (Pairs(tuple(pairs)), *warned(_notes(cable))))
-
-
-def _notes(cable: BareCable) -> Iterator[str]:
-    law = BourgetMarichal()
-    cn, amplitude = cable.vibration
-    least = math.degrees(law.LEAST_ANGLE)
-    if cable.angle < least:
-        yield (
-            f"Below {least:.0f}° the coefficient of a cable at rest, C0 = {law.rest:g}, is "
-            "not validated: check a/D."
-        )
-    if not amplitude:
-        yield f"C* is not above C0 = {law.rest:g}, a cable at rest: it does not vibrate."
-    if cn > law.ceiling:
-        yield f"C* is above {law.ceiling:g}, the maximum of the method: check the measurements."
-
-
 _WIDTH, _HEIGHT, _SIZE = 600.0, 247.0, 8.0  # points; the last one of the letters
 _PANEL, _TOP, _LOW = 148.0, 66.0, 32.0  # width of a panel, and what is above and below it
 _LEFTS = (44.0, 244.0, 444.0)
@@ -280,7 +194,7 @@ def sweep_drawing(tabulation: Tabulation) -> str:
     page = Graph(_WIDTH, _HEIGHT, tabulation.name, _SIZE)
     title = shortened(tabulation.name, _WIDTH - 12.0, 11.0, bold=True)
     page.pen.letters(_WIDTH / 2, 10.0, title, size=11.0, bold=True, anchor="middle")
-    speeds = [float(row.chosen["speed"]) for row in tabulation.rows]
+    speeds = [row.speed for row in tabulation.rows]
     margin = 0.04 * (speeds[-1] - speeds[0]) or speeds[0]
     across = Scale(speeds[0] - margin, speeds[-1] + margin)
     columns = {

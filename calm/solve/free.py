@@ -1,8 +1,7 @@
-"""Terminal motion of a line without a fixed end: it falls behind its anchor, or rises without one.
+"""Terminal motion of a line that rises without its anchor.
 
 All of the line moves alike, at the velocity at which weight, buoyancy and drag cancel. It is taken
-to have reached that velocity, in the water at one place: where the anchor comes to the seabed, or
-where the rise begins.
+to have reached that velocity in the water where the rise begins.
 
 In still water, and in a current that is the same at all depths, the line drifts with the water and
 is plumb; only its vertical speed is unknown. Where the horizontal current changes with depth the
@@ -24,7 +23,7 @@ from calm.physics.line import Floats, Line, MarchError, Water
 from calm.physics.march import Cuts
 from calm.physics.track import head_count
 from calm.solve.audit import loads_of
-from calm.solve.free_march import Falling, FallingAnchor, Moving, Rising
+from calm.solve.free_march import Rising
 from calm.solve.free_search import FreePlace, terminal
 from calm.solve.search import LARGEST_CLOSURE
 from calm.solve.solution import Settings, Solution, Status, nodes_of, runs_compiled
@@ -47,15 +46,17 @@ class FreeMotion:
     tangles: tuple[int, ...]
 
 
-def solve_fall(
-    line: Line, water: Water, anchor: FallingAnchor, settings: Settings | None = None
+def solve_rise(
+    line: Line, water: Water, depth: float, settings: Settings | None = None
 ) -> FreeMotion:
-    """The motion of a line that its anchor pulls down, when the anchor comes to the seabed.
+    """The motion of a line that nothing holds; one that is too heavy sinks.
 
     Parameters
     ----------
-    line, water : see `calm.physics.line`; what of the line is above the surface counts as below it
-    settings : angle step; 1° where not given
+    line, water : see `calm.physics.line`; the seabed stops nothing. Parts above the surface are
+        treated as submerged
+    depth : of the line's upper end [m]
+    settings : angle step; 1° by default
 
     Returns
     -------
@@ -64,60 +65,27 @@ def solve_fall(
     Raises
     ------
     NoEquilibrium
-        ``anchor-lifts`` where the line is too buoyant to fall, ``no-equilibrium`` where no drag
-        limits its speed, ``not-converged`` where no motion passes the checks.
-    """
-    settings = settings or Settings()
-    motion = _solve(Falling(line, water, runs_compiled(settings, line), anchor), settings)
-    if motion.velocity[2] >= 0.0:
-        raise Status.ANCHOR_LIFTS.because(
-            f"The anchor weighs {anchor.weight:.0f} N in water and does not pull the line down."
-        )
-    return motion
-
-
-def solve_rise(
-    line: Line, water: Water, depth: float, settings: Settings | None = None
-) -> FreeMotion:
-    """The motion of a line that nothing holds; one that is too heavy sinks.
-
-    Parameters
-    ----------
-    line, water : see `calm.physics.line`; the seabed stops nothing
-    depth : of the line's upper end [m]
-    settings : angle step; 1° where not given
-
-    Returns
-    -------
-    FreeMotion : as accurate as that of a fall
-
-    Raises
-    ------
-    NoEquilibrium
         ``no-equilibrium`` where no drag limits the speed, ``not-converged`` where no motion passes
         the checks.
     """
     settings = settings or Settings()
-    return _solve(Rising(line, water, runs_compiled(settings, line), depth), settings)
-
-
-def _solve(moving: Moving, settings: Settings) -> FreeMotion:
+    rising = Rising(line, water, runs_compiled(settings, line), depth)
     try:
-        place, cuts = terminal(moving, settings.angle_step)
-        return _recorded(moving, place, cuts, settings)
+        place, cuts = terminal(rising, settings.angle_step)
+        return _recorded(rising, place, cuts, settings)
     except MarchError as error:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.") from error
 
 
-def _recorded(moving: Moving, place: FreePlace, cuts: Cuts, settings: Settings) -> FreeMotion:
+def _recorded(rising: Rising, place: FreePlace, cuts: Cuts, settings: Settings) -> FreeMotion:
     """The motion at a place, marched once more, audited."""
-    flow = moving.flow(place.velocity)
-    meeting = moving.meet(flow, place.depth, settings.angle_step, cuts, record=True)
+    flow = rising.flow(place.velocity)
+    meeting = rising.meet(flow, place.depth, settings.angle_step, cuts, record=True)
     trace = meeting.trace
     assert trace is not None
     position, force = nodes_of(trace)
     solution = Solution(
-        line=moving.line,
+        line=rising.line,
         water=flow,
         settings=settings,
         position=position,
@@ -132,7 +100,7 @@ def _recorded(moving: Moving, place: FreePlace, cuts: Cuts, settings: Settings) 
         afloat=(),
         buoyancy_used=1.0,
         reserve=0.0,
-        carried=moving.line,
+        carried=rising.line,
         marches=0,
         segments=len(meeting.cuts.lengths),
         miss=meeting.gap,
@@ -141,8 +109,7 @@ def _recorded(moving: Moving, place: FreePlace, cuts: Cuts, settings: Settings) 
         lift_error=nan,
         pull_error=nan,
     )
-    left = loads_of(solution).sum(axis=0) + moving.anchor_force(flow)
-    closure = float(np.linalg.norm(left)) / moving.weight
+    closure = float(np.linalg.norm(loads_of(solution).sum(axis=0))) / rising.weight
     if not closure <= LARGEST_CLOSURE:
         raise Status.NOT_CONVERGED.because(
             f"The loads on the moving line do not cancel: they are {closure:.1e} off."

@@ -1,11 +1,9 @@
-"""The marches of a line that no end holds, in the water as it flows past the line.
+"""The marches of a rising line that nothing holds, in the water as it flows past the line.
 
-A line that falls is marched from its upper end down to its anchor. A line that rises is marched
-from both its ends to where its tension should be greatest: a march that comes to a free end with
-the last of its tension swings wildly there, one that starts from it does not.
+It is marched from both its ends to where its tension should be greatest: a march that comes to a
+free end with the last of its tension swings wildly there, one that starts from it does not.
 """
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import degrees
@@ -15,41 +13,18 @@ import numpy as np
 from calm.physics.line import Floats, Line, Trace, Water
 from calm.physics.march import Cuts, End, march
 from calm.physics.profile import Profile
-from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.track import Track, head_count
 from calm.solve.problem import REACH
 
 
 @dataclass(frozen=True)
-class FallingAnchor:
-    """An anchor below a line that falls.
-
-    Attributes
-    ----------
-    weight : in the water at the seabed [N]
-    drag : K of its drag K|V|V in reference water [N/(m/s)²]; 0 where none is known
-    """
-
-    weight: float
-    drag: float = 0.0
-
-    def force(self, flow: Water) -> Floats:
-        """(3,) weight and drag [N] at the seabed of the water that flows past it."""
-        bottom = np.array(flow.depth)
-        current, density = flow.current_at(bottom), flow.density_at(bottom)
-        drag = self.drag * float(density) / REFERENCE_DENSITY * float(np.linalg.norm(current))
-        force: Floats = drag * current - [0.0, 0.0, self.weight]
-        return force
-
-
-@dataclass(frozen=True)
 class Meeting:
-    """Hold what is wrong where two marches meet, or a march meets its anchor.
+    """Imbalance where the marches from the two ends meet.
 
     Attributes
     ----------
     force : (3,) sum of all forces [N]
-    gap : by which the end in question should start deeper [m]
+    gap : by which the lower end should start deeper [m]
     cuts : the segments used
     trace : the shape, where it was to be recorded
     """
@@ -61,39 +36,20 @@ class Meeting:
 
 
 @dataclass(frozen=True)
-class Moving(ABC):
-    """A line that moves steadily, all of it alike, in water whose current is that over the ground.
+class Rising:
+    """A line that rises steadily as a whole, in a current relative to the ground.
 
-    One of its ends is at a depth that is unknown; it is the `depth` of the methods [m]. `compiled`
-    is as in `Settings`.
+    Attributes
+    ----------
+    line, water : see `calm.physics.line`
+    compiled : as in `Settings`
+    top : depth of the upper end [m]; the depth of the lower end is unknown
     """
 
     line: Line
     water: Water
     compiled: bool
-
-    @property
-    @abstractmethod
-    def guessed_depth(self) -> float:
-        """About where the end of unknown depth is [m]."""
-
-    @abstractmethod
-    def meet(
-        self,
-        flow: Water,
-        depth: float,
-        angle_step: float,
-        cuts: Cuts | None = None,
-        record: bool = False,
-    ) -> Meeting:
-        """March in the water as it flows past the line.
-
-        `angle_step` [rad], `cuts` and `record` are those of `calm.physics.march`.
-        """
-
-    def anchor_force(self, flow: Water) -> Floats:
-        """(3,) of an anchor below the line [N]."""
-        return np.zeros(3)
+    top: float
 
     @property
     def lifts(self) -> Floats:
@@ -142,52 +98,9 @@ class Moving(ABC):
             compiled=self.compiled,
         )
 
-
-@dataclass(frozen=True)
-class Falling(Moving):
-    """A line above its anchor, which is about to touch the seabed."""
-
-    anchor: FallingAnchor
-
-    @cached_property
-    def _track(self) -> Track:
-        return Track.of(self.line)
-
-    @property
-    def lifts(self) -> Floats:
-        return np.append(super().lifts, -self.anchor.weight)
-
-    def anchor_force(self, flow: Water) -> Floats:
-        return self.anchor.force(flow)
-
     @property
     def guessed_depth(self) -> float:
-        """Of the upper end."""
-        return self.water.depth - self.line.anchor_height - float(self.line.length.sum())
-
-    def meet(
-        self,
-        flow: Water,
-        depth: float,
-        angle_step: float,
-        cuts: Cuts | None = None,
-        record: bool = False,
-    ) -> Meeting:
-        end = self._run(self._track, flow, depth, angle_step, cuts, record)
-        goal = self.line.anchor_height - self.water.depth
-        force = np.array(end.force) + self.anchor_force(flow)
-        return Meeting(force, end.z - goal, end.cuts, end.trace if record else None)
-
-
-@dataclass(frozen=True)
-class Rising(Moving):
-    """A line whose upper end is at a depth `top` [m]."""
-
-    top: float
-
-    @property
-    def guessed_depth(self) -> float:
-        """Of the lower end."""
+        """About where the lower end is [m]."""
         return self.top + float(self.line.length.sum())
 
     @cached_property
@@ -222,6 +135,10 @@ class Rising(Moving):
         cuts: Cuts | None = None,
         record: bool = False,
     ) -> Meeting:
+        """March in the water as it flows past the line, with the lower end at a depth [m].
+
+        `angle_step` [rad], `cuts` and `record` are those of `calm.physics.march`.
+        """
         above, below = self._tracks
         cables = len(above.cables)
         upper = None if cuts is None else cuts.first(cables)

@@ -1,4 +1,4 @@
-"""Search of the velocity of a line that moves freely: Newton's method, Broyden's updates."""
+"""Search of the velocity of a line that rises freely: Newton's method, Broyden's updates."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ import numpy as np
 
 from calm.physics.line import Floats, MarchError
 from calm.physics.march import NO_CUTS, Cuts
-from calm.solve.free_march import Moving
+from calm.solve.free_march import Rising
 from calm.solve.least_change import root_near
 from calm.solve.solution import Status
 
@@ -27,13 +27,13 @@ SHEARS = ((1.0,), (0.1, 0.25, 0.5, 0.75, 1.0))
 
 @dataclass(frozen=True)
 class FreePlace:
-    """Velocity over the ground (3,) [m/s], and the depth that a `Moving` leaves open [m]."""
+    """Velocity over the ground (3,) [m/s], and the depth that a `Rising` leaves open [m]."""
 
     velocity: Floats
     depth: float
 
 
-def terminal(moving: Moving, angle_step: float) -> tuple[FreePlace, Cuts]:
+def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
     """Return how fast and where a line moves, and the segments on which it does so exactly.
 
     Parameters
@@ -46,33 +46,33 @@ def terminal(moving: Moving, angle_step: float) -> tuple[FreePlace, Cuts]:
         ``no-equilibrium`` where nothing limits the speed, ``not-converged`` where no root is found.
     MarchError
     """
-    plumb = _plumb(moving, angle_step)
+    plumb = _plumb(rising, angle_step)
     for shares in SHEARS:
         found: tuple[FreePlace, Cuts] | None = (plumb, NO_CUTS)
         for share in shares:
             if found is not None:
-                found = _closed(_sheared(moving, plumb.velocity, share), found[0], angle_step)
+                found = _closed(_sheared(rising, plumb.velocity, share), found[0], angle_step)
         if found is not None:
             return found
     raise Status.NOT_CONVERGED.because("No steady motion of the line was found.")
 
 
-def _sheared(moving: Moving, velocity: Floats, share: float) -> Moving:
+def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
     """Return the same line in a current that departs from a velocity (3,) [m/s] by a share only."""
-    (east, north, _), water = velocity, moving.water
+    (east, north, _), water = velocity, rising.water
     u, v = east + share * (water.u - east), north + share * (water.v - north)
-    return replace(moving, water=replace(water, u=u, v=v))
+    return replace(rising, water=replace(water, u=u, v=v))
 
 
-def _plumb(moving: Moving, angle_step: float) -> FreePlace:
+def _plumb(rising: Rising, angle_step: float) -> FreePlace:
     """The motion of the line if it were plumb, drifting with the mean current.
 
     The drag goes with the square of the speed or nearly so: secants in that find it at once. Where
     smooth pieces in the drag crisis allow several speeds, it is one of them.
     """
-    none = np.zeros_like(moving.water.u)
-    upright = replace(moving, water=replace(moving.water, u=none, v=none))
-    depth = moving.guessed_depth
+    none = np.zeros_like(rising.water.u)
+    upright = replace(rising, water=replace(rising.water, u=none, v=none))
+    depth = rising.guessed_depth
 
     def meeting(squared: float) -> tuple[FreePlace, float]:
         """Return where the line is at the signed square of a speed, and what lifts it there [N]."""
@@ -91,20 +91,20 @@ def _plumb(moving: Moving, angle_step: float) -> FreePlace:
     )
     if not found:
         raise Status.NO_EQUILIBRIUM.because(
-            "Nothing limits the speed of the line: neither it nor its anchor has any drag.",
-            advice="Give its pieces, or the anchor (`kt`), their drag.",
+            "Nothing limits the rise speed of the line: none of its pieces has any drag.",
+            advice="Set the drag of its pieces.",
         )
     place, _ = meeting(squared)
-    return replace(place, velocity=place.velocity + _mean_current(moving, place, angle_step))
+    return replace(place, velocity=place.velocity + _mean_current(rising, place, angle_step))
 
 
-def _mean_current(moving: Moving, place: FreePlace, angle_step: float) -> Floats:
+def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats:
     """(3,) horizontal current where the line is, the mean by normal drag or nearly so [m/s]."""
-    water, line = moving.water, moving.line
-    if moving.plumb:
+    water, line = rising.water, rising.line
+    if rising.plumb:
         return np.array([water.u[0], water.v[0], 0.0])
-    flow = moving.flow(place.velocity)
-    trace = moving.meet(flow, place.depth, COARSE * angle_step, record=True).trace
+    flow = rising.flow(place.velocity)
+    trace = rising.meet(flow, place.depth, COARSE * angle_step, record=True).trace
     assert trace is not None
     piece, clamp, height = trace.piece, trace.clamp, trace.position[:, 2]
     drag = line.normal_drag[piece] * np.where(line.flexible[piece], trace.cut, 1.0)
@@ -115,14 +115,14 @@ def _mean_current(moving: Moving, place: FreePlace, angle_step: float) -> Floats
     return mean * [1.0, 1.0, 0.0]
 
 
-def _closed(moving: Moving, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
+def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
     """The motion near a place, on the segments that the march chooses there; None if there is none.
 
     With its free choice of segments the march is not quite continuous, so it is closed on given
     ones: first on coarse ones, then on those that it chooses at that answer.
     """
-    unknown = np.array([not moving.plumb, not moving.plumb, True, True])
-    speed, span = max(float(np.linalg.norm(place.velocity)), SLOWEST), moving.water.depth
+    unknown = np.array([not rising.plumb, not rising.plumb, True, True])
+    speed, span = max(float(np.linalg.norm(place.velocity)), SLOWEST), rising.water.depth
     units = np.array([speed, speed, speed, span])[unknown]
     values = np.append(place.velocity, place.depth)
 
@@ -132,15 +132,15 @@ def _closed(moving: Moving, place: FreePlace, angle_step: float) -> tuple[FreePl
 
     def left(step: float, cuts: Cuts, x: Floats) -> Floats:
         here = at(x)
-        met = moving.meet(moving.flow(here.velocity), here.depth, step, cuts)
-        forces: Floats = np.append(met.force / moving.weight, met.gap / span)[unknown]
+        met = rising.meet(rising.flow(here.velocity), here.depth, step, cuts)
+        forces: Floats = np.append(met.force / rising.weight, met.gap / span)[unknown]
         return forces
 
     x, slopes = values[unknown] / units, None
     for step, small in ((COARSE * angle_step, NEAR), (angle_step, CLOSE)):
         here = at(x)
         try:
-            cuts = moving.meet(moving.flow(here.velocity), here.depth, step).cuts
+            cuts = rising.meet(rising.flow(here.velocity), here.depth, step).cuts
         except MarchError:
             return None
         root = system_root(partial(left, step, cuts), x, small, slopes)

@@ -2,10 +2,10 @@
 shown."""
 
 import os
-import sys
 import time
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from typing import Any, ClassVar
 
 from rich.console import RenderableType
@@ -21,8 +21,8 @@ from textual.widgets import OptionList
 
 from calm.errors import CalmError
 from calm.files import Catalogue, editing
-from calm.tui import builder, dialogs, key_table, saving, workspace
-from calm.tui.painted import Pace, Painted, PlainSigns, shows_all_signs
+from calm.tui import builder, dialogs, key_table, palette, saving, workspace
+from calm.tui.painted import Pace, Painted
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
@@ -60,7 +60,7 @@ class BuildApp(App[int]):
     """
 
     TITLE = "calm build"
-    COMMANDS: ClassVar[set[Any]] = {*App.COMMANDS, key_table.Actions}
+    COMMANDS: ClassVar[set[Any]] = {*App.COMMANDS, palette.Actions}
     CSS = """
     * { scrollbar-size: 1 1; }
     Input > .input--placeholder { text-style: italic dim; }
@@ -81,12 +81,11 @@ class BuildApp(App[int]):
         self.session = session
         self.workspace = workspace.Workspace(session, self.tell, self._edited)
         self.judging = workspace.Judging(self, self.workspace, self._show_views)
-        self.saving = saving.Saving(self, self.workspace)
+        self.saving = saving.Saving(self, self.workspace, self.taken_over, self.leave)
         self.builder = builder.BuilderScreen(self.workspace)
         self.not_kept = ""
         self._painted, self._pace = Painted(), Pace()
         self._offered = kept
-        self._plain = [] if shows_all_signs(environ, sys.__stderr__) else [PlainSigns()]
         self._is_catalogue_read = False
         self._autosaving: Timer | None = None
         self._late: Timer | None = None
@@ -166,7 +165,7 @@ class BuildApp(App[int]):
         self._read_catalogue()
         self.judging.ask()
         if self._offered is not None:
-            self.saving.offer(self._offered)
+            self.saving.offer(self._offered, partial(self.mend, as_judged=True))
         else:
             self.mend()
         is_unsaved = self.session.file.is_open_elsewhere()
@@ -181,12 +180,12 @@ class BuildApp(App[int]):
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Those of textual, and one for legible colours or for none, and one for plain signs."""
+        """Those of textual, and one for legible colours or for none."""
         if self.no_color:
-            return [_COLOURLESS, *self._plain]
+            return [_COLOURLESS]
         theme = self.current_theme
         own = legible(theme.dark, "ansi" in theme.name)
-        return [*super().get_line_filters(), own, *self._plain]
+        return [*super().get_line_filters(), own]
 
     def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
         """Send the terminal what it does not show yet, once it has shown what was sent before."""
@@ -255,7 +254,7 @@ class BuildApp(App[int]):
     def action_command_palette(self) -> None:
         """Find a command by its name."""
         if not isinstance(self.screen, CommandPalette):
-            self.push_screen(key_table.Commands(id="--command-palette"))
+            self.push_screen(palette.Commands(id="--command-palette"))
 
     def action_help(self) -> None:
         """All keys."""

@@ -7,20 +7,22 @@ from textual import on
 from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
+from calm.files.reader import MooringKeys
 from calm.shipped import TEMPLATES, Template, template
 from calm.tui.catalogue_pane import Purpose
 from calm.tui.cell_editor import CellEditor
 from calm.tui.comparing import ComparingScreen
 from calm.tui.component_screen import Defined
 from calm.tui.dialogs import Question, ask, choose, numbered
+from calm.tui.forms import values_of, written
 from calm.tui.key_table import bindings, hints
 from calm.tui.mooring_sheet import (
-    SHEETS,
     figures_sheet,
     hung_at,
     missing_figures,
+    settings,
+    sheet_of,
     with_figures,
-    written,
 )
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import KeyBar
@@ -87,11 +89,6 @@ class BuilderScreen(ComparingScreen):
         which = f"environment {name}" if name else "own `environment:`"
         self.tell(f"The line stands in the file's {which}")
         self.workspace.edited()
-
-    def action_overlay(self) -> None:
-        """Draw the line in all its environments, or in its own alone."""
-        shown = self.pictures.overlay()
-        self.tell("All environments that are judged are drawn" if shown else "One is drawn alone")
 
     def action_verdict(self) -> None:
         """The verdict line by line."""
@@ -174,7 +171,7 @@ class BuilderScreen(ComparingScreen):
         index, session = self.workspace.index, self.session
 
         def take(defined: Defined) -> None:
-            id, values = defined
+            id, values = defined[0], values_of(defined[1])
             if self.line.attempt(
                 lambda: session.do(session.draft.put_component(id, values), f"define {id}"),
                 f"{id} is defined in the file; the catalogue has it",
@@ -236,9 +233,18 @@ class BuilderScreen(ComparingScreen):
         """Ask for what the file says of the whole of it, and write what is entered."""
         session, view = self.session, self.workspace.view if self.workspace.is_fresh else None
         hung = hung_at(None if view is None else view.file, self.line.table.spot)
-        sheet, label, changed = SHEETS[name](session.draft, hung)
+        sheet, label, changed = sheet_of(name, session.draft, hung)
 
         def take(texts: dict[str, str]) -> None:
             self.line.attempt(lambda: session.do(changed(session.draft, texts), label))
 
         ask(self.app, sheet, take)
+
+    def action_settings(self) -> None:
+        """Ask which section of the file is wanted, and open its form."""
+        models = MooringKeys.model_fields
+        answers = numbered(
+            (f"{name}: {models[name].description}", partial(self.action_sheet, name))
+            for name in settings()
+        )
+        choose(self.app, Question("Settings", "Forms of the file's other sections.", answers))

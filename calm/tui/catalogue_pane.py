@@ -19,7 +19,8 @@ from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
 from calm.files.editing.user_state import Remembered
 from calm.tui import dialogs, key_table, theme
 from calm.tui.checking import distance, length
-from calm.tui.field import Asked, ScrolledEntry
+from calm.tui.field import ScrolledEntry
+from calm.tui.forms import Asked
 from calm.tui.scrolled import ScrolledText, TableCells, TableColumn
 from calm.tui.workspace import Workspace
 

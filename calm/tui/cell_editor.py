@@ -1,5 +1,6 @@
 """A table whose values are edited where they stand."""
 
+from collections.abc import Callable
 from typing import Literal
 
 from textual import events
@@ -9,7 +10,6 @@ from textual.containers import Vertical
 from calm.tui import field, key_table
 from calm.tui.checking import Check, Reading, anything
 from calm.tui.scrolled import TableCells
-from calm.tui.workspace import Workspace
 
 Then = Literal["stay", "edit next", "right", "up", "down"]
 """Where the cursor goes from a value that was taken."""
@@ -19,14 +19,16 @@ class EditableTable(Vertical):
     """A table, and over it the line of input that edits the cell under its cursor.
 
     What is made of it begins with `open_editor`, and says how a text is written, and where the
-    cursor goes from one that was taken.
+    cursor goes from one that was taken. `tell` says something in the last line of the screen.
     """
 
     DEFAULT_CSS = "EditableTable { layers: table over; }"
 
-    def __init__(self, workspace: Workspace, table: TableCells, *, id: str | None = None) -> None:
+    def __init__(
+        self, tell: Callable[..., object], table: TableCells, *, id: str | None = None
+    ) -> None:
         super().__init__(id=id)
-        self.workspace, self.table, self.editor = workspace, table, CellEditor(self)
+        self.tell, self.table, self.editor = tell, table, CellEditor(self)
 
     def compose(self) -> ComposeResult:
         """The rows, and over them what is edited."""
@@ -39,7 +41,7 @@ class EditableTable(Vertical):
 
     def tell_reading(self, reading: Reading) -> None:
         """Tell what the text typed so far comes to."""
-        self.workspace.tell(reading.told(self.editor.value), wrong=not reading.is_good)
+        self.tell(reading.told(self.editor.value), wrong=not reading.is_good)
 
     def go_on(self, then: Then, text: str | None) -> None:
         """Go on from a cell whose text was taken, None where it stays as it was."""
@@ -78,7 +80,7 @@ class EditableTable(Vertical):
         reading = self.editor.settle()
         if not reading.is_good:
             self.editor.focus()
-            self.workspace.tell(f"Not taken yet: {reading.note}", wrong=True)
+            self.tell(f"Not taken yet: {reading.note}", wrong=True)
         elif self.editor.is_open:
             self._take_typed()
         return reading.is_good
@@ -97,7 +99,7 @@ class EditableTable(Vertical):
             self.editor.remove_class("-open", "-wrong")
             if self.editor.is_here:
                 self.table.focus()
-            self.workspace.tell("")
+            self.tell("")
 
     def done(self, then: Then) -> None:
         """Take the good text that is typed, and go on where it was not left for another place."""
@@ -111,7 +113,7 @@ class EditableTable(Vertical):
         self.leave_cell()
         self.abandoned()
         if reason:
-            self.workspace.tell(reason, wrong=True)
+            self.tell(reason, wrong=True)
 
 
 class CellEditor(field.ScrolledEntry):

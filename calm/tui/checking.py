@@ -1,13 +1,11 @@
 """Checks of what a person types, as it is typed: taken, completed by its unit, or refused."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import date
 
-from calm.files import editing, logbook
+from calm.files import editing, item_keys
 from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
-from calm.records.current_terms import TimeChoiceError, parse_time
 from calm.units import QuantityError, QuantityRange
 
 COUNT = QuantityField("number", at_least=1, at_most=10_000)
@@ -60,24 +58,17 @@ def anything(text: str) -> Reading:
     return Reading(" ".join(text.split()))
 
 
-def day(text: str) -> Reading:
-    """Check a day of the calendar, which may be left out."""
-    tidy = text.strip()
-    try:
-        return Reading(tidy and date.fromisoformat(tidy).isoformat())
-    except ValueError:
-        return Reading("", "a day of the calendar is needed, as 2027-06-30")
+def one_of(words: Sequence[str]) -> Check:
+    """One of some words, or nothing; the beginning of one is completed."""
 
+    def check(text: str) -> Reading:
+        tidy = text.strip()
+        if not tidy or tidy in words:
+            return Reading(tidy)
+        near = [word for word in words if word.casefold().startswith(tidy.casefold())]
+        return Reading(tidy, f"must be {' or '.join(words)}", near[0] if near else None)
 
-def moment(text: str) -> Reading:
-    """A day of the calendar, or a day and time, or nothing."""
-    tidy = text.strip()
-    try:
-        if tidy:
-            parse_time(tidy)
-    except TimeChoiceError as error:
-        return Reading("", str(error))
-    return Reading(tidy)
+    return check
 
 
 def needed(what: str) -> Check:
@@ -154,7 +145,7 @@ def length(before: str = "", *, towed: bool = False) -> Check:
     """A length, one with the load it is measured ``at``, or ``fit`` with the depth to reach."""
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))
-    load = quantity(logbook.LOAD, usual_unit="kN")
+    load = quantity(item_keys.LOAD, usual_unit="kN")
     what = "the depth its lower end is to reach" if towed else "the depth the top is to reach"
 
     def check(text: str) -> Reading:

@@ -10,16 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from calm.errors import CalmError
-from calm.files.editing import Draft, WorkingFile
+from calm.files.editing import Draft
 from calm.tui import checking, line_screen
 from calm.tui.dialogs import Answer, LongText, Question, choose, enter, numbered
-from calm.tui.field import Asked
+from calm.tui.forms import Asked
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from calm.case import Mooring, Result, net
-    from calm.case.result import NetResult
+    from calm.case import Design, Result
     from calm.tui.advice import Offer
     from calm.tui.live import View
 
@@ -30,64 +29,39 @@ _PAPERS = {"report": ("check", "--report"), "deck": ("deck", "--output")}
 
 
 class ComparingScreen(line_screen.LineScreen):
-    """The line and what it is compared with: what was saved, other files, changes that help.
+    """The line and what it is compared with: what was saved, and changes that help.
 
     All of it is judged in a thread; what comes of it is asked about or told.
     """
 
     def action_compare(self) -> None:
-        """Show what has changed since the file was saved."""
-        if self.settle():
-            if self.session.changed:
-                self._judge_beside(self.session.history.saved_text, None)
-            else:
-                self.pictures.put_beside(None)
-                self.tell("Nothing has changed since it was saved")
-
-    def action_compare_file(self) -> None:
-        """Ask for another file; draw its line beside this one, and show the differences."""
-
-        def take(texts: dict[str, str]) -> None:
-            if not texts["file"]:
-                self.pictures.put_beside(None)
-                return
-            file = Path(texts["file"])
-            try:
-                text = WorkingFile(file).read()
-            except (CalmError, OSError) as error:
-                self.tell(str(error), wrong=True)
-            else:
-                self._judge_beside(text, file)
-
-        if self.settle():
-            asked = [Asked("file", "File", placeholder="e.g. other.yaml")]
-            text = "Its line is drawn dashed beside this one; no name takes it away again."
-            enter(self.app, "Compare with another file", text, asked, take)
-
-    def _judge_beside(self, text: str, file: Path | None) -> None:
-        """Judge a text beside the line's: of another file, or of its own as it was saved."""
+        """Show what has changed since the file was saved, and draw the line as it was."""
+        if not self.settle():
+            return
+        if not self.session.changed:
+            self.pictures.put_beside(None)
+            self.tell("Nothing has changed since it was saved")
+            return
         view = self.workspace.judged("The line is still being judged; ask again")
         if view is None:
             return
-        path, environment = (view.path, view.environment) if file is None else (file, None)
+        text, catalogs = self.session.history.saved_text, self.session.catalogs
 
         def work() -> None:
             from calm.tui.live import judge
 
-            keep = view if file is None else None
-            before = judge(text, path, environment, self.session.catalogs, keep=keep)
+            before = judge(text, view.path, view.environment, catalogs, keep=view)
             effects = self._effects(before, view)
             self.call_later(show, before, [*effects, "", *changed_lines(text, view.text)])
 
         def show(before: View, lines: list[str]) -> None:
             self.workspace.tell("")
-            name = "what was saved" if file is None else str(file)
             now = self.workspace.view
             shape = getattr(before.result, "shape", None)  # a net has one for each leg
             if shape is not None and now and type(before.result) is type(now.result):
-                self.pictures.put_beside((name, shape))
+                self.pictures.put_beside(shape)
             answers = [Answer("b", "back to the line")]
-            choose(self.app, Question(f"Beside {name}", "\n".join(lines), answers))
+            choose(self.app, Question("Beside what was saved", "\n".join(lines), answers))
 
         self.tell("Comparing …")
         self.run_worker(work, thread=True, group="advice", exclusive=True)
@@ -104,8 +78,7 @@ class ComparingScreen(line_screen.LineScreen):
 
     def action_advise(self) -> None:
         """Ask which of the changes that would mend what was found is wanted."""
-        from calm.case import Result, TowResult
-        from calm.tui.advice import offers
+        from calm.tui.advice import offers, single
 
         if not self.settle():
             return
@@ -115,17 +88,17 @@ class ComparingScreen(line_screen.LineScreen):
         index, result = self.workspace.index, view.result
         found = offers(view, None if index is None else index.catalogue)[:_MOST_OFFERS]
         answers = numbered((offer.title, partial(self._try, offer, view)) for offer in found)
-        if result is not None and not isinstance(result, TowResult):
-            other = partial(self._ask_for_target, view, result.mooring)
+        if result is not None and not result.towed:
+            other = partial(self._ask_for_target, view, result.design)
             answers.append(Answer("o", "another target, as in `calm size`", other))
         text = "What it changes is shown before it is taken."
         if not found:
             text = "No finding has a remedy that can be computed here. " + text
-        if isinstance(result, Result) and not view.complete:
+        if single(view) is not None and not view.complete:
             text += " Launch, recovery, breaks and waves are still being judged."
         choose(self.app, Question("Advice", text, answers))
 
-    def _ask_for_target(self, view: View, mooring: Mooring | net.Net) -> None:
+    def _ask_for_target(self, view: View, mooring: Design) -> None:
         from calm.tui.advice import sized
 
         def take(texts: dict[str, str]) -> None:
@@ -180,13 +153,11 @@ class ComparingScreen(line_screen.LineScreen):
 
     def action_papers(self) -> None:
         """Show the bill, or have report and sheets written of the file as it is saved."""
-        from calm.case import TowResult
-
         if not self.settle():
             return
         view = self.workspace.view if self.workspace.is_fresh else None
         result = None if view is None else view.result
-        if result is None or isinstance(result, TowResult):
+        if result is None or result.towed:
             self.tell("Reports and sheets need a mooring that stands")
             return
         report, deck = (partial(self._ask_where, what) for what in _PAPERS)
@@ -238,15 +209,14 @@ def changed_lines(before: str, after: str) -> list[str]:
     return lines[:_MOST_LINES] + ([f"and {more} lines more"] if more > 0 else [])
 
 
-def _bill(result: Result | NetResult) -> RenderableType:
-    from calm.case.result import legs_of
+def _bill(result: Result) -> RenderableType:
     from calm.checks.inventory import inventory_of
-    from calm.files.mooring_file import STAND_IN
+    from calm.files.pieces import STAND_IN
     from calm.quantities import QUANTITIES
     from calm.report import blocks, terminal
     from calm.report.check_tables import inventory_table
 
-    listed = [item for leg in legs_of(result) for item in inventory_of(leg.mooring)]
+    listed = [item for leg in result.legs for item in inventory_of(leg.leg)]
     items = tuple(item for item in listed if item.use != STAND_IN)
     lengths = {
         kind: sum(each.cut_length or 0.0 for each in items if each.kind == kind)

@@ -1,25 +1,24 @@
 """A component of your own: a form that judges each figure as it is typed, and all of them."""
 
-from collections.abc import Collection, Iterator
-from dataclasses import replace
-from types import UnionType
-from typing import Any, Literal, Union, get_args, get_origin
+from collections.abc import Collection
+from typing import Any
 
-from textual import on
+from textual import events, on
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical, VerticalScroll
 from textual.widgets import Static
 
 from calm.files.catalogue import defined, tidy_id
 from calm.files.components import KINDS
-from calm.files.definition import QuantityField
+from calm.files.definition import Definition
 from calm.tui import dialogs, key_table
-from calm.tui.checking import Check, Reading, quantity
-from calm.tui.field import Asked, Cycle, Field, all_settled
+from calm.tui.checking import Check, Reading
+from calm.tui.field import Cycle, Field, all_settled
+from calm.tui.forms import Asked, filled, form_of, values_of
 from calm.tui.screen import KeyBar, TitleBar
-from calm.units import DIMENSIONS
 
 Defined = tuple[str, dict[str, str]]
+"""An id, and the texts of a form by their keys."""
 
 
 class ComponentScreen(dialogs.Form[Defined]):
@@ -38,11 +37,12 @@ class ComponentScreen(dialogs.Form[Defined]):
     ComponentScreen {
         & #fields { width: 3fr; padding: 1 1 0 1; scrollbar-size-vertical: 1; }
         & #kind-fields { height: auto; }
+        & .above { text-style: bold; text-wrap: nowrap; text-overflow: ellipsis; }
         & #outcome { width: 2fr; padding: 1 1 0 1; border-left: vkey $panel; }
         & Field > .field-title { width: 20; }
     }
     ComponentScreen.-narrow #outcome { width: 28; }
-    ComponentScreen.-narrow Field > .field-title { width: 15; }
+    ComponentScreen.-narrow Field > .field-title { width: 20; }
     ComponentScreen.-narrow Field > Input { width: 16; }
     """
 
@@ -56,7 +56,7 @@ class ComponentScreen(dialogs.Form[Defined]):
         self._listed, self._own = frozenset(listed), frozenset(own)
         self._component, self._begun = begun or ("", {})
         self._kind = self._begun.get("kind", "cylinder")
-        self._values = {key: each for key, each in self._begun.items() if isinstance(each, str)}
+        self._values = dict(self._begun)
 
     def compose(self) -> ComposeResult:
         """Title; the fields beside what they come to; keys."""
@@ -64,7 +64,14 @@ class ComponentScreen(dialogs.Form[Defined]):
         with Horizontal():
             with VerticalScroll(id="fields", can_focus=False):
                 if not self._begun:
-                    asked = Asked("id", "id", "", id_check(self._own), "e.g. sphere-own-1250")
+                    asked = Asked(
+                        "id",
+                        "id",
+                        "",
+                        id_check(self._own),
+                        "e.g. sphere-own-1250",
+                        "small letters, figures and hyphens",
+                    )
                     yield Field(asked, id="id")
                     yield Cycle("kind", tuple(KINDS), self._kind, title_width=20)
                 yield Vertical(id="kind-fields")
@@ -83,35 +90,34 @@ class ComponentScreen(dialogs.Form[Defined]):
     async def _show_fields(self) -> None:
         holder = self.query_one("#kind-fields", Vertical)
         await holder.remove_children()
-        begun, asked = self._values, form_fields(self._kind)
-        await holder.mount(*(Field(replace(each, text=begun.get(each.key, ""))) for each in asked))
+        await holder.mount(*self.parts_of(filled(form_fields(self._kind), self._values)))
         self._judge()
 
     @on(Cycle.Turned)
     async def _turn(self, event: Cycle.Turned) -> None:
+        self._values |= values_of(self.texts)  # those of one kind are offered of the next
         self._kind = event.word
         await self._show_fields()
 
-    @on(Field.Judged)
-    def _typed(self, event: Field.Judged) -> None:
-        if event.field.key != "id":
-            self._values[event.field.key] = event.reading.text
-        self._judge()
-
     def _given(self) -> Defined:
-        """The id and the values that have been typed; empty what is to be taken away."""
-        texts = {field.key: field.text for field in self.fields}
+        """The id and the texts that have been typed; empty what is to be taken away."""
+        texts = self.texts
         id = texts.pop("id", self._component)
-        if self._begun:
-            return id, texts
-        return id, {"kind": self._kind} | {key: text for key, text in texts.items() if text}
+        return id, texts if self._begun else {"kind": self._kind, **texts}
 
     def _all(self) -> tuple[str, dict[str, Any]]:
-        """Return the same with what the form does not show."""
-        id, values = self._given()
-        whole = {**self._begun, **values}
-        return id, {key: value for key, value in whole.items() if value != ""}
+        """Return the id and the values, with those that no field of the form shows."""
+        id, texts = self._given()
+        shown = {key.partition(".")[0] for key in texts}
+        others = {key: value for key, value in self._begun.items() if key not in shown}
+        return id, others | values_of(texts)
 
+    def tell(self, text: str, *, wrong: bool = False) -> None:
+        """Say something in the last line, until the next key."""
+        self.query_one(KeyBar).tell(text, wrong=wrong)
+
+    @on(Field.Judged)
+    @on(events.DescendantFocus)
     def _judge(self) -> None:
         """Say what the values come to."""
         from rich.console import Group, RenderableType
@@ -121,7 +127,8 @@ class ComponentScreen(dialogs.Form[Defined]):
 
         id, values = self._all()
         component, problems = defined(id or "component", values)
-        parts: list[RenderableType] = []
+        here = next((each.asked for each in self.fields if each.input.has_focus), None)
+        parts: list[RenderableType] = [Text(f"{here.takes}\n", "dim")] if here else []
         if id in self._listed - self._own:
             parts.append(Text(f"~ {id} is in the catalogue; this one replaces it here", "yellow"))
         for problem in problems:
@@ -136,69 +143,29 @@ class ComponentScreen(dialogs.Form[Defined]):
 
     def action_take(self) -> None:
         """Give the component, if it is one."""
-        if not all_settled(self.fields):
+        if not all_settled(self.all_parts):
             return
         component, problems = defined(*self._all())
         if component is None:
             message = problems[0].message if problems else "It is not complete"
-            self.query_one(KeyBar).tell(message, wrong=True)
+            self.tell(message, wrong=True)
         else:
             self.dismiss(self._given())
 
 
 _FIRST = ("name", "manufacturer", "role")
-_LAST = ("material", "part_number", "note", "source", "date")
 
 
-def form_fields(kind: str) -> Iterator[Asked]:
-    """The keys of a kind that hold one value; those that a component cannot do without first."""
-    fields = KINDS[kind].model_fields
-    known = [name for name in fields if name not in ("kind", *_FIRST, *_LAST)]
-    known.sort(key=lambda name: not fields[name].is_required())
-    for name in (*_FIRST, *known, *_LAST):
-        needed, members = fields[name].is_required(), _members(fields[name].annotation)
-        title = name.replace("_", " ") + " *" * needed
-        metadata = fields[name].metadata
-        found = next((each for each in metadata if isinstance(each, QuantityField)), None)
-        words = _words(members)
-        if found is not None:
-            dimension = DIMENSIONS[found.dimension]
-            takes = dimension.noun.removeprefix("a ").removeprefix("an ")
-            takes += f" ({', '.join(list(dimension.units)[:5])})" if dimension.unit else ""
-            check = quantity(found, optional=not needed, usual_unit=found.usual_unit)
-            yield Asked(name, title, check=check, takes=takes)
-        elif words:
-            yield Asked(name, title, check=_one_of(words), takes=" | ".join(words))
-        elif str in members:
-            yield Asked(name, title)
+def form_fields(kind: str) -> list[Asked]:
+    """The form of a kind: what people call it, what it needs, its own keys, those of every kind."""
+    asked = [each for each in form_of(KINDS[kind]) if each.key != "kind"]
 
+    def rank(each: Asked) -> tuple[int, ...]:
+        is_common = each.key.partition(".")[0] in Definition.model_fields
+        first = _FIRST.index(each.key) if each.key in _FIRST else len(_FIRST)
+        return first, not each.is_needed or is_common, is_common
 
-def _members(annotation: Any) -> tuple[Any, ...]:
-    """The types of a union, without annotations."""
-    if get_origin(annotation) in (Union, UnionType):
-        return tuple(member for each in get_args(annotation) for member in _members(each))
-    if hasattr(annotation, "__metadata__"):
-        return _members(get_args(annotation)[0])
-    return (annotation,)
-
-
-def _words(members: tuple[Any, ...]) -> tuple[str, ...]:
-    """The words that a field may be, where it is one of some words and nothing else."""
-    given = [each for each in members if each is not type(None)]
-    if all(get_origin(each) is Literal for each in given):
-        return tuple(word for each in given for word in get_args(each))
-    return ()
-
-
-def _one_of(words: tuple[str, ...]) -> Check:
-    def check(text: str) -> Reading:
-        tidy = text.strip()
-        if not tidy or tidy in words:
-            return Reading(tidy)
-        near = [word for word in words if word.startswith(tidy.casefold())]
-        return Reading(tidy, f"must be {' or '.join(words)}", near[0] if near else None)
-
-    return check
+    return sorted(asked, key=rank)
 
 
 def id_check(own: Collection[str]) -> Check:

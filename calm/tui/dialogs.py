@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -10,13 +10,17 @@ from rich.console import RenderableType
 from textual import on
 from textual.app import App, ComposeResult
 from textual.containers import Vertical, VerticalScroll
-from textual.events import Key
+from textual.events import DescendantFocus, Key
 from textual.markup import escape
 from textual.screen import ModalScreen, Screen
+from textual.widget import Widget
 from textual.widgets import Static
 
-from calm.tui import checking, key_table
-from calm.tui.field import Asked, Field, all_settled
+from calm.tui import key_table
+from calm.tui.checking import Reading
+from calm.tui.field import Field, Part, all_settled
+from calm.tui.forms import Asked
+from calm.tui.table_field import TableField
 
 _FRAME = """
     align: center middle;
@@ -130,12 +134,38 @@ class Form(Screen[T | None]):
 
     @property
     def fields(self) -> list[Field]:
-        """Return them as they follow one another."""
+        """Return them as they follow one another, without the tables."""
         return list(self.query(Field))
+
+    @property
+    def all_parts(self) -> list[Part]:
+        """Return the fields and the tables as they follow one another."""
+        found = self.query(f"{Field.__name__}, {TableField.__name__}")
+        return [part for part in found if isinstance(part, Field | TableField)]
+
+    @property
+    def texts(self) -> dict[str, str]:
+        """Return what is entered, by key."""
+        return {part.key: part.text for part in self.all_parts}
+
+    def parts_of(self, asked: Iterable[Asked]) -> Iterator[Widget]:
+        """Yield what is shown for what is asked, under the names of its groups."""
+        for each in asked:
+            if each.above:
+                yield Static(each.above, classes="above", markup=False)
+            if each.columns:
+                yield Static(f"{each.title}  {each.takes}", classes="above", markup=False)
+                yield TableField(each, self.tell)
+            else:
+                yield Field(each)
+
+    def tell(self, text: str, *, wrong: bool = False) -> None:
+        """Say something below the fields."""
+        raise NotImplementedError
 
     @on(Field.Entered)
     def _onward(self, event: Field.Entered) -> None:
-        if event.field is self.fields[-1]:
+        if event.field is self.all_parts[-1]:
             self.action_take()
         else:
             self.focus_next()
@@ -149,6 +179,11 @@ class Form(Screen[T | None]):
         self.dismiss(None)
 
 
+_BELOW = 7
+"""Lines of a sheet around its fields: its margins, a note of two lines, the keys."""
+_TABLE_KEYS = "a adds a row, Enter edits a value, Del deletes the row, ↑ ↓ go on"
+
+
 class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
     """Some texts, entered together; Esc leaves all as it was.
 
@@ -159,10 +194,12 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
     DEFAULT_CSS = (
         "InputSheet {" + _FRAME + " & Field > Input { width: 1fr; }"
         " & .field-note { display: none; }"
-        " & .above { text-style: bold; margin-top: 1; }"
-        " &.-wide > VerticalScroll { width: 110; }"
+        " & .above { text-style: bold; margin-top: 1; text-wrap: nowrap;"
+        " text-overflow: ellipsis; } & TableField { margin-left: 2; }"
+        " &.-wide > Vertical { width: 110; }"
+        " & #asked { height: auto; scrollbar-size-vertical: 1; }"
         " &.-wide .field-note { display: block; } &.-wide Field > Input { width: 24; }"
-        " &.-wide .field-title { width: 20; }"
+        " &.-wide .field-title { width: 22; }"
         "& #sheet-note { height: auto; min-height: 1; color: $text-muted; margin-top: 1; }"
         "& #sheet-note.-wrong { color: $text-error; } }"
     )
@@ -173,14 +210,12 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
 
     def compose(self) -> ComposeResult:
         """Return what is asked, and where it is typed."""
-        with VerticalScroll(can_focus=False):
-            yield Static(self._title, classes="title", markup=False)
-            if self._text:
-                yield Static(self._text, classes="text", markup=False)
-            for each in self._asked:
-                if each.above:
-                    yield Static(each.above, classes="above", markup=False)
-                yield Field(each)
+        with Vertical():
+            with VerticalScroll(id="asked", can_focus=False):
+                yield Static(self._title, classes="title", markup=False)
+                if self._text:
+                    yield Static(self._text, classes="text", markup=False)
+                yield from self.parts_of(self._asked)
             yield Static(id="sheet-note", markup=False)
             yield Static(
                 "[b]Enter[/b] next, then done   [b]Ctrl+S[/b] done   [b]Esc[/b] go back",
@@ -189,24 +224,38 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
 
     def on_mount(self) -> None:
         """Type at once."""
-        first = self.fields[0]
-        first.input.focus()
-        if first.input.value:
-            self._tell(first, first.reading)
+        self.all_parts[0].input.focus()
+
+    def on_resize(self) -> None:
+        """What is said below the fields stays in sight."""
+        self.query_one("#asked").styles.max_height = max(self.size.height - _BELOW, 1)
 
     @on(Field.Judged)
     def _judge(self, event: Field.Judged) -> None:
-        self._tell(event.field, event.reading)
+        self.tell(event.field.note(event.reading), wrong=not event.reading.is_good)
 
-    def _tell(self, field: Field, reading: checking.Reading) -> None:
+    @on(DescendantFocus)
+    def _note(self) -> None:
+        """Say what the field takes, whole."""
+        for field in self.fields:
+            if field.input.has_focus:
+                reading = field.reading if field.input.value else Reading("")
+                self.tell(field.note(reading), wrong=not reading.is_good)
+        for table in self.query(TableField):
+            if table.cells.has_focus:
+                reading = table.reading
+                self.tell(reading.note or _TABLE_KEYS, wrong=not reading.is_good)
+
+    def tell(self, text: str, *, wrong: bool = False) -> None:
+        """Say something below the fields."""
         note = self.query_one("#sheet-note", Static)
-        note.update(field.note(reading))
-        note.set_class(not reading.is_good, "-wrong")
+        note.update(text)
+        note.set_class(wrong, "-wrong")
 
     def action_take(self) -> None:
         """Give the texts, if all are good."""
-        if all_settled(self.fields):
-            self.dismiss({field.key: field.text for field in self.fields})
+        if all_settled(self.all_parts):
+            self.dismiss(self.texts)
 
 
 class LongText(ModalScreen[None]):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from rich.text import Text
 from textual import events, on
@@ -15,7 +16,8 @@ from textual.reactive import Reactive
 from textual.widget import Widget
 from textual.widgets import Input, Static
 
-from calm.tui.checking import Check, Reading, anything
+from calm.tui.checking import Reading
+from calm.tui.forms import Asked
 from calm.tui.key_table import bindings
 
 
@@ -40,20 +42,26 @@ class ScrolledEntry(Input):
             self.cursor_position = len(self.value)
 
 
-@dataclass(frozen=True)
-class Asked:
-    """A text that is asked for; `takes` stands beside it, and `above` begins a group with it."""
+class Part(Protocol):
+    """A part of a form: a field, or a table."""
 
-    key: str
-    title: str
-    text: str = ""
-    check: Check = anything
-    placeholder: str = ""
-    takes: str = ""
-    above: str = ""
+    @property
+    def key(self) -> str:
+        """Return what it is known by."""
+
+    @property
+    def text(self) -> str:
+        """Return what was entered, as it is to be written."""
+
+    @property
+    def input(self) -> Widget:
+        """Return where the keys go to."""
+
+    def settle(self) -> bool:
+        """Take what is typed; whether it was good."""
 
 
-def all_settled(fields: Iterable[Field]) -> bool:
+def all_settled(fields: Iterable[Part]) -> bool:
     """Return whether all texts are good, and taken; the first that is not gets the focus."""
     wrong = [field for field in fields if not field.settle()]
     if wrong:
@@ -75,11 +83,13 @@ class Field(Horizontal):
         & > .field-title { width: 16; color: $text-muted; }
         & > Input { width: 24; background: $surface; }
         & > Input:focus { background: $surface; background-tint: $foreground 8%; }
-        & > .field-note { width: 1fr; padding-left: 1; color: $text-muted; }
+        & > .field-note {
+            width: 1fr; padding-left: 1; color: $text-muted;
+            text-wrap: nowrap; text-overflow: ellipsis;
+        }
         &.-wrong > Input { text-style: underline; background: $error-muted; }
         &.-wrong > .field-note { color: $text-error; }
     }
-    .-narrow Field > .field-title { width: 13; }
     """
 
     @dataclass
@@ -104,15 +114,15 @@ class Field(Horizontal):
 
     def __init__(self, asked: Asked, *, id: str | None = None) -> None:
         super().__init__(id=id)
-        self.key, self.check = asked.key, asked.check
-        self._title, self._note = asked.title, asked.takes
+        self.key, self.check, self.asked = asked.key, asked.check, asked
+        self._note = asked.takes
         self.begun = self._shown = asked.text  # what it began with, and was last filled with
         self.input = ScrolledEntry(asked.text, placeholder=asked.placeholder, compact=True)
         self._told = Static(asked.takes, classes="field-note", markup=False)
 
     def compose(self) -> ComposeResult:
         """Name, input, note."""
-        yield Static(self._title, classes="field-title", markup=False)
+        yield Static(self.asked.title, classes="field-title", markup=False)
         yield self.input
         yield self._told
 
@@ -139,10 +149,10 @@ class Field(Horizontal):
         self._tell(Reading(text))
 
     def tell(self, note: str) -> None:
-        """Show another note, as long as nothing is wrong."""
-        self._note = note
+        """Show another note, as long as nothing is wrong; none for what the field takes."""
+        self._note = note or self.asked.takes
         if not self.has_class("-wrong"):
-            self._told.update(note, layout=False)
+            self._told.update(self._note, layout=False)
 
     def note(self, reading: Reading) -> str:
         """Return what is said of the typed text: what is wrong or added, else what it takes."""

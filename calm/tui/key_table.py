@@ -1,14 +1,12 @@
 """All actions of the builder and their keys: where they work, as hints, in help and palette."""
 
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import partial
 
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 from textual.binding import Binding, BindingType
-from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.containers import ScrollableContainer
 from textual.keys import key_to_character
 from textual.screen import Screen
@@ -63,8 +61,6 @@ paste(0) | V | paste above |  | Paste above the cursor.
 edit_column('length') | l | length |  | Edit its length, or where it is clamped.
 edit_column('label') | n | label |  | Edit its label.
 edit_column('count') | equals_sign,asterisk | count |  | Edit its count.
-assemble | k | assembly |  | Make the marked pieces an assembly of the file, to be used again
-  under one name.
 screen.change_component | O | change component |  | Change the component of the row, one of the
   file's own, in its form.
 equipment | N | serial number |  | Serial number, calibration, sampling, battery and termination
@@ -72,10 +68,7 @@ equipment | N | serial number |  | Serial number, calibration, sampling, battery
 find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
 find_next(1) | greater_than_sign,f3 | find next |  | To the next row that has them.
 find_next(-1) | less_than_sign | find last |  | To the one before.
-alike(1) | right_square_bracket | next alike |  | To the next piece of the same kind.
-alike(-1) | left_square_bracket | last alike |  | To the one before.
-least(1) | W | weakest |  | To the piece with the least margin of its strength.
-least(0) | E | lowest margin |  | To the row with the lowest margin of all.
+weakest | W | weakest |  | To the piece with the least margin of its strength.
 column | number_sign | fill column |  | Serial numbers, lengths, labels or codes of the marked rows,
   or of all of the component under the cursor, one below the other or pasted.
 repeat | R | repeat |  | Repeat the piece, or those marked, as often as you say.
@@ -102,10 +95,6 @@ next_environment | e | environment |  | Show the line in the next environment.
 advise | p | advice | 10 | Changes that correct a finding or meet a target; shown before you
   accept them.
 compare | D | compare |  | What has changed since the file was saved.
-compare_file | C | compare with |  | Another file beside this one: differences, and its line in
-  the pictures.
-overlay | 0 | overlay |  | Draw the line in all its environments, in still water dotted; or in its
-  own alone.
 figures | f | missing figures |  | Fill in the figures that are not known, piece by piece, with
   their source.
 verdict | G | verdict |  | The verdict line by line: Enter goes to the row that a line is about,
@@ -123,6 +112,7 @@ sheet('document') | M | document |  | Number, revision and what it changed, auth
 sheet('deployed') | L | as deployed |  | Date, position and depth of the deployment; of the row its
   number, length, remark, codes.
 sheet('tow') | T | tow |  | Speed and course of a tow; makes the line one, which hangs from a ship.
+settings | comma | settings |  | Solver, limits of the check, uncertainty and units of output.
 begin | b | begin |  | Begin an empty line with a mooring: deep, shelf, ADCP, taut or slack
   surface; a tow.
 papers | P | papers |  | Bill and totals; write the report of the check, or the sheets for the
@@ -301,50 +291,3 @@ def all_keys() -> RenderableType:
             table.add_row(Text(shown_keys(keys), style="bold"), Text(meaning))
         parts += [Text(f"\n{title}", style="bold underline"), table]
     return Group(*parts)
-
-
-class Commands(CommandPalette):
-    """The palette of textual, in terminals of any height."""
-
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """A list without a line on the screen has no pages."""
-        is_page = action == "command_list" and str(parameters[0]).startswith("page")
-        return not is_page or self.query_one(CommandList).size.height > 0
-
-
-class Actions(Provider):
-    """The actions of the first screen."""
-
-    @property
-    def _offered(self) -> list[Action]:
-        from calm.tui.builder import BuilderScreen
-
-        if not isinstance(self.screen, BuilderScreen):
-            return []
-        return [each for each in (*ACTIONS["line"], *ACTIONS["anywhere"]) if each.palette]
-
-    async def discover(self) -> Hits:
-        """All of them, before a word is typed."""
-        for action in self._offered:
-            yield DiscoveryHit(_shown(action), self._run(action), help=action.meaning)
-
-    async def search(self, query: str) -> Hits:
-        """Return those whose name or meaning is like the words."""
-        matcher = self.matcher(query)
-        for action in self._offered:
-            score = max(matcher.match(action.title), 0.8 * matcher.match(action.meaning))
-            if score > 0:
-                title = matcher.highlight(_shown(action))
-                yield Hit(score, title, self._run(action), help=action.meaning)
-
-    def _run(self, action: Action) -> Callable[[], Awaitable[bool]]:
-        from calm.tui.line_pane import LinePane
-
-        name = action.name.removeprefix("screen.")
-        is_of_line = action.place == "line" and name == action.name
-        owner = self.screen.query_one(LinePane) if is_of_line else self.screen
-        return partial(self.app.run_action, name, owner)
-
-
-def _shown(action: Action) -> str:
-    return f"{action.title}  ({shown_key(action.keys.split(',')[0])})"

@@ -10,9 +10,8 @@ from calm.files import Place
 from calm.tui.catalogue_pane import Purpose
 from calm.tui.cell_editor import Then
 from calm.tui.checking import count
-from calm.tui.component_screen import id_check
 from calm.tui.dialogs import Answer, Question, ask, choose, enter
-from calm.tui.field import Asked
+from calm.tui.forms import Asked
 from calm.tui.key_table import bindings
 from calm.tui.line_rows import ColumnFilling, LineCell, table_rows
 from calm.tui.line_table import EDITABLE, Column, LineSearch, LineTable
@@ -23,7 +22,7 @@ from calm.tui.workspace import Workspace
 
 _MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
 _FROM_A_ROW = frozenset(
-    {"mark", "why", "alike", "equipment", "assemble", "column", "repeat", "duplicate", "delete",
+    {"mark", "why", "equipment", "column", "repeat", "duplicate", "delete",
      "move_piece", "cut"}
 )  # fmt: skip
 """Actions that need a row to begin with."""
@@ -42,8 +41,8 @@ class LinePane(LineSearch):
 
     def __init__(self, workspace: Workspace, search: Callable[[Purpose], object]) -> None:
         self.table: LineTable = LineTable(id="line")
-        super().__init__(workspace, self.table, id="line-pane")
-        self.session, self._search = workspace.session, search
+        super().__init__(workspace.tell, self.table, id="line-pane")
+        self.workspace, self.session, self._search = workspace, workspace.session, search
         self._cell: LineCell | None = None  # what is edited, or was last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
@@ -164,21 +163,6 @@ class LinePane(LineSearch):
                 self.attempt(lambda: self.session.put({spot: changed}, f"equipment of {label}"))
 
         ask(self.app, equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
-
-    def action_assemble(self) -> None:
-        """Make an assembly of what is chosen."""
-        chosen = self.table.chosen
-
-        def take(texts: dict[str, str]) -> None:
-            self.attempt(
-                lambda: self.session.assemble(chosen, texts["id"]),
-                f"{texts['id']} is defined in the file; add it again with a",
-            )
-
-        check = id_check(self.session.components)
-        asked = [Asked("id", "Id", check=check, placeholder="e.g. glass-pack-own")]
-        text = "The pieces go into the file's components; `use` of this id stands for them."
-        enter(self.app, "Make an assembly", text, asked, take)
 
     def action_column(self) -> None:
         """Fill a column of the rows that are marked, else of all of the component of the row."""

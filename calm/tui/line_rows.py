@@ -17,7 +17,7 @@ from calm.files.editing import Draft, LineItem, Value
 from calm.quantities import QUANTITIES
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
 from calm.tui.dialogs import InputSheet
-from calm.tui.field import Asked
+from calm.tui.forms import Asked
 from calm.tui.line_table import EDITABLE, TableRow
 from calm.tui.mooring_sheet import (
     RELEASES,

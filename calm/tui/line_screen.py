@@ -17,7 +17,6 @@ class LineScreen(screen.DraftScreen):
     """Lay out what the first screen shows of the line, and how its parts lead to each other."""
 
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide"), (176, "-huge")]  # noqa: RUF012
-    VERTICAL_BREAKPOINTS = [(0, "-flat"), (17, "-high")]  # noqa: RUF012
     DEFAULT_CSS = """
     LineScreen {
         & #body { height: 1fr; }
@@ -42,13 +41,6 @@ class LineScreen(screen.DraftScreen):
         }
         &.-narrow Pictures { width: 3fr; }
         &.-narrow VerdictPane { width: 2fr; height: 1fr; max-height: 100%; margin-top: 0; }
-        &.-narrow.-flat #study, &.-narrow.-flat #catalogue-title { display: none; }
-        &.-narrow.-flat #catalogue { border: none; }
-        &.-narrow.-flat.-zoomed #study, &.-narrow.-flat.-reading #study {
-            display: block; height: 1fr; border: none;
-        }
-        &.-narrow.-flat.-reading #line-pane, &.-narrow.-flat.-reading Pictures { display: none; }
-        &.-narrow.-flat.-searching #line-pane { display: none; }
         &.-zoomed #line-pane, &.-zoomed VerdictPane { display: none; }
         &.-zoomed #study { display: block; border: none; }
     }

@@ -17,8 +17,9 @@ from calm.case.result_tables import table_columns
 from calm.checks.finding import State
 from calm.checks.strength import strength
 from calm.files import Place
-from calm.tui import cell_editor, checking, dialogs, field, theme
+from calm.tui import cell_editor, checking, dialogs, forms, theme
 from calm.tui.scrolled import TableCells, TableColumn
+from calm.tui.workspace import Workspace
 
 _TAIL = 4
 _EMPTY = (
@@ -259,6 +260,7 @@ class LineSearch(cell_editor.EditableTable):
     """A table of the line whose cursor goes to what is looked for, and which tells what it is."""
 
     table: LineTable
+    workspace: Workspace
     words = ""
 
     def action_find(self) -> None:
@@ -269,7 +271,7 @@ class LineSearch(cell_editor.EditableTable):
             self.action_find_next(1)
 
         takes = "id, label, serial, maker"
-        asked = [field.Asked("words", "Words", self.words, checking.needed("a word"), takes)]
+        asked = [forms.Asked("words", "Words", self.words, checking.needed("a word"), takes)]
         dialogs.enter(self.app, "Find in the line", "", asked, take)
 
     def action_find_next(self, by: int) -> None:
@@ -280,13 +282,8 @@ class LineSearch(cell_editor.EditableTable):
             return
         self._to(by, lambda row: all(word in self._said(row) for word in wanted), self.words)
 
-    def action_alike(self, by: int) -> None:
-        """To the next row, or the one before, of the same kind of component."""
-        here = self.table.rows[self.table.cursor]
-        self._to(by, lambda row: row.sign == here.sign, "of its kind")
-
-    def action_least(self, loads: int) -> None:
-        """To the row with the least margin of all, or of the `loads` that pieces bear."""
+    def action_weakest(self) -> None:
+        """To the row with the least margin of its strength."""
         view = self.workspace.judged("The line is still being judged; ask again")
         if view is None:
             return
@@ -294,15 +291,14 @@ class LineSearch(cell_editor.EditableTable):
             (each.share, each.place.row, each)
             for each in (*view.findings, *view.tighter)
             if each.share is not None and each.place is not None
-            if not loads or each.rule == strength.name
+            if each.rule == strength.name
         ]
         if not found:
-            self.workspace.tell("No margin is known")
+            self.workspace.tell("No margin of strength is known")
             return
         share, place, finding = min(found, key=lambda each: each[0])
         self.table.go_to(place)
-        what = "The weakest" if loads else "The lowest margin"
-        self.workspace.tell(f"{what}, {share:+.0%}: {finding.component}, {finding.message}")
+        self.workspace.tell(f"The weakest, {share:+.0%}: {finding.component}, {finding.message}")
 
     def _to(self, by: int, is_wanted: Callable[[TableRow], bool], what: str) -> None:
         rows: Sequence[TableRow] = self.table.rows

@@ -1,4 +1,4 @@
-"""Sheets for a whole file: name and place, document, deployment, tow, missing figures."""
+"""Sheets for a whole file and for a row of its line; all they ask for is in the models."""
 
 from __future__ import annotations
 
@@ -9,121 +9,76 @@ from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
 from calm.files import Clamp, Flexible, MooringFile, Piece, Place
-from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
-from calm.files.editing import Draft, EditError, Value
-from calm.files.mooring_file import parts_of
+from calm.files.editing import Draft, Value
+from calm.files.item_keys import Equipment
+from calm.files.logbook import DeployedItem
+from calm.files.pieces import parts_of
+from calm.files.reader import MooringKeys
 from calm.files.rule_texts import RULES
 from calm.files.yaml_document import Location
-from calm.tui.checking import Reading, anything, day, moment, quantity
+from calm.tui.checking import Reading
 from calm.tui.component_screen import form_fields
 from calm.tui.dialogs import InputSheet
-from calm.tui.field import Asked
+from calm.tui.forms import Asked, filled, form_of, model_in, written
 from calm.tui.session import location
 
 if TYPE_CHECKING:
     from calm.tui.live import View
 
-_HISTORY: Location = ("document", "history")
+Sheet = tuple[InputSheet, str, Callable[[Draft, Mapping[str, str]], Draft]]
+"""What is asked, the label of the change, and the file with what is entered."""
 
-LATITUDE = quantity(QuantityField("latitude", at_least=-90, at_most=90), optional=True)
-LONGITUDE = quantity(QuantityField("longitude", at_least=-360, at_most=360), optional=True)
-_NAME_AND_PLACE = (
-    Asked("name", "Name"),
-    Asked("description", "Description"),
-    Asked("position.latitude", "Latitude", "", LATITUDE, "e.g. 48.3 deg, + north"),
-    Asked("position.longitude", "Longitude", "", LONGITUDE, "e.g. -5.2 deg, + east"),
-)
-"""The key of what is asked for is its place in the file."""
-_SPEED, _COURSE = QuantityField("speed", above=0), QuantityField("angle")
-_TOW = (
-    Asked("tow.speed", "Tow speed", "", quantity(_SPEED), "e.g. 4 knot"),
-    Asked("tow.toward", "Towards", "", quantity(_COURSE), "e.g. 90 deg for east"),
-    Asked("tow.height", "Sheave height", "", quantity(LENGTH, optional=True), "e.g. 3 m"),
-)
-_DOCUMENT = (
-    Asked("document.id", "Document", placeholder="M-2027-03"),
-    Asked("document.revision", "Revision", placeholder="B"),
-    Asked("document.date", "Date", "", day, "2027-06-30"),
-    Asked("document.author", "Author"),
-    Asked("document.checked", "Checked by"),
-    Asked("document.approved", "Approved by"),
-    Asked("document.project", "Project"),
-    Asked("document.ship", "Ship"),
-    Asked("document.cruise", "Cruise"),
-)
 _BEGIN_A_TOW = (
     "The line becomes a tow: it hangs from a ship, its pieces from the ship down, and has no "
     "anchor. Undo makes it a mooring again."
 )
-
-
-Sheet = tuple[InputSheet, str, Callable[[Draft, Mapping[str, str]], Draft]]
-"""What is asked, the label of the change, and the file with what is entered."""
-
-
-def mooring_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
-    """Name and place, as the file has them."""
-    sheet = InputSheet("Name and place", "", filled(draft, _NAME_AND_PLACE))
-    return sheet, "name and place", written
-
-
-def document_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
-    """Return what the title block says, as the file has it, and what the revision changed."""
-    revision = draft.text_at(("document", "revision"))
-    change = said(draft, _HISTORY, ("revision", revision), "change")
-    asked = [*filled(draft, _DOCUMENT), Asked("change", "What it changed", change)]
-    sheet = InputSheet("The document", "For the title block of drawings, and its history.", asked)
-    return sheet, "the document", _documented
-
-
-def tow_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
-    """Speed, course and sheave of a tow, as the file has them; a mooring becomes one by them."""
-    sheet = InputSheet("The tow", "" if draft.is_tow else _BEGIN_A_TOW, filled(draft, _TOW))
-    return sheet, "the tow", written
-
-
-def filled(draft: Draft, asked: Iterable[Asked]) -> list[Asked]:
-    """Return what is asked, with the texts that the file has in its places."""
-    return [replace(each, text=draft.text_at(tuple(each.key.split(".")))) for each in asked]
-
-
-def written(draft: Draft, texts: Mapping[str, str], below: Location = ()) -> Draft:
-    """The file with the texts of a sheet in their places; a blank one takes its key away."""
-    for key, new in texts.items():
-        place = (*below, *key.split("."))
-        if new != draft.text_at(place):
-            draft = draft.put_at(place, new or None)
-    return draft
-
-
-def _documented(draft: Draft, texts: Mapping[str, str]) -> Draft:
-    """The file with the texts of the document, and in its history what the revision changed."""
-    revision, change = texts["document.revision"], texts["change"]
-    if change and not revision:
-        raise EditError("a change is that of a revision; say which")
-    known = said(draft, _HISTORY, ("revision", revision), "change")
-    draft = written(draft, {key: text for key, text in texts.items() if key != "change"})
-    if change == known:
-        return draft
-    date, author = (texts[f"document.{key}"] if change else "" for key in ("date", "author"))
-    by = {"date": date, "by": author, "change": change}
-    return entered(draft, _HISTORY, ("revision", revision), by)
-
-
-_DEPTH = quantity(QuantityField("length", above=0), optional=True)
-_WHOLE = (
-    Asked("deployed.date", "Date", "", moment, "e.g. 2027-06-30 14:05"),
-    *(replace(each, key=f"deployed.{each.key}") for each in _NAME_AND_PLACE[2:]),
-    Asked("deployed.depth", "Depth there", "", _DEPTH, "e.g. 1187 m"),
-)
-_OF_A_ROW = (
-    ("serial", "Serial number", anything),
-    ("length", "Cut to", quantity(POSITIVE_LENGTH, optional=True)),
-    ("remark", "Remark", anything),
-)
 _COMPARED = "Compared with the design by calm diff."
-_ITEMS: Location = ("deployed", "items")
 RELEASES: Location = ("releases",)
+_ITEMS: Location = ("deployed", "items")
+
+SHEETS = {
+    "mooring": ("Name and place", ("name", "description", "position")),
+    "document": ("The document", ("document",)),
+    "deployed": ("As deployed", ("deployed", "releases")),
+    "tow": ("The tow", ("tow",)),
+}
+"""Titles of sheets, and the keys of the file that they ask for."""
+_ABOUT = {
+    "document": "For the title block of drawings, and its history.",
+    "tow": _BEGIN_A_TOW,
+}
+
+
+def settings() -> list[str]:
+    """Sections of the file that are forms and on no other sheet."""
+    known = {key for _, keys in SHEETS.values() for key in keys}
+    fields = MooringKeys.model_fields.items()
+    return [name for name, each in fields if name not in known and model_in(each.annotation)]
+
+
+def sheet_of(name: str, draft: Draft, hung: Piece | Clamp | None) -> Sheet:
+    """Return a sheet of `SHEETS`, or that of a section of `settings`, as the file has it.
+
+    Parameters
+    ----------
+    hung : what hangs at the row under the cursor
+    """
+    fields = MooringKeys.model_fields
+    title, keys = SHEETS.get(name, (name.capitalize(), (name,)))
+    asked: list[Asked] = []
+    for key in keys:
+        model = model_in(fields[key].annotation)
+        asked += form_of(model, f"{key}.", needed=name == "tow") if model else _top_level(key)
+    about = _ABOUT.get(name, "" if name in SHEETS else fields[name].description or "")
+    if name == "tow" and draft.is_tow:
+        about = ""
+    if name == "deployed":
+        return _deployed_sheet(draft, hung, asked)
+    return InputSheet(title, about, filled(asked, draft.value(()))), title.lower(), written
+
+
+def _top_level(key: str) -> list[Asked]:
+    return [each for each in form_of(MooringKeys, needed=False) if each.key == key]
 
 
 def hung_at(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
@@ -132,39 +87,33 @@ def hung_at(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | Non
     return found[0] if len(found) == 1 else None
 
 
-def deployed_sheet(draft: Draft, hung: Piece | Clamp | None) -> Sheet:
-    """Return when and where the mooring was deployed and what hangs at a row, as in the file."""
-    asked, changed = filled(draft, _WHOLE), partial(_deployed, hung)
+def _deployed_sheet(draft: Draft, hung: Piece | Clamp | None, asked: list[Asked]) -> Sheet:
+    """When and where it was deployed; of the row what hangs there, else all that differs."""
     if hung is None:
-        return InputSheet("As deployed", _COMPARED, asked), "the deployment", changed
-    for key, title, check in _OF_A_ROW:
-        if key != "length" or isinstance(hung.component, Flexible):
-            text = said(draft, _ITEMS, ("label", hung.label), key)
-            asked.append(Asked(f"item {key}", title, text, check))
-    if hung.component.role == "release":
-        codes = said(draft, RELEASES, ("serial", _serial(draft, hung)), "codes")
-        asked.append(Asked("codes", "Codes", codes, placeholder="arm 0A1B, release 0A55"))
-    about = f"{_COMPARED} Below the depth: {hung.label}."
-    return InputSheet("As deployed", about, asked), "the deployment", changed
+        sheet = InputSheet("As deployed", _COMPARED, filled(asked, draft.value(())))
+        return sheet, "the deployment", written
+    is_release = hung.component.role == "release"
+    without = {"deployed.items"} if is_release else {"deployed.items", "releases"}
+    whole = filled([each for each in asked if each.key not in without], draft.value(()))
+    own = [
+        replace(each, text=said(draft, _ITEMS, ("label", hung.label), each.key))
+        for each in form_of(DeployedItem)
+        if each.key != "label" and (each.key != "length" or isinstance(hung.component, Flexible))
+    ]
+    row = [replace(each, key=f"{_ROW}{each.key}") for each in own]
+    row[0] = replace(row[0], above=hung.label)
+    every = sorted([*whole, *row], key=lambda each: bool(each.columns))  # tables come last
+    sheet = InputSheet("As deployed", _COMPARED, every)
+    return sheet, "the deployment", partial(_deployed, hung.label)
 
 
-def _deployed(hung: Piece | Clamp | None, draft: Draft, texts: Mapping[str, str]) -> Draft:
-    draft = written(draft, {each.key: texts[each.key] for each in _WHOLE})
-    if hung is None:
-        return draft
-    given = {key: texts[f"item {key}"] for key, _, _ in _OF_A_ROW if f"item {key}" in texts}
-    draft = entered(draft, _ITEMS, ("label", hung.label), given)
-    if hung.component.role == "release":
-        called = "serial", _serial(draft, hung)
-        if texts["codes"] and not called[1]:
-            raise EditError(f"{hung.label} needs its serial number, by which its codes are known")
-        draft = entered(draft, RELEASES, called, {"codes": texts["codes"]})
-    return draft
+_ROW = "row: "
 
 
-def _serial(draft: Draft, hung: Piece | Clamp) -> str:
-    """Of the release as designed, else as deployed."""
-    return hung.serial or said(draft, _ITEMS, ("label", hung.label), "serial")
+def _deployed(label: str, draft: Draft, texts: Mapping[str, str]) -> Draft:
+    draft = written(draft, {key: text for key, text in texts.items() if not key.startswith(_ROW)})
+    given = {key.removeprefix(_ROW): text for key, text in texts.items() if key.startswith(_ROW)}
+    return entered(draft, _ITEMS, ("label", label), given)
 
 
 _SEVERAL = "For a count, give one number for each, separated by commas."
@@ -180,9 +129,10 @@ def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) ->
     """
     asked = [
         replace(each, text=texts_of_equipment(values, each.key))
-        for each in _EQUIPMENT
+        for each in form_of(Equipment)
         if not (is_clamp and each.key == "termination")
     ]
+    asked[0] = replace(asked[0], check=serial_of_equipment)
     return InputSheet(label, _SEVERAL, asked)
 
 
@@ -210,15 +160,6 @@ def serial_of_equipment(text: str) -> Reading:
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")
     return Reading(", ".join(numbers))
-
-
-_EQUIPMENT = (
-    Asked("serial", "Serial number", "", serial_of_equipment, "4711"),
-    Asked("calibrated", "Calibrated", "", day, "2027-06-30"),
-    Asked("sampling", "Sampling", placeholder="every 10 min"),
-    Asked("battery_until", "Battery until", "", day, "2028-06-30"),
-    Asked("termination", "Termination", placeholder="swaged, thimbles"),
-)
 
 
 def said(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
@@ -257,15 +198,6 @@ def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
     listed: Any = draft.value(rows)
     entries = enumerate(listed if isinstance(listed, list) else ())
     return next((i for i, one in entries if isinstance(one, dict) and called in one.items()), None)
-
-
-SHEETS = {
-    "mooring": mooring_sheet,
-    "document": document_sheet,
-    "deployed": deployed_sheet,
-    "tow": tow_sheet,
-}
-"""What is asked about a whole file, and of what hangs at the row under the cursor."""
 
 
 _ELSEWHERE = "part of an assembly of the catalogue: use its parts, or define it in the file (o)"

@@ -17,7 +17,7 @@ from textual.widgets import Static
 from calm.tui import scrolled, theme
 
 if TYPE_CHECKING:
-    from calm.case.result import AnyResult
+    from calm.case import Result
     from calm.case.result_tables import Shape
     from calm.tui.live import View
 
@@ -67,13 +67,12 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         if result is None:
             words = "A picture appears once the line stands." if self._view else theme.ELLIPSIS
             return [Text(""), *(Text(line, style="dim") for line in wrap(words, size.width))]
-        from calm.drawing.line_picture import lines_of
         from calm.drawing.schematic.in_terminal import schematic_text
         from calm.drawing.sketch import plan, tension
 
         if self.tab == "plan":
             return plan(result, *size, self._beside)
-        lines = lines_of(result)
+        lines = result.legs
         if self.tab == "tension":
             rows = size.height // len(lines)
             if rows < _LEAST[1]:
@@ -84,15 +83,14 @@ class Picture(scrolled.DrawnRows, can_focus=True):
             return [Text(row) for text in texts for row in text.splitlines()]
         return self._elevation(result, size)
 
-    def _elevation(self, result: AnyResult, size: Size) -> list[Text]:
-        from calm.drawing.line_picture import water_of
+    def _elevation(self, result: Result, size: Size) -> list[Text]:
         from calm.drawing.sketch import current_profile, elevation
 
         if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
             return elevation(result, *size, self._beside)
         beside = min(size.width // _BESIDE, _MOST_BESIDE)
         line = elevation(result, size.width - beside - 1, size.height, self._beside)
-        profile = current_profile(water_of(result), beside, size.height)
+        profile = current_profile(result.water, beside, size.height)
         rows = []
         for left, right in zip(line, profile, strict=True):
             left.truncate(size.width - beside, pad=True)
@@ -124,10 +122,9 @@ class Pictures(Vertical):
         super().__init__(id=id)
         self._view: View | None = None
         self._note = ""
-        self._overlaid = False
-        self._other: tuple[str, Shape] | None = None
+        self._saved: Shape | None = None
         self._tabs, self._picture = Static(id="tabs"), Picture()
-        self._caption = Static(id="beside", markup=False)
+        self._caption = Static("dashed: what was saved", id="beside", markup=False)
 
     def compose(self) -> ComposeResult:
         """The names, and the picture."""
@@ -144,39 +141,20 @@ class Pictures(Vertical):
         self._view, self._note = view, note
         self._show()
 
-    def overlay(self) -> bool:
-        """Draw the line in all its environments, or no more; whether it is drawn so."""
-        self._overlaid = not self._overlaid
+    def put_beside(self, saved: Shape | None) -> None:
+        """Draw the line as it was saved beside it; None takes it away."""
+        self._saved = saved
         self._show()
-        return self._overlaid
-
-    def put_beside(self, other: tuple[str, Shape] | None) -> None:
-        """Draw another design beside the line, by the name of its file; None takes it away."""
-        self._other = other
-        self._show()
-
-    def _beside(self) -> tuple[list[Shape], str]:
-        """The shapes that are drawn beside the line, and what they are."""
-        view, shapes, named = self._view, [], []
-        if self._overlaid and view is not None:
-            results = [stand.result for stand in view.stands if stand.environment != view.here]
-            shapes = [result.shape for result in results if result is not None]
-            named = ["all environments"] if shapes else []
-        if self._other is not None:
-            shapes.append(self._other[1])
-            named.append(self._other[0])
-        return shapes, " and ".join(named)
 
     def watch_tab(self) -> None:
         """Draw the other picture."""
         self._show()
 
     def _show(self) -> None:
-        shapes, named = self._beside()
+        saved = () if self._saved is None else (self._saved,)
         self._show_tabs()
-        self._caption.update(f"dashed: {named}")
-        self._caption.display = bool(named) and self.tab in ("elevation", "plan")
-        self._picture.show(self._view, self.tab, shapes)
+        self._caption.display = bool(saved) and self.tab in ("elevation", "plan")
+        self._picture.show(self._view, self.tab, saved)
 
     @on(events.DescendantFocus)
     @on(events.DescendantBlur)

@@ -7,19 +7,18 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
+
+from textual.app import App
 
 from calm.errors import CalmError, InputError
 from calm.files import editing, read_mooring
 from calm.files.editing.user_state import Presence
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Question, Then, choose, enter
-from calm.tui.field import Asked
+from calm.tui.forms import Asked
 from calm.tui.screen import DraftScreen
 from calm.tui.workspace import Workspace, place_of
-
-if TYPE_CHECKING:
-    from calm.tui.app import BuildApp
 
 _SUFFIX = ".yaml"
 _CHANGED = "The file was changed by another program; saving will ask"
@@ -28,9 +27,23 @@ _READ_AGAIN = "Read again: another program has changed it"
 
 
 class Saving:
-    """Writes the file of a workspace, asks where something stands against it, watches the disk."""
+    """Writes the file of a workspace, asks where something stands against it, watches the disk.
 
-    def __init__(self, app: BuildApp, workspace: Workspace) -> None:
+    Parameters
+    ----------
+    app : whose screen it asks on
+    taken_over : shows a text that has taken the place of the draft, and tells what happened
+    leave : ends the application
+    """
+
+    def __init__(
+        self,
+        app: App[Any],
+        workspace: Workspace,
+        taken_over: Callable[[str], object],
+        leave: Callable[[], object],
+    ) -> None:
+        self._taken_over, self._leave = taken_over, leave
         self._app, self._workspace, self._session = app, workspace, workspace.session
         self.presence = Presence()
         self._told: tuple[object] | None = None  # the state of the file on the disk, told already
@@ -149,21 +162,20 @@ class Saving:
             return
         self._session.write(text, "read the file again")
         self._session.history.saved()
-        self._app.taken_over(_READ_AGAIN)
+        self._taken_over(_READ_AGAIN)
 
     # work of an earlier run
 
-    def offer(self, kept: editing.KeptWork) -> None:
+    def offer(self, kept: editing.KeptWork, go_on: Callable[[], object]) -> None:
         """Ask whether it is to be recovered, saying when it was kept and whether the file is newer.
 
         To throw it away is asked about twice: nothing brings it back.
         """
         app, session, keeper = self._app, self._session, kept.keeper
-        go_on = partial(app.mend, as_judged=True)
 
         def recover() -> None:
             session.recover(kept)
-            app.taken_over("Recovered; save it to keep it")
+            self._taken_over("Recovered; save it to keep it")
 
         def throw_away() -> None:
             session.file.discard(kept)
@@ -184,7 +196,10 @@ class Saving:
         def ask_again() -> None:
             yes = [Answer("y", "yes, throw it away for good", throw_away)]
             told = f"It was kept {moment(kept.at)}."
-            choose(app, Question("Throw the work away?", told, yes, back=partial(self.offer, kept)))
+            choose(
+                app,
+                Question("Throw the work away?", told, yes, back=partial(self.offer, kept, go_on)),
+            )
 
         answers = [
             Answer("r", "recover it; undo goes back to the file", recover),
@@ -199,17 +214,17 @@ class Saving:
         """Leave; unsaved work is asked about."""
         self.look_at_disk()
         if not self._session.changed:
-            self._app.leave()
+            self._leave()
             return
         if isinstance(self._app.screen, Question):
             return  # that one first
 
         def discard() -> None:
             self._session.file.forget()
-            self._app.leave()
+            self._leave()
 
         answers = [
-            Answer("s", "save and leave", lambda: self.save(self._app.leave)),
+            Answer("s", "save and leave", lambda: self.save(self._leave)),
             Answer("d", "leave without saving", discard),
         ]
         name, file = self._session.name, self._session.file

@@ -4,22 +4,19 @@ Each page that is opened is an application of its own. Only this machine is list
 needs the token of its address, and what another site's page sends here is refused.
 """
 
-import asyncio
 import os
 import secrets
 import shlex
 import subprocess
 import sys
-from collections.abc import Awaitable, Callable, Collection, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from html import escape
 from importlib.resources import files
 from ipaddress import ip_address
 from string import Template
-from typing import Any
 from urllib.parse import urlsplit
 
-from aiohttp import WSMsgType, web
-from textual_serve.app_service import AppService
+from aiohttp import web
 from textual_serve.server import Server
 
 from calm.errors import UsageError
@@ -44,8 +41,6 @@ class Browser(Server):
     ----------
     words : the command that each page runs
     tell : says where the page is
-    hosts : names, besides those of this machine, under which a proxy hands the page on
-    idle : seconds without a key after which a session is ended, its work kept; 0 for never
     token : that the address of the page has; a random one as a rule
     """
 
@@ -55,16 +50,13 @@ class Browser(Server):
         port: int,
         tell: Callable[[str], None],
         *,
-        hosts: Collection[str] = (),
-        idle: float = 0.0,
         token: str = "",
     ) -> None:
         # a shell is given the words: that of the system
         command = subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
         super().__init__(command, host=HOST, port=port, title=_TITLE)
         self.token = token or secrets.token_urlsafe(24)
-        self._tell, self._idle = tell, idle
-        self._hosts = frozenset(host.lower() for host in hosts)
+        self._tell = tell
 
     @property
     def address(self) -> str:
@@ -99,23 +91,6 @@ class Browser(Server):
         self._check_token(request.match_info["token"])
         return await super().handle_websocket(request)
 
-    async def _process_messages(
-        self, websocket: web.WebSocketResponse, app_service: AppService
-    ) -> None:
-        """Pass messages on, until the page is closed or nothing was typed for too long."""
-        clock = asyncio.get_running_loop().time
-        typed = clock()
-        while True:
-            left = typed + self._idle - clock() if self._idle else None
-            try:
-                message = await asyncio.wait_for(websocket.receive(), left)
-            except TimeoutError:
-                return
-            if message.type in (WSMsgType.CLOSE, WSMsgType.CLOSING, WSMsgType.CLOSED):
-                return
-            if message.type == WSMsgType.TEXT:
-                typed = clock() if await _pass_on(message, websocket, app_service) else typed
-
     def _check_token(self, token: str) -> None:
         if not secrets.compare_digest(token.encode(), self.token.encode()):
             raise web.HTTPForbidden(
@@ -127,9 +102,7 @@ class Browser(Server):
         origin = request.headers.get("Origin")
         asked_of = _name(f"//{request.host}")
         if not self._is_own(asked_of) or (origin is not None and not self._is_own(_name(origin))):
-            raise web.HTTPForbidden(
-                text=f"{asked_of} is not allowed: start it with --allow-host {asked_of}"
-            )
+            raise web.HTTPForbidden(text=f"{asked_of} is not this machine: use a tunnel")
         response = await handler(request)
         if not response.prepared:
             response.headers["Content-Security-Policy"] = _POLICY
@@ -137,32 +110,13 @@ class Browser(Server):
         return response
 
     def _is_own(self, name: str) -> bool:
-        """Return whether a name is that of this machine, or one that was allowed."""
-        if name == HOST or name in self._hosts:
+        """Return whether a name is that of this machine."""
+        if name == HOST:
             return True
         try:
             return ip_address(name).is_loopback
         except ValueError:
             return False
-
-
-async def _pass_on(message: Any, websocket: web.WebSocketResponse, app_service: AppService) -> bool:
-    """Give the application what a page has sent; whether that was typed."""
-    try:
-        kind, *data = message.json()
-        if kind == "stdin":
-            await app_service.send_bytes(str(data[0]).encode("utf-8"))
-        elif kind == "resize":
-            await app_service.set_terminal_size(int(data[0]["width"]), int(data[0]["height"]))
-        elif kind == "ping":
-            await websocket.send_json(["pong", data[0]])
-        elif kind == "blur":
-            await app_service.blur()
-        elif kind == "focus":
-            await app_service.focus()
-    except (ValueError, TypeError, KeyError, IndexError):
-        return False  # nothing that the page itself sends
-    return bool(kind == "stdin")
 
 
 def _name(address: str) -> str:
@@ -178,14 +132,7 @@ async def _no_icon(_: web.Request) -> web.Response:
     return web.Response(status=204)
 
 
-def serve(
-    arguments: Sequence[str],
-    port: int,
-    tell: Callable[[str], None],
-    *,
-    hosts: Collection[str] = (),
-    idle: float = 0.0,
-) -> None:
+def serve(arguments: Sequence[str], port: int, tell: Callable[[str], None]) -> None:
     """Serve ``calm build`` with these arguments until it is interrupted; see `Browser`.
 
     Raises
@@ -195,7 +142,7 @@ def serve(
     """
     words = [sys.executable, "-m", "calm", "build", *arguments]
     try:
-        Browser(words, port, tell, hosts=hosts, idle=idle).serve()
+        Browser(words, port, tell).serve()
     except OSError as error:
         raise UsageError(
             f"port {port} cannot be used ({error.strerror or error}); try --port"

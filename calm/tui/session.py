@@ -254,19 +254,6 @@ class Session:
         first = spot.clamp + below if spot.is_clamp else len(self.draft.items[spot.item].clamps)
         return self._put_clamps(spot, first, self.copied, label)[-1 if below else 0]
 
-    def assemble(self, spots: Iterable[Place], id: str) -> Place:
-        """Make pieces that follow one another an assembly of the file, which stands for them then.
-
-        Raises
-        ------
-        EditError
-            They do not follow one another.
-        """
-        chosen = [spot for spot in _whole(spots) if not spot.is_clamp]
-        draft = self.draft.assemble((spot.item for spot in chosen), id)
-        self.do(draft, f"make {id} of {self._called(chosen)}")
-        return Place(chosen[0].item)
-
     def _clamps(self, chosen: Sequence[Place]) -> tuple[str, ...]:
         """The text of clamps, of one piece or of several."""
         copied = (self.draft.copy([spot.clamp], clamps_of(spot.item)) for spot in chosen)

@@ -10,7 +10,7 @@ from textual.widgets import Static, TextArea
 
 from calm.errors import Problem
 from calm.files.editing.changes import retyped
-from calm.tui import dialogs, field, key_table, screen
+from calm.tui import dialogs, forms, key_table, screen
 from calm.tui.workspace import Workspace, is_elsewhere, mistakes, said
 
 _INDENT = 2
@@ -180,7 +180,7 @@ class TextScreen(screen.DraftScreen):
 
     def action_find(self) -> None:
         """Ask for words, and go to them."""
-        asked = [field.Asked("words", "Find", placeholder="a label, a key, a number")]
+        asked = [forms.Asked("words", "Find", placeholder="a label, a key, a number")]
         text, app = "F3 goes to the next place.", self.app
         dialogs.enter(app, "Find in the text", text, asked, lambda it: self.find(it["words"]))
 

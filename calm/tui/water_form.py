@@ -2,32 +2,45 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from textual import events, on
 from textual.message import Message
 from textual.widget import Widget
+from textual.widgets import Static
 
-from calm.files.definition import DENSITY, POSITIVE_LENGTH, QuantityField
+from calm.files.definition import POSITIVE_LENGTH, QuantityField
 from calm.files.editing import Draft, Value
-from calm.files.water import USUAL_DENSITY
+from calm.files.environment import (
+    CurrentFile,
+    EnvironmentKeys,
+    TowEnvironmentKeys,
+    UniformCurrent,
+)
+from calm.files.water import USUAL_DENSITY, SeaWaterKeys
 from calm.files.yaml_document import Location
 from calm.records import headings, profile_tables
-from calm.tui import key_table, water_grid, water_tables
-from calm.tui.checking import Check, anything, needed, quantity
-from calm.tui.field import Asked, Cycle, Field
+from calm.records.delimited import CopiedTable, NoTableError, copied_table
+from calm.tui import key_table, water_tables
+from calm.tui.checking import quantity
+from calm.tui.field import Cycle, Field
+from calm.tui.forms import Asked, FormColumn, form_of, rows_in, text_of, value_of
+from calm.tui.table_field import Grid
 from calm.units import QuantityError, QuantityRange
 
 CURRENT_FORMS = ("still", "uniform", "table", "file")
 DENSITY_FORMS = ("constant", "table", "temperature and salinity")
+TITLE = 24
+"""Cells of the names of the fields."""
 PROFILE_FORMS = ("constant", "table")
 """Of the temperature and of the salinity."""
 
 _CURRENT = ("0.5", "90")
 _CONSTANTS = {
-    ("density",): (DENSITY, "kg/m^3", f"{USUAL_DENSITY['water']:g}"),
+    ("density",): (profile_tables.WATER_DENSITY, "kg/m^3", f"{USUAL_DENSITY['water']:g}"),
     ("density", "temperature"): (profile_tables.TEMPERATURE, "degC", "10"),
     ("density", "salinity"): (profile_tables.SALINITY, "", "35"),
 }
@@ -70,9 +83,8 @@ class WaterForm:
         return self.draft.value(("environment", *keys))
 
     def text(self, *keys: str) -> str:
-        """Return the same, where it is a plain value; empty elsewhere."""
-        value = self.value(*keys)
-        return value if isinstance(value, str) else ""
+        """Return the same as it is typed."""
+        return text_of(self.value(*keys))
 
     def is_own(self, key: str) -> bool:
         """Return whether a key is this environment's own; those of the file always are."""
@@ -94,7 +106,7 @@ class WaterForm:
             return "constant"
         if not isinstance(value, dict) or not value:
             return "still"
-        return "file" if {"file", "time"} & set(value) else "uniform"
+        return "file" if CurrentFile.model_fields.keys() & set(value) else "uniform"
 
     def table(self, *keys: str) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Columns and rows of a table, texts as written, each row of as many as there are columns.
@@ -104,20 +116,20 @@ class WaterForm:
         """
         table = self.value(*keys)
         columns = table.get("columns") if isinstance(table, dict) else None
-        rows = table.get("rows") if isinstance(table, dict) else None
-        if not isinstance(columns, list) or not _is_row(columns, len(columns)):
+        if not isinstance(columns, list) or not all(isinstance(one, str) for one in columns):
             return (), []
-        if not all(_is_row(row, len(columns)) for row in rows or ()):
+        rows = rows_in(table.get("rows"), [FormColumn("", heading) for heading in columns])
+        if rows is None or any(text.startswith(("[", "{")) for row in rows for text in row):
             return (), []
-        return tuple(map(str, columns)), [_filled(row, len(columns)) for row in rows or ()]
+        return tuple(columns), [*rows]
 
     # changes: each gives the file with it
 
-    def put(self, keys: Sequence[str], text: str) -> Draft:
-        """A value; an empty one takes the key out. No speed is no wind."""
-        if keys == ("wind", "speed") and not text:
-            return self.draft.put_at(self.at("wind"), None)
-        return self.put_form(keys, text or None)
+    def put(self, keys: Sequence[str], text: str, *, is_needed: bool = False) -> Draft:
+        """A value; an empty one takes the key out, and what needs it: no speed, no wind."""
+        if is_needed and len(keys) > 1 and not text:
+            return self.draft.put_at(self.at(*keys[:-1]), None)
+        return self.put_form(keys, value_of(text))
 
     def put_rows(
         self, keys: Sequence[str], columns: Iterable[str], rows: Iterable[Sequence[str]]
@@ -126,7 +138,7 @@ class WaterForm:
         names = [*columns]
         given = self.value(*keys)
         old = given.get("rows") if isinstance(given, dict) and self.table(*keys)[0] else None
-        known = {_filled(row, len(names)): row for row in old or ()}
+        known = dict(zip(self.table(*keys)[1], old or (), strict=False))
         new = [known.get(tuple(row), [text or None for text in row]) for row in rows]
         return self._with_own(keys).put_table(self.at(*keys), names, new)
 
@@ -195,18 +207,6 @@ def _read(kind: QuantityRange, text: str) -> float | None:
         return None
 
 
-def _is_row(row: object, most: int) -> bool:
-    return (
-        isinstance(row, list)
-        and len(row) <= most
-        and all(isinstance(each, str | None) for each in row)
-    )
-
-
-def _filled(row: Sequence[str | None], count: int) -> tuple[str, ...]:
-    return tuple([*(text or "" for text in row), *[""] * count][:count])
-
-
 _TAKE_IT = "Enter takes it"
 
 
@@ -226,7 +226,7 @@ class FormChoice(Cycle):
         form: str
 
     def __init__(self, title: str, forms: tuple[str, ...], *, id: str) -> None:
-        super().__init__(title, forms, forms[0], id=f"{id}-form")
+        super().__init__(title, forms, forms[0], title_width=TITLE, id=f"{id}-form")
         self._given = forms[0]
 
     def show(self, word: str) -> None:
@@ -264,32 +264,121 @@ class FormChoice(Cycle):
         return _TAKE_IT if self.word != self._given else super().hint
 
 
-def fields_of_water(grid: Callable[..., water_grid.Grid]) -> Iterator[Widget]:
-    """The parts of the form, tables made by `grid`; ids tell their places in an environment."""
+class ProfileGrid(Grid):
+    """A table of the water: numbers by depth, whose columns carry their units."""
 
-    def field(place: str, title: str, check: Check = anything, placeholder: str = "") -> Field:
-        key = place.rpartition("-")[2]
-        return Field(Asked(key, title, check=check, placeholder=placeholder), id=place)
+    LEAST_ROWS = 1
+    EDITS_ON = False
 
-    speed = QuantityField("speed", at_least=0)
-    depth = quantity(POSITIVE_LENGTH, optional=True)
-    density = quantity(profile_tables.WATER_DENSITY, optional=True)
-    toward = quantity(profile_tables.DIRECTION, optional=True)
-    yield field("depth", "Depth", depth, "e.g. 1100 m")
-    yield FormChoice("Density", DENSITY_FORMS, id="density")
-    yield field("density", "", density, "else 1025 kg/m^3")
-    yield grid(id="density-table")
+    def __init__(
+        self,
+        tell: Callable[..., object],
+        changed: Callable[[Any, str], object],
+        preview: Callable[[ProfileGrid, CopiedTable, list[str]], object],
+        *,
+        id: str,
+    ) -> None:
+        super().__init__(tell, changed, id=id)
+        self._preview = preview
+        self._seabed: float | None = None
+
+    def show_profile(
+        self, columns: Sequence[str], rows: Sequence[Sequence[str]], seabed: float | None
+    ) -> None:
+        """Show other rows; new ones are not proposed below the `seabed` [m]."""
+        self._seabed = seabed
+        self.show(
+            [FormColumn("", heading, water_tables.check_of(heading)) for heading in columns], rows
+        )
+
+    def new_row(self, at: int) -> tuple[str, ...]:
+        """Values half-way between those above and below, where both are numbers.
+
+        Below the last row they are its own, a step deeper but not below the seabed.
+        """
+        columns, rows = self.cells.headings, self.cells.rows
+        if not rows:
+            return ("0",) * len(columns)
+        above, below = rows[max(at - 1, 0)], rows[min(at, len(rows) - 1)]
+        try:
+            pairs = [(float(one), float(other)) for one, other in zip(above, below, strict=True)]
+        except ValueError:
+            return above
+        if at == len(rows):
+            deeper = pairs[0][0] + _STEP
+            return (f"{min(deeper, self._seabed or math.inf):g}", *above[1:])
+        halves = (
+            water_tables.half_way(column, *pair)
+            for column, pair in zip(columns, pairs, strict=True)
+        )
+        return tuple(f"{half:g}" for half in halves)
+
+    def ends_at(self, at: int) -> bool:
+        """Return whether a row at a place would be of a depth below the seabed."""
+        rows = self.cells.rows
+        if self._seabed is None or not rows or at < len(rows):
+            return False
+        try:
+            return float(rows[-1][0]) >= self._seabed
+        except ValueError:
+            return False
+
+    def take_text(self, text: str) -> None:
+        """Read the rows of a text by its headings, and have them shown before they are taken."""
+        columns = self.cells.headings
+        try:
+            copied = copied_table(text)
+            headings = water_tables.offered_headings(copied.headings, columns)
+            water_tables.rows_in(columns, headings, copied.rows)
+        except water_tables.UnknownColumns:
+            pass  # the person says what they are
+        except (NoTableError, water_tables.NoRows) as error:
+            self.tell(f"Nothing is pasted: {error}", wrong=True)
+            return
+        self._preview(self, copied, headings)
+
+
+_STEP = 10.0
+"""How much deeper [m] a row below the last is."""
+_FIRST = ("depth", "density", "current", "wind")
+
+
+def fields_of_water(towed: bool, grid: Callable[..., ProfileGrid]) -> Iterator[Widget]:
+    """The form of an environment, tables made by `grid`; ids tell their places in it."""
+    asked = form_of(TowEnvironmentKeys if towed else EnvironmentKeys, needed=False)
+    asked = [each for each in asked if each.key != "fluid" or towed]
+    groups = {each.key.partition(".")[0]: [] for each in asked}  # type: dict[str, list[Asked]]
+    for each in asked:
+        groups[each.key.partition(".")[0]].append(each)
+    for key in (*_FIRST, *(key for key in groups if key not in _FIRST)):
+        if key == "density":
+            yield from _density(groups[key][0], grid)
+        elif key == "current":
+            yield FormChoice("current", CURRENT_FORMS, id="current")
+            for model in (UniformCurrent, CurrentFile):
+                yield from _fields(form_of(model, "current."))
+            yield grid(id="current-table")
+        else:
+            yield from _fields(groups[key])
+
+
+def _density(asked: Asked, grid: Callable[..., ProfileGrid]) -> Iterator[Widget]:
+    """The density, its temperature and its salinity: each a constant or a table."""
+    of_sea_water = {each.key: each for each in form_of(SeaWaterKeys, "density.")}
     for place, (kind, _, _) in _CONSTANTS.items():
-        if len(place) > 1:
-            id = "-".join(place)
-            yield FormChoice(f"  {place[1]}", PROFILE_FORMS, id=id)
-            yield field(id, "", quantity(kind))
-            yield grid(id=f"{id}-table")
-    yield FormChoice("Current", CURRENT_FORMS, id="current")
-    yield field("current-speed", "  speed", quantity(speed))
-    yield field("current-toward", "  towards", quantity(profile_tables.DIRECTION))
-    yield field("current-file", "  file", needed("a file"))
-    yield field("current-time", "  time", placeholder="e.g. 2026-03-01T06")
-    yield grid(id="current-table")
-    yield field("wind-speed", "Wind", quantity(speed, optional=True), "none")
-    yield field("wind-toward", "  towards", toward, "where it blows")
+        id, is_inner = "-".join(place), len(place) > 1
+        forms = PROFILE_FORMS if is_inner else DENSITY_FORMS
+        one = of_sea_water[".".join(place)] if is_inner else asked
+        yield FormChoice(f"  {place[1]}" if is_inner else "density", forms, id=id)
+        yield Field(replace(one, title="", check=quantity(kind, optional=not is_inner)), id=id)
+        yield grid(id=f"{id}-table")
+
+
+def _fields(asked: Iterable[Asked]) -> Iterator[Widget]:
+    """Fields, those of a model within the environment indented below its name."""
+    for each in asked:
+        if each.above:
+            yield Static(each.above, classes="above", markup=False)
+        indent = "  " * each.key.count(".")
+        shown = replace(each, title=indent + each.title, above="")
+        yield Field(shown, id=each.key.replace(".", "-"))

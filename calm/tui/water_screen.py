@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from pathlib import Path
 
 from textual import events, on
 from textual.app import ComposeResult
@@ -12,13 +13,33 @@ from textual.events import DescendantFocus
 from textual.widget import Widget
 from textual.widgets import Static
 
-from calm.errors import Problem
+from calm.errors import CalmError, Problem
 from calm.files.editing import Draft, Value
+from calm.files.environment import CurrentFile
+from calm.records.delimited import CopiedTable
 from calm.tui import cell_editor, checking, dialogs, key_table, pictures, screen, verdict_pane
-from calm.tui.field import Asked, Field
-from calm.tui.water_form import DENSITY_FORMS, FormChoice, Place, WaterForm, fields_of_water
-from calm.tui.water_grid import Grid, GridCells
-from calm.tui.water_tables import CURRENT_COLUMNS, USUAL_DEPTH, Currents
+from calm.tui.field import Field
+from calm.tui.forms import Asked, Rows
+from calm.tui.table_field import GridCells
+from calm.tui.water_form import (
+    DENSITY_FORMS,
+    FormChoice,
+    Place,
+    ProfileGrid,
+    WaterForm,
+    fields_of_water,
+)
+from calm.tui.water_tables import (
+    CURRENT_COLUMNS,
+    PRESETS,
+    SHARES,
+    USUAL_DEPTH,
+    NoRows,
+    import_sheet,
+    imported,
+    previewed,
+    rows_in,
+)
 from calm.tui.workspace import Workspace, said
 
 _ELSEWHERE = (
@@ -38,15 +59,17 @@ class WaterScreen(screen.DraftScreen):
         & #water-form { width: 3fr; padding: 1 1 0 1; scrollbar-size-vertical: 1; }
         & #water-profile { width: 2fr; border-left: vkey $panel; padding: 0 1; }
         & .gone { display: none; }
-        & Grid { margin-left: 16; }
+        & .above { color: $text-muted; }
+        & Grid { margin-left: 24; }
+        & Field > .field-title { width: 24; }
         & Field > Input { width: 20; }
         &.-narrow Grid { margin-left: 0; }
+        &.-narrow Field > .field-title { width: 20; }
     }
     """
 
     def __init__(self, workspace: Workspace) -> None:
         super().__init__(workspace)
-        self._currents = Currents(self)
         # what was written in forms that others took the place of, to be had back
         self._left: dict[tuple[str | None, Place, str], Value | None] = {}
         # to the first value of a form, which leaves the message that is shown
@@ -58,7 +81,8 @@ class WaterScreen(screen.DraftScreen):
             with VerticalScroll(id="water-form", can_focus=False):
                 yield Static(id="environment-names", markup=False)
                 yield Static(id="water-notes")
-                yield from fields_of_water(partial(Grid, self.workspace, self._take_rows))
+                grid = partial(ProfileGrid, self.workspace.tell, self._take_rows, self._preview)
+                yield from fields_of_water(self.session.draft.is_tow, grid)
             with Vertical(id="water-profile"):
                 yield pictures.ProfilePicture()
 
@@ -123,14 +147,14 @@ class WaterScreen(screen.DraftScreen):
             field.set_class(not self._is_shown(place, "constant"), "gone")
             if not field.is_typing:
                 field.reset(water.text(*place))
-            is_blown = place == ("wind", "toward") and water.text("wind", "speed")
-            is_lacking = is_blown and not water.text(*place)
-            note = "is needed: where the wind blows" if is_lacking else ""
+            is_lacking = field.asked.is_needed and len(place) > 1 and water.value(*place[:-1])
+            lacks = is_lacking and not water.text(*place)
+            note = f"is needed: {field.asked.takes}" if lacks else ""
             field.tell(note if water.is_own(place[0]) else _INHERITED)
-        for grid in self.query(Grid):
+        for grid in self.query(ProfileGrid):
             place = _place(grid)
             grid.set_class(not self._is_shown(place, "table"), "gone")
-            grid.show(*water.table(*place), seabed=water.depth)
+            grid.show_profile(*water.table(*place), water.depth)
 
     def _is_shown(self, place: Place, form: str = "") -> bool:
         """Return whether a part of the form is of use as the water is given."""
@@ -138,7 +162,9 @@ class WaterScreen(screen.DraftScreen):
         if key == "density" and place[1:] and water.form(key) != DENSITY_FORMS[2]:
             return False
         if key == "current" and place[1:]:
-            return water.form(key) == ("file" if place[1] in ("file", "time") else "uniform")
+            return water.form(key) == (
+                "file" if place[1] in CurrentFile.model_fields else "uniform"
+            )
         return not form or key not in ("density", "current") or water.form(*place) == form
 
     def replaced(self) -> None:
@@ -167,11 +193,11 @@ class WaterScreen(screen.DraftScreen):
     @property
     def is_typing(self) -> bool:
         """Return whether something is typed that is not in the draft yet."""
-        return any(part.is_typing for part in (*self.query(Field), *self.query(Grid)))
+        return any(part.is_typing for part in (*self.query(Field), *self.query(ProfileGrid)))
 
     def settle(self) -> bool:
         """Take what is typed; the first bad value stays to be corrected, and is reported."""
-        if not all(grid.settle() for grid in self.query(Grid)):
+        if not all(grid.settle() for grid in self.query(ProfileGrid)):
             return False
         for field in self.query(Field):
             if not field.is_typing:
@@ -189,7 +215,7 @@ class WaterScreen(screen.DraftScreen):
         """Take away what is typed and not in the draft."""
         for field in self.query(Field):
             field.reset(field.begun)
-        for grid in self.query(Grid):
+        for grid in self.query(ProfileGrid):
             grid.leave_cell()
 
     @on(Field.Committed)
@@ -198,22 +224,49 @@ class WaterScreen(screen.DraftScreen):
 
     def _take(self, field: Field, text: str) -> None:
         place = _place(field)
-        self.change(lambda water: water.put(place, text), f"the {place[0]}")
+        is_needed = field.asked.is_needed
+        self.change(lambda water: water.put(place, text, is_needed=is_needed), f"the {place[0]}")
 
     @on(Field.Entered)
     def _onward(self) -> None:
         self.focus_next()
 
-    def _take_rows(self, grid: Grid, label: str) -> None:
+    def _take_rows(self, grid: ProfileGrid, label: str) -> None:
         place, cells = _place(grid), grid.cells
         self.change(lambda water: water.put_rows(place, cells.headings, cells.rows), label)
+
+    def _preview(self, grid: ProfileGrid, copied: CopiedTable, headings: list[str]) -> None:
+        """Show what would be taken, under which columns; these can be corrected."""
+        columns = grid.cells.headings
+
+        def taken(text: str) -> Rows:
+            return rows_in(columns, [one.strip() for one in text.split(",")], copied.rows)
+
+        def check(text: str) -> checking.Reading:
+            try:
+                return checking.Reading(text, comes_to=previewed(columns, taken(text)))
+            except NoRows as error:
+                return checking.Reading(text, str(error))
+
+        def take(answers: dict[str, str]) -> None:
+            rows, chosen = taken(answers["columns"]), answers["columns"]
+            grid.change(rows, f"{len(rows)} rows pasted: {chosen}")
+            self.call_after_refresh(grid.cells.focus)  # a table may not be shown yet
+
+        text = "It takes the place of all rows."
+        if copied.headings is None:
+            text += " It has no headings: are these its columns?"
+        first = "   ".join(copied.rows[0])
+        text += f" Its first row reads  {first}"
+        asked = Asked("columns", "Columns", ", ".join(headings), check)
+        dialogs.enter(self.app, "A table is pasted", text, [asked], take)
 
     def on_paste(self, event: events.Paste) -> None:
         """A table that is pasted into no table of the form is the current, however it was given."""
         if len(event.text.splitlines()) > 1 and self.settle():
-            grid = self.query_one("#current-table", Grid)
+            grid = self.query_one("#current-table", ProfileGrid)
             if self.water.form("current") != "table":
-                grid.show(CURRENT_COLUMNS, ())
+                grid.show_profile(CURRENT_COLUMNS, (), self.water.depth)
             grid.take_text(event.text)
 
     @on(FormChoice.Taken)
@@ -221,7 +274,7 @@ class WaterScreen(screen.DraftScreen):
         """Give the current or the density in another form: as it was in it, or begun anew."""
         place, form, message = _place(event.choice), event.form, ""
         if form == "file":
-            self._currents.ask_for_file()
+            self.action_load_current()
             return
         if not self.settle():
             return
@@ -309,11 +362,66 @@ class WaterScreen(screen.DraftScreen):
 
     def action_preset(self) -> None:
         """A profile to begin with."""
-        self._currents.offer_presets()
+
+        def take(speed: Callable[[float], float]) -> None:
+            deep = self.water.depth or USUAL_DEPTH
+            rows = [(f"{part * deep:.4g}", f"{speed(part):.2g}", "90") for part in SHARES]
+            self.put_table(CURRENT_COLUMNS, rows, "a preset current")
+
+        if self.settle():
+            depth = self.water.depth
+            down = f"{USUAL_DEPTH:g} m, as no depth is given" if depth is None else f"{depth:g} m"
+            answers = dialogs.numbered(
+                (name, partial(take, each)) for name, each in PRESETS.items()
+            )
+            text = f"A table down to {down}, towards the east, for you to change."
+            dialogs.choose(self.app, dialogs.Question("A current to start from", text, answers))
 
     def action_load_current(self) -> None:
         """A current from CSV or NetCDF: referred to, or its profile copied."""
-        self._currents.ask_for_file()
+
+        def take(texts: dict[str, str] | None) -> None:
+            if texts is None:
+                self.show_draft()
+                return
+            path, time = texts["file"], texts["time"]
+            if texts["how"] != "copy":
+                given = {"file": path} | ({"time": time} if time else {})
+                message = f"current of {path}"
+                self.change(lambda water: water.put_form(("current",), given), message)
+            else:
+                self.workspace.tell(f"Reading {path} …")
+                read = partial(self._read, self.water, path, time)
+                self.run_worker(read, thread=True, exit_on_error=False)
+
+        if self.settle():
+            self.app.push_screen(import_sheet(self._folder), take)
+
+    def _read(self, water: WaterForm, path: str, time: str) -> None:
+        """Read a file for an environment in a thread; what comes of it is taken by the form."""
+        tell = self.workspace.tell
+
+        def put(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+            if water.variant != self.water.variant:
+                tell(f"{path} was read for another environment; read it again", wrong=True)
+            else:
+                self.put_table(columns, rows, f"current of {path}")
+                tell(f"The current of {path} is in the table")
+
+        try:
+            table = imported(self._folder / path, time, water.depth or USUAL_DEPTH)
+        except CalmError as error:
+            self.call_later(tell, str(error).partition("\n")[0], wrong=True)
+        except Exception as error:  # the libraries that read NetCDF raise whatever they like
+            reason = f"{type(error).__name__}: {error}"
+            self.call_later(tell, f"{path} cannot be read: {reason}", wrong=True)
+        else:
+            self.call_later(put, *table)
+
+    @property
+    def _folder(self) -> Path:
+        path = self.session.file.path
+        return Path.cwd() if path is None else path.absolute().parent
 
     def action_undo(self) -> None:
         """Take the last change back, or what is typed where that is bad."""

@@ -8,37 +8,33 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from itertools import chain
 from math import exp, isclose
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from numpy import float32
 
-from calm.errors import CalmError, Problem, UsageError
+from calm.errors import Problem, UsageError
 from calm.files.definition import QuantityField
 from calm.records import profile_tables
 from calm.records.headings import heading
 from calm.records.profile_tables import QuantityTable, speed_and_direction
-from calm.tui import field, theme
-from calm.tui.checking import Check, Reading, number, quantity
-from calm.tui.dialogs import InputSheet, Question, choose, numbered
+from calm.tui import forms, theme
+from calm.tui.checking import Check, Reading, number, one_of, quantity
+from calm.tui.dialogs import InputSheet
+from calm.tui.forms import Rows
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
-
-if TYPE_CHECKING:
-    from calm.tui import water_form, water_screen
 
 CURRENT_COLUMNS = ("depth m", "speed m/s", "toward deg")
 
 USUAL_DEPTH = 100.0
 """How far down [m] tables are begun where no depth is given."""
 
-_SHARES = (0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
+SHARES = (0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
 _POWER = 1 / 7
 
 
-_PRESETS: Mapping[str, Callable[[float], float]] = {
+PRESETS: Mapping[str, Callable[[float], float]] = {
     "uniform, 0.5 m/s": lambda share: 0.5,
     "tidal stream, 1 m/s, falling by the 1/7 power of the height above the bed":
         lambda share: (1.0 - share) ** _POWER,
@@ -49,75 +45,6 @@ _PRESETS: Mapping[str, Callable[[float], float]] = {
 }  # fmt: skip
 """Profiles to begin with: the speed [m/s] at a share of the depth, 0 at the surface, 1 at the bed.
 """
-
-
-class Currents:
-    """Put a whole current into the environment that the screen of the water shows."""
-
-    def __init__(self, screen: water_screen.WaterScreen) -> None:
-        self._screen, self._workspace = screen, screen.workspace
-
-    def offer_presets(self) -> None:
-        """A profile to begin with."""
-
-        def take(speed: Callable[[float], float]) -> None:
-            deep = self._screen.water.depth or USUAL_DEPTH
-            rows = [(f"{part * deep:.4g}", f"{speed(part):.2g}", "90") for part in _SHARES]
-            self._screen.put_table(CURRENT_COLUMNS, rows, "a preset current")
-
-        if self._screen.settle():
-            depth = self._screen.water.depth
-            down = f"{USUAL_DEPTH:g} m, as no depth is given" if depth is None else f"{depth:g} m"
-            answers = numbered((name, partial(take, speed)) for name, speed in _PRESETS.items())
-            text = f"A table down to {down}, towards the east, for you to change."
-            choose(self._screen.app, Question("A current to start from", text, answers))
-
-    def ask_for_file(self) -> None:
-        """A current from CSV or NetCDF: referred to, or its profile copied."""
-        screen = self._screen
-
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is None:
-                screen.show_draft()
-                return
-            path, time = texts["file"], texts["time"]
-            if texts["how"] == "refer":
-                given = {"file": path} | ({"time": time} if time else {})
-                message = f"current of {path}"
-                screen.change(lambda water: water.put_form(("current",), given), message)
-            else:
-                self._workspace.tell(f"Reading {path} …")
-                read = partial(self._read, screen.water, path, time)
-                screen.run_worker(read, thread=True, exit_on_error=False)
-
-        if screen.settle():
-            screen.app.push_screen(import_sheet(self._folder), take)
-
-    def _read(self, water: water_form.WaterForm, path: str, time: str) -> None:
-        """Read a file for an environment in a thread; what comes of it is taken by the form."""
-        screen, tell = self._screen, self._workspace.tell
-
-        def put(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-            if water.variant != screen.water.variant:
-                tell(f"{path} was read for another environment; read it again", wrong=True)
-            else:
-                screen.put_table(columns, rows, f"current of {path}")
-                tell(f"The current of {path} is in the table")
-
-        try:
-            table = imported(self._folder / path, time, water.depth or USUAL_DEPTH)
-        except CalmError as error:
-            screen.call_later(tell, str(error).partition("\n")[0], wrong=True)
-        except Exception as error:  # the libraries that read NetCDF raise whatever they like
-            reason = f"{type(error).__name__}: {error}"
-            screen.call_later(tell, f"{path} cannot be read: {reason}", wrong=True)
-        else:
-            screen.call_later(put, *table)
-
-    @property
-    def _folder(self) -> Path:
-        path = self._screen.session.file.path
-        return Path.cwd() if path is None else path.absolute().parent
 
 
 _SPEEDS = ("depth m", "u m/s", "v m/s", "w m/s")
@@ -131,9 +58,9 @@ def import_sheet(folder: Path) -> InputSheet:
         f"CSV or CF NetCDF, from {folder} unless another is named. `refer` keeps the file's "
         "name in the mooring file; `copy` writes its profile as a table.",
         [
-            field.Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
-            field.Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
-            field.Asked("how", "refer or copy", "refer", _how),
+            forms.Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
+            forms.Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
+            forms.Asked("how", "refer or copy", "refer", one_of(("refer", "copy"))),
         ],
     )
 
@@ -196,16 +123,6 @@ def _existing(folder: Path) -> Check:
 
     return check
 
-
-def _how(text: str) -> Reading:
-    word = text.strip().casefold()
-    for choice in ("refer", "copy"):
-        if word and choice.startswith(word):
-            return Reading(choice)
-    return Reading(word, "is refer or copy", "refer")
-
-
-Rows = tuple[tuple[str, ...], ...]
 
 _MOST_SHOWN = 8
 _OF_A_CURRENT = {"u", "v", "w", "speed", "toward"}

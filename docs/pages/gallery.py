@@ -46,7 +46,7 @@ class Try:
     seen: str = ""
 
 
-_SPEEDS = "calm tow {file} --speeds"
+_SPEEDS = "calm run {file} --speeds"
 TRIES = {
     "a-frame-sheared-tow": Try(
         "What counts is the speed past the line. Tow it faster:",

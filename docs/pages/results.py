@@ -18,7 +18,7 @@ from pages.markdown import code, plain, table
 
 HEAD = """# Names in results
 
-What `calm run`, `calm tow`, `calm batch` and `calm motion` write, with units: SI and degrees. x is
+What `calm run`, `calm batch` and `calm motion` write, with units: SI and degrees. x is
 east and y north of the anchor, or of the tow point; depths are positive downwards. Unknown figures
 are `null` in JSON, empty in CSV, NaN in NetCDF. The JSON of other commands is on their pages:
 [`calm check`](check.md#json), [`calm batch`](batch-statistics.md),

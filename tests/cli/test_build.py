@@ -5,7 +5,7 @@ import socket
 
 import pytest
 
-from calm.cli import starter as command
+from calm.cli import build as command
 
 
 def test_without_a_terminal_it_says_what_else_there_is(calm_process, write_mooring):

@@ -49,7 +49,6 @@ line:
   - {{use: sphere-steel-1250, label: "{TOP}", buoyancy: -1000 N}}
 """
 
-CABLE = ("--speed", "1 m/s", "--diameter", "1 m", "--weight", "1 N/m")
 
 CATALOGUE = """\
 "x-[/b]":
@@ -78,9 +77,8 @@ COMMANDS = {
     "schematic": (["run", "m.yaml", "--schematic"], ("M [/y] <i>", *HOSTILE)),
     "explain": (["run", "m.yaml", "--explain"], (TOP, CTD, WIRE)),
     "environment": (["run", "m.yaml", "--environment", "storm [/z]"], HOSTILE),
-    "tow": (["tow", "t.yaml", "--schematic"], ("T [/y]", WIRE, CTD, TOP)),
-    "speeds": (["tow", "t.yaml", "--speeds", "1 knot:2 knot:1 knot"], ("T [/y]",)),
-    "sensitivity": (["tow", "t.yaml", "--sensitivity"], ("T [/y]",)),
+    "tow": (["run", "t.yaml", "--schematic"], ("T [/y]", WIRE, CTD, TOP)),
+    "speeds": (["run", "t.yaml", "--speeds", "1 knot:2 knot:1 knot"], ("T [/y]",)),
     "check": (["check", "m.yaml"], ("M [/y] <i>", "storm [/z]", TOP, ANCHOR)),
     "size": (
         ["size", "m.yaml", "--target", f"depth({CTD}) <= 211 m", "--change", f"{TOP}.buoyancy"],
@@ -112,7 +110,6 @@ def test_names_are_printed_as_they_are(command, folder, capsys):
         (["catalog", "search", "[/none]"], "[/none]"),
         (["verify", "[/none]"], "[/none]"),
         (["chart", "solve", "--weight", "[/5 N]"], "[/5 N]"),
-        (["strumming", "--angle", "[/a]", *CABLE], "[/a]"),
         (["new", "-o", "m.yaml"], "m.yaml"),
     ],
 )  # fmt: skip

@@ -69,11 +69,7 @@ def test_tows(calm, folder):
         "  rope: {kind: cable, diameter: 10 mm, weight: 1 N/m}\n"
         "  ball: {kind: sphere, diameter: 0.2 m, buoyancy: -200 N}\n"
     )
-    assert "\n\\__|__/    ship" in calm("tow", "tow.yaml", "--schematic").out
-    for other in (["--speeds", "1 knot:2 knot:1 knot"], ["--sensitivity"]):
-        done = calm("tow", "tow.yaml", "--schematic", *other)
-        assert done.code == 2
-        assert done.err == "calm: --schematic draws a tow at the speed of its file\n"
+    assert "\n\\__|__/    ship" in calm("run", "tow.yaml", "--schematic").out
 
 
 def test_the_page_of_the_manual_is_what_is_drawn():

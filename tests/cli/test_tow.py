@@ -1,4 +1,4 @@
-"""`calm tow`, and `calm run` of a tow, as a user runs them."""
+"""`calm run` of tows, and with `--speeds`, as a user runs it."""
 
 import csv
 import io
@@ -36,7 +36,7 @@ def write_tow(folder):
 
 
 def test_table_tells_both_ends_of_the_line(calm, write_tow):
-    done = calm("tow", write_tow())
+    done = calm("run", write_tow())
     assert (done.code, done.err) == (0, "")
     assert done.out.startswith("Test tow: tow at 1.00 m/s towards 90°\n")
     for words in ("\nwire ", "\nfish ", "Tow point pulled by", "N back", "Body ", "layback"):
@@ -45,8 +45,8 @@ def test_table_tells_both_ends_of_the_line(calm, write_tow):
     assert "Strumming" not in done.out
 
 
-def test_run_shows_tows_beside_moorings_and_says_the_same_as_tow(calm, write_tow, write_mooring):
-    alone = calm("tow", write_tow(), "--json", "-")
+def test_tows_beside_moorings_are_as_alone(calm, write_tow, write_mooring):
+    alone = calm("run", write_tow(), "--json", "-")
     both = calm("run", write_mooring(), "t.yaml", "--json", "-")
     assert both.code == 0
     mooring, tow = json.loads(both.out)
@@ -64,22 +64,41 @@ def test_every_output_of_run_takes_a_tow(calm, write_tow, write_mooring, folder)
     assert "distance behind the tow point" in (folder / "p-t.svg").read_text(encoding="utf-8")
 
 
-def test_a_mooring_is_refused(calm, write_tow, write_mooring):
-    done = calm("tow", write_tow(), write_mooring())
+def test_moorings_have_no_speeds(calm, write_tow, write_mooring):
+    done = calm("run", write_tow(), write_mooring(), "--speeds", "1 m/s:2 m/s:1 m/s")
     assert (done.code, done.out) == (2, "")
-    assert done.err == "calm: m.yaml is a mooring, not a tow: calm run m.yaml\n"
+    assert done.err == "calm: --speeds is for tows; these are moorings: m.yaml\n"
+
+
+@pytest.mark.parametrize(
+    "options",
+    [["--schematic"], ["--explain", "--uncertainty"], ["--html", "x.html"], ["--netcdf", "x.nc"]],
+)
+def test_options_that_show_one_speed_are_rejected(calm, write_tow, folder, options):
+    done = calm("run", write_tow(), "--speeds", "1 m/s:2 m/s:1 m/s", *options)
+    assert (done.code, done.out) == (2, "")
+    names = ", ".join(word for word in options if word.startswith("--"))
+    assert done.err == f"calm: {names} cannot be combined with --speeds\n"
+    assert [path.name for path in folder.iterdir()] == ["t.yaml"]
+
+
+def test_the_message_about_calm_tow_names_calm_run(calm, write_tow):
+    done = calm("tow", write_tow())
+    assert (done.code, done.out) == (2, "")
+    assert done.err.startswith('calm: Unknown command "tow". Did you mean "run"?')
+    assert len(done.err.splitlines()) == 1
 
 
 def test_strumming_is_told(calm, write_tow):
     file = write_tow(strumming="bourget-marichal")
-    found = json.loads(calm("tow", file, "--json", "-").out)["strumming"]
+    found = json.loads(calm("run", file, "--json", "-").out)["strumming"]
     cn = f"Cn from {found['cn_min']:.3f} to {found['cn_max']:.3f}"
     told = f"Strumming at {found['frequency']:.2f} Hz, {cn}"
-    assert told in calm("tow", file).out
+    assert told in calm("run", file).out
 
 
 def test_speeds_have_both_ends_and_what_a_tow_at_that_speed_has(calm, write_tow):
-    done = calm("tow", write_tow(), "--speeds", "1 knot:2 m/s:0.5 m/s", "--json", "-")
+    done = calm("run", write_tow(), "--speeds", "1 knot:2 m/s:0.5 m/s", "--json", "-")
     assert done.code == 0
     document = json.loads(done.out)
     assert list(document) == ["calm", "name", "type", "speeds", "units"]
@@ -88,7 +107,7 @@ def test_speeds_have_both_ends_and_what_a_tow_at_that_speed_has(calm, write_tow)
     speeds = [row["speed"] for row in document["speeds"]]
     knot = 1852.0 / 3600.0
     assert speeds == pytest.approx([knot, knot + 0.5, knot + 1.0, 2.0], rel=1e-12)
-    alone = json.loads(calm("tow", write_tow(speed="2 m/s"), "--json", "-").out)
+    alone = json.loads(calm("run", write_tow(speed="2 m/s"), "--json", "-").out)
     last = document["speeds"][-1]
     assert last["status"] == "converged"
     assert "frequency" not in last
@@ -100,7 +119,7 @@ def test_speeds_have_both_ends_and_what_a_tow_at_that_speed_has(calm, write_tow)
 
 
 def test_csv_has_the_same_rows(calm, write_tow):
-    words = ("tow", write_tow(strumming="bourget-marichal"), "--speeds", "1 m/s:2 m/s:1 m/s")
+    words = ("run", write_tow(strumming="bourget-marichal"), "--speeds", "1 m/s:2 m/s:1 m/s")
     document = json.loads(calm(*words, "--json", "-").out)
     rows = list(csv.DictReader(io.StringIO(calm(*words, "--csv", "-").out)))
     assert [row["tow"] for row in rows] == ["Test tow"] * 2
@@ -115,7 +134,7 @@ def test_csv_has_the_same_rows(calm, write_tow):
 def test_a_speed_without_equilibrium_is_a_row_and_the_sweep_goes_on(calm, write_tow):
     # At 0.2 m/s the line hangs 99 m deep, below a bed of 90 m; at 1.6 and 3 m/s it is above.
     file = write_tow(environment=", depth: 90 m")
-    done = calm("tow", file, "--speeds", "0.2 m/s:3 m/s:1.4 m/s", "--json", "-")
+    done = calm("run", file, "--speeds", "0.2 m/s:3 m/s:1.4 m/s", "--json", "-")
     assert done.code == 3
     slow, _, fast = json.loads(done.out)["speeds"]
     assert (slow["status"], slow["depth"], slow["tension"]) == ("grounded", None, None)
@@ -123,16 +142,16 @@ def test_a_speed_without_equilibrium_is_a_row_and_the_sweep_goes_on(calm, write_
     assert (fast["status"], "message" in fast) == ("converged", False)
     assert len(done.err.splitlines()) == 1
     assert "no equilibrium at 1 of 3 speeds; at 0.2 m/s, grounded" in done.err
-    table = calm("tow", file, "--speeds", "0.2 m/s:3 m/s:1.4 m/s")
+    table = calm("run", file, "--speeds", "0.2 m/s:3 m/s:1.4 m/s")
     assert table.code == 3
     assert "grounded" in table.out.splitlines()[5]
 
 
 def test_a_sweep_is_drawn(calm, write_tow, folder):
     words = ("--speeds", "1 m/s:2 m/s:0.5 m/s", "--plot")
-    assert calm("tow", write_tow(), *words, "s.png").code == 0
+    assert calm("run", write_tow(), *words, "s.png").code == 0
     assert (folder / "s.png").read_bytes().startswith(b"\x89PNG")
-    assert calm("tow", "t.yaml", *words, "s.svg").code == 0
+    assert calm("run", "t.yaml", *words, "s.svg").code == 0
     drawing = (folder / "s.svg").read_text(encoding="utf-8")
     for label in ("depth [m]", "layback [m]", "tension [N]", "speed [m/s]", "speed [knot]"):
         assert label in drawing
@@ -153,7 +172,7 @@ def test_a_sweep_is_drawn(calm, write_tow, folder):
     ],
 )
 def test_wrong_speeds_are_refused_before_anything_is_read(calm, speeds, told, folder):
-    done = calm("tow", "missing.yaml", "--speeds", speeds, "--json", "x.json")
+    done = calm("run", "missing.yaml", "--speeds", speeds, "--json", "x.json")
     assert (done.code, done.out) == (2, "")
     assert len(done.err.splitlines()) == 1
     assert told in done.err
@@ -161,51 +180,15 @@ def test_wrong_speeds_are_refused_before_anything_is_read(calm, speeds, told, fo
 
 
 def test_ten_thousand_speeds_are_not_too_many():
-    from calm.cli.options import speed_range
+    from calm.cli.tow_speeds import speed_range
 
     assert len(speed_range("1 m/s:10.999 m/s:0.001 m/s")) == 10_000
     assert speed_range("3 m/s:3 m/s:1 knot") == [3.0]
 
 
-def test_sensitivity_changes_each_coefficient_down_and_up(calm, write_tow):
-    file = write_tow(strumming="bourget-marichal")
-    rows = json.loads(calm("tow", file, "--sensitivity", "--json", "-").out)["sensitivity"]
-    assert [(row["coefficient"], row["change"]) for row in rows] == [
-        ("", 0.0), ("a1", -0.1), ("a1", 0.1), ("b1", -0.1), ("b1", 0.1), ("c1", -0.1), ("c1", 0.1),
-    ]  # fmt: skip
-    same = json.loads(calm("tow", file, "--json", "-").out)
-    assert rows[0]["frequency"] == same["strumming"]["frequency"]
-    given = "{model: bourget-marichal, a1: 1.762035}"  # 1.1 × 1.60185
-    greater = json.loads(calm("tow", write_tow(strumming=given), "--json", "-").out)
-    assert rows[2]["depth"] == pytest.approx(greater["body"]["depth"], rel=1e-9)
-    assert rows[2]["depth"] < rows[0]["depth"] < rows[1]["depth"]
-    assert "A1 +10%" in calm("tow", file, "--sensitivity").out
-
-
-def test_sensitivity_of_a_fitted_cable_leaves_it_as_long_as_it_is(calm, write_tow):
-    file = write_tow(strumming="bourget-marichal", length="length: fit, body_depth: 40 m")
-    rows = json.loads(calm("tow", file, "--sensitivity", "--json", "-").out)["sensitivity"]
-    assert rows[0]["depth"] == pytest.approx(40.0, abs=1e-3)
-    assert rows[1]["depth"] > 40.1  # less vibration, less drag
-
-
-@pytest.mark.parametrize(
-    ("options", "told"),
-    [
-        (["--sensitivity"], "has no coefficients to change"),
-        (["--sensitivity", "--speeds", "1 m/s:2 m/s:1 m/s"], "either --speeds or --sensitivity"),
-        (["--sensitivity", "--plot", "p.png"], "has no --plot"),
-    ],
-)
-def test_sensitivity_where_it_has_no_meaning(calm, write_tow, options, told):
-    done = calm("tow", write_tow(), *options)
-    assert (done.code, done.out) == (2, "")
-    assert told in done.err
-
-
 def test_where_no_length_reaches_the_depth_there_is_nothing_to_tabulate(calm, write_tow):
     file = write_tow(speed="5 m/s", length="weight: -2.5 N/m, length: fit, body_depth: 5 km")
-    words = ("tow", write_tow("good.yaml"), file, "--speeds", "1 m/s:2 m/s:1 m/s")
+    words = ("run", write_tow("good.yaml"), file, "--speeds", "1 m/s:2 m/s:1 m/s")
     done = calm(*words, "--json", "-")
     assert done.code == 3
     good, none = json.loads(done.out)

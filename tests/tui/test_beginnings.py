@@ -1,14 +1,12 @@
-"""Starts, assemblies of one's own, the history, and components changed in their form."""
+"""Starts, the history, and components changed in their form."""
 
 import pytest
 
 from calm.checks.finding import State
-from calm.files.editing import Draft, EditError
+from calm.files.editing import Draft
 from calm.shipped import TEMPLATES, template
 from calm.tui.line_rows import table_rows
 from calm.tui.live import judge, judge_fully
-from calm.tui.session import Place
-from calm.tui.start import open_session
 from tests.tui.conftest import MOORING
 
 
@@ -28,33 +26,6 @@ def test_an_empty_line_begins_with_a_mooring(drive, number):
         assert driver.session.draft.items == ()
 
     drive(story)
-
-
-def test_marked_rows_become_an_assembly_with_their_comments(drive, small):
-    async def story(driver):
-        await driver.press("down", "shift+down")  # the rope and its first clamp
-        await driver.press("down", "down", "space", "k")
-        await driver.type("lower-part")
-        await driver.press("enter")
-        await driver.settle()
-        assert driver.uses == ["ball", "lower-part", "weight"]
-        assert "  # the release is ours" in driver.text
-        assert [row.length for row in driver.view.rows][:2] == [1.0, pytest.approx(60.0)]
-        await driver.press("u")
-        assert driver.text == MOORING
-
-    drive(story, small)
-
-
-def test_an_assembly_means_the_same_as_its_pieces(small):
-    session, _ = open_session(small)
-    before = judge(MOORING).result
-    assert session.assemble([Place(1), Place(2)], "lower-part") == Place(1)
-    after = judge(session.draft.text).result
-    assert after.anchor.tension == pytest.approx(before.anchor.tension, rel=1e-12)
-    assert [row.use for row in after.components] == [row.use for row in before.components]
-    with pytest.raises(EditError, match="follow one another"):
-        session.assemble([Place(0), Place(2)], "apart")
 
 
 def test_the_history_goes_back_to_before_any_change(drive, small):
@@ -129,53 +100,3 @@ def test_a_fitted_rope_shows_what_it_is_cut_to():
 def test_what_is_complete_stays_so_with_each_start():
     view = judge_fully(judge(template("slack-surface")))
     assert State.FAIL not in {each.state for each in view.findings}
-
-
-def test_another_file_is_compared_and_drawn_beside(drive, small):
-    other = small.with_name("other [b].yaml")
-    other.write_text(MOORING.replace("length: 60 m", "length: 40 m"), encoding="utf-8")
-    broken = small.with_name("broken.yaml")
-    broken.write_text("line: [", encoding="utf-8")
-
-    async def story(driver):
-        driver.app.judging.ask_fully()
-        await driver.settle()
-        before = driver.screen
-        await driver.press("C")
-        driver.app.screen.query_one("Input").value = other.name
-        await driver.press("enter")
-        await driver.settle()
-        assert "top 57.6 m → 37.5 m" in " ".join(driver.screen.split())
-        assert "+    length: 60 m" in driver.screen
-        await driver.press("escape")
-        assert "dashed: other [b].yaml" in driver.screen
-        await driver.press("C", "enter")
-        assert driver.screen == before
-        for name in ("nowhere.yaml", "broken.yaml"):
-            await driver.press("C")
-            driver.app.screen.query_one("Input").value = name
-            await driver.press("enter")
-            await driver.settle()
-            await driver.press("escape")
-        assert driver.text == MOORING
-
-    drive(story, small)
-
-
-def test_all_environments_are_drawn_in_one_picture(drive, folder):
-    storm = "environments: {storm: {current: {speed: 1 m/s, toward: 0 deg}}}\n"
-    path = folder / "two.yaml"
-    path.write_text(MOORING + storm, encoding="utf-8")
-
-    async def story(driver):
-        driver.app.judging.ask_fully()
-        await driver.settle()
-        alone = driver.screen
-        await driver.press("0")
-        assert "dashed: all environments" in driver.screen
-        await driver.press("2")
-        assert "dashed: all environments" in driver.screen
-        await driver.press("1", "0", "down", "up")
-        assert driver.screen == alone
-
-    drive(story, path)

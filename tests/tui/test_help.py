@@ -10,10 +10,10 @@ from calm.tui.dialogs import InputSheet, LongText, Question
 from calm.tui.field import Cycle
 from calm.tui.key_table import ACTIONS, PLACES, shown_key, shown_keys
 from calm.tui.line_pane import LinePane
+from calm.tui.table_field import Grid
 from calm.tui.text_screen import TextScreen, YamlArea
 from calm.tui.verdict_pane import VerdictPane
 from calm.tui.water_form import FormChoice
-from calm.tui.water_grid import Grid
 from calm.tui.water_screen import WaterScreen
 
 OWNERS = {

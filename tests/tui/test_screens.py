@@ -8,6 +8,8 @@ import pytest
 from calm.checks.finding import State
 from calm.tui.component_screen import ComponentScreen
 from calm.tui.field import Field
+from calm.tui.mooring_sheet import settings
+from calm.tui.table_field import GridCells
 from calm.tui.text_screen import TextScreen
 from tests.tui.conftest import MOORING
 
@@ -278,25 +280,33 @@ def test_the_document_and_the_equipment_of_a_row(drive, small):
         for text in ("M-17", "B", "soon"):
             await driver.type(text)
             await driver.press("enter")
-        assert "a day of the calendar is needed, as 2027-06-30" in driver.screen
+        assert "is not a day of the calendar; write it as 2027-06-30" in driver.screen
         await driver.press("ctrl+u")
         await driver.type("2027-06-30")
-        for _ in range(7):
-            await driver.press("enter")
-        await driver.type("a longer rope")
-        await driver.press("enter")
+        await driver.press("ctrl+s")
         await driver.settle()
         document = {"id": "M-17", "revision": "B", "date": "2027-06-30"}
-        changed = {"revision": "B", "date": "2027-06-30", "change": "a longer rope"}
-        assert driver.session.draft.value(("document",)) == document | {"history": [changed]}
-        await driver.press("M", *["enter"] * 9, "ctrl+u", "enter")
-        await driver.settle()
         assert driver.session.draft.value(("document",)) == document
-        await driver.press("M", "enter", "ctrl+u", *["enter"] * 8)
-        await driver.type("of no revision")
-        await driver.press("enter")
+        changed = {"revision": "B", "date": "2027-06-30", "change": "a longer rope"}
+        await driver.press("M")
+        driver.app.screen.query_one(GridCells).focus()
+        await driver.press("a")
+        for text in ("B", "2027-06-30", "", "a longer rope"):
+            await driver.type(text)
+            await driver.press("enter")
+        await driver.press("escape", "ctrl+s")
         await driver.settle()
-        assert "a change is that of a revision; say which" in driver.screen
+        assert driver.session.draft.value(("document",)) == document | {"history": [changed]}
+        await driver.press("M")
+        driver.app.screen.query_one(GridCells).focus()
+        await driver.press("delete", "a")
+        await driver.type("C")
+        await driver.press("enter")
+        await driver.type("of no day")
+        await driver.press("enter")
+        assert "is not a day of the calendar" in driver.screen
+        await driver.press("escape", "delete", "ctrl+s")
+        await driver.settle()
         assert driver.session.draft.value(("document",)) == document
         await driver.press("=")
         await driver.type("2")
@@ -318,15 +328,16 @@ def test_the_document_and_the_equipment_of_a_row(drive, small):
 def test_where_it_was_deployed(drive, small):
     async def story(driver):
         await driver.press("L")
-        for text in ("2027-06-30 14:05", "48.31 deg", "-5.2 deg"):
-            await driver.type(text)
-            await driver.press("enter")
+        await driver.type("2027-06-30 14:05")
+        await driver.press("enter")
         await driver.type("-5 m")
         await driver.press("enter")
         assert "must be more than 0 m" in driver.screen
         await driver.press("ctrl+u")
-        await driver.type("1187 m")
-        await driver.press(*["enter"] * 3)
+        for text in ("1187 m", "48.31 deg", "-5.2 deg"):
+            await driver.type(text)
+            await driver.press("enter")
+        await driver.press("ctrl+s")
         await driver.settle()
         assert driver.session.draft.value(("deployed",)) == {
             "date": "2027-06-30 14:05",
@@ -360,11 +371,15 @@ def test_what_was_deployed_at_a_row(drive, small):
         deep = {"label": "deep logger", "remark": "frayed"}
         assert driver.session.draft.value(("deployed", "items")) == [rope, deep]
         await driver.press("down", "L", *["enter"] * 4)
-        for text in ("AR 7", "", "arm 0A1B, release 0A55"):
+        await driver.type("AR 7")
+        driver.app.screen.query_one(GridCells).focus()
+        await driver.press("a")
+        for text in ("AR 7", "{arm: 0A1B, release: 0A55}"):
             await driver.type(text)
             await driver.press("enter")
+        await driver.press("escape", "ctrl+s")
         await driver.settle()
-        codes = {"serial": "AR 7", "codes": "arm 0A1B, release 0A55"}
+        codes = {"serial": "AR 7", "codes": {"arm": "0A1B", "release": "0A55"}}
         assert driver.session.draft.value(("releases",)) == [codes]
         assert driver.session.draft.problems == ()
         await driver.press("up", "L", *["enter"] * 5, "ctrl+u", "enter")
@@ -426,3 +441,30 @@ def test_a_tow_is_built_from_nothing(drive, folder):
         assert "Tow point" in driver.screen
 
     drive(story, folder / "tow.yaml")
+
+
+def test_settings_of_the_file_are_entered_in_their_forms(drive, small):
+    async def story(driver):
+        await driver.press("comma")
+        assert "solver: how the line is solved" in driver.screen
+        await driver.press(str(settings().index("checks") + 1))
+        await driver.type("1.8")
+        driver.app.screen.query_one(GridCells).focus()
+        await driver.press("a")
+        for text in ("knockdown", "it is a test", "", "A. Martin"):
+            await driver.type(text)
+            await driver.press("enter")
+        await driver.press("escape", "ctrl+s")
+        await driver.settle()
+        accepted = {"rule": "knockdown", "reason": "it is a test", "by": "A. Martin"}
+        checks = {"anchor_factor": "1.8", "accept": [accepted]}
+        assert driver.session.draft.value(("checks",)) == checks
+        assert driver.view.file.checks.anchor_factor == 1.8
+        await driver.press("comma", str(settings().index("checks") + 1))
+        driver.app.screen.query_one(GridCells).focus()
+        await driver.press("a")
+        await driver.type("tilt")
+        await driver.press("ctrl+s")
+        assert "row 2, reason *: a value is needed" in driver.screen
+
+    drive(story, small)

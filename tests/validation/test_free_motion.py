@@ -1,4 +1,4 @@
-"""Lines that fall and rise, against their continuous solution in the same sheared current."""
+"""Lines that rise, against their continuous solution in the same sheared current."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import calm
-from calm.case import Mooring
+from calm.case import Design
 from calm.physics.drag import Friction
-from calm.physics.line import Line
+from calm.physics.line import Line, Water
 from calm.shipped import shipped_folder
-from calm.solve import FallingAnchor, part_of, solve_fall, solve_rise
-from tests.validation.drifting import falling, rising
+from calm.solve import part_of, solve_rise
+from tests.validation.drifting import rising
 from tests.validation.loads import Vector
 
 WITHIN = 1e-4
@@ -43,17 +43,10 @@ SHEARED = (
 MOORINGS = (*SHEARED, "braconnot-buoy", "receiver-line")
 
 
-def moored(name: str) -> Mooring:
+def moored(name: str) -> Design:
     """A shipped mooring."""
     mooring = calm.load(shipped_folder("lines") / f"{name}.yaml")
-    assert isinstance(mooring, Mooring)
     return mooring
-
-
-def anchor_of(mooring: Mooring) -> FallingAnchor:
-    """Its anchor; twice as heavy where it would not fall, buoy and all."""
-    net = float(mooring.line.total_buoyancy.sum())
-    return FallingAnchor(max(mooring.anchor_weight, 2.0 * net), mooring.file.anchor.kt or 0.0)
 
 
 def strongest(line: Line, force: Vector) -> int:
@@ -67,43 +60,32 @@ def agree(velocity: Vector, reference: Vector) -> None:
     assert off.max() <= WITHIN
 
 
-@pytest.mark.parametrize("name", SHEARED)
-def test_the_fall_is_that_of_the_continuous_line(name: str) -> None:
-    mooring = moored(name)
-    anchor = anchor_of(mooring)
-    motion = solve_fall(mooring.line, mooring.water, anchor)
-    near = 1.01 * motion.velocity
-    agree(motion.velocity, falling(mooring.line, mooring.water, anchor.weight, anchor.drag, near))
+def rises_as_the_continuous_line(line: Line, water: Water) -> None:
+    top = 0.2 * water.depth
+    motion = solve_rise(line, water, top)
+    split = strongest(line, motion.solution.force[motion.solution.piece_nodes[:, 1]])
+    parts = part_of(line, 0, split), part_of(line, split, len(line.length))
+    agree(motion.velocity, rising(*parts, water, top, 1.01 * motion.velocity))
 
 
 @pytest.mark.parametrize("name", SHEARED)
 def test_the_rise_is_that_of_the_continuous_line(name: str) -> None:
-    mooring = moored(name)
-    line, top = mooring.line, 0.2 * mooring.water.depth
-    motion = solve_rise(line, mooring.water, top)
-    split = strongest(line, motion.solution.force[motion.solution.piece_nodes[:, 1]])
-    parts = part_of(line, 0, split), part_of(line, split, len(line.length))
-    agree(motion.velocity, rising(*parts, mooring.water, top, 1.01 * motion.velocity))
+    rises_as_the_continuous_line(moored(name).line, moored(name).water)
 
 
 @pytest.mark.parametrize("friction", [Friction.HOERNER, Friction.CONSTANT])
 def test_other_laws_of_friction(friction: Friction) -> None:
     mooring = moored("deep-current-meters")
-    line, anchor = replace(mooring.line, friction=friction), anchor_of(mooring)
-    motion = solve_fall(line, mooring.water, anchor)
-    near = 1.01 * motion.velocity
-    agree(motion.velocity, falling(line, mooring.water, anchor.weight, anchor.drag, near))
+    rises_as_the_continuous_line(replace(mooring.line, friction=friction), mooring.water)
 
 
 @pytest.mark.parametrize("name", MOORINGS)
-def test_every_shipped_mooring_falls_and_rises(name: str) -> None:
+def test_every_shipped_mooring_rises(name: str) -> None:
     mooring = moored(name)
-    fall = solve_fall(mooring.line, mooring.water, anchor_of(mooring))
-    rise = solve_rise(mooring.line, mooring.water, 0.1 * mooring.water.depth)
-    for motion in (fall, rise):
-        assert motion.solution.closure <= 1e-6
-        assert motion.tangles == ()
-    assert fall.velocity[2] < 0.0 < rise.velocity[2]
+    motion = solve_rise(mooring.line, mooring.water, 0.1 * mooring.water.depth)
+    assert motion.solution.closure <= 1e-6
+    assert motion.tangles == ()
+    assert motion.velocity[2] > 0.0
 
 
 @pytest.mark.parametrize("name", SHEARED)

@@ -20,7 +20,7 @@ import calm
 from calm.errors import NoEquilibrium
 from calm.physics.drag import Friction
 from calm.shipped import shipped_folder
-from calm.solve import FallingAnchor, Settings, Solution, solve_fall, solve_mooring, solve_rise
+from calm.solve import Settings, Solution, solve_mooring, solve_rise
 from tests.validation.families import FAMILIES
 
 SHIPPED = sorted(shipped_folder("lines").glob("*.yaml"))
@@ -78,14 +78,9 @@ def test_other_laws_of_friction_are_the_same(friction) -> None:
     assert "position" in plain
 
 
-def test_lines_that_fall_and_rise_are_the_same() -> None:
+def test_lines_that_rise_are_the_same() -> None:
     mooring = calm.load(shipped_folder("lines") / "cdms-1.yaml")
     line, water = mooring.line, mooring.water
-    anchor = FallingAnchor(mooring.anchor_weight, 50.0)
-    for motion in (
-        lambda: solve_fall(line, water, anchor).solution,
-        lambda: solve_rise(line, water, 100.0).solution,
-    ):
-        plain, compiled = both(lambda motion=motion: digits(motion))
-        assert plain == compiled
-        assert "position" in plain
+    plain, compiled = both(lambda: digits(lambda: solve_rise(line, water, 100.0).solution))
+    assert plain == compiled
+    assert "position" in plain

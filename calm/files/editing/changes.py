@@ -9,7 +9,7 @@ from unicodedata import category
 from calm.errors import CalmError
 from calm.files.composition import Node
 from calm.files.editing import writing
-from calm.files.editing.items import Items, Slot, items_of, snippet_of, worded_slot
+from calm.files.editing.items import Items, items_of, snippet_of
 from calm.files.editing.writing import SECTIONS, Patch, Value, Worded, WritingStyle, inline, written
 from calm.files.yaml_document import Location
 
@@ -89,7 +89,7 @@ class Page:
         lines = self.style.entry(name, value, items.column, open=open)
         if at and mapping.column == 1 and name in SECTIONS and _BLANK_LINE.search(self.text):
             lines = self.style.line_break + lines
-        items.insert(at, items.slot(lines, inside, self.style))
+        items.insert(at, inside if items.is_flow else lines)
         return items.patch()
 
     def items(self, location: Location) -> Items:
@@ -101,8 +101,8 @@ class Page:
     def _items(self, node: Node) -> Items:
         items = items_of(self.text, node)
         if items is None:
-            message = f"line {node.line}: this list shares its lines with other things"
-            raise EditError(f"{message}; change it in the text")
+            message = f"line {node.line}: what stands here shares its lines with other things"
+            raise EditError(f"{message} or comments; change it in the text")
         return items
 
     def known(self, location: Location, indices: Iterable[int]) -> list[int]:
@@ -122,8 +122,11 @@ class Page:
         node = self.node(location)
         if not known or node is None:
             return ()
+        if node.style == "flow":
+            found = [node.children[i] for i in known]
+            return tuple(snippet_of(self.text[one.start : one.end], 0) for one in found)
         items = self.items(location)
-        return tuple(snippet_of(items.slots[i], node.children[i], items) for i in known)
+        return tuple(snippet_of(items.texts[i], items.column) for i in known)
 
     def add(self, location: Location, index: int, values: Sequence[Value]) -> list[Patch]:
         """Put new items into a list, which may not exist yet.
@@ -139,32 +142,34 @@ class Page:
             return self.put(location, values)
         items = self.items(location)
         if isinstance(values, Worded):
-            slots = [worded_slot(one, items, self.style) for one in values.wordings]
+            texts = [
+                one.inline if items.is_flow else self.style.moved(one.lines, items.column)
+                for one in values.wordings
+            ]
         else:
             block = all(child.style == "block" for child in node.children)
-            slots = [self._slot(value, items, block=block) for value in values]
-        for slot in reversed(slots):
-            items.insert(index, slot)
+            texts = [self._text(value, items, block=block) for value in values]
+        for text in reversed(texts):
+            items.insert(index, text)
         return [items.patch()]
 
-    def _slot(self, value: Value, items: Items, *, block: bool = False) -> Slot:
-        lines = self.style.item(value, items.column, block=block)
-        return items.slot(lines, inline(value), self.style)
+    def _text(self, value: Value, items: Items, *, block: bool = False) -> str:
+        return inline(value) if items.is_flow else self.style.item(value, items.column, block=block)
 
-    def rows(self, location: Location, rows: Sequence[Sequence[str | None]]) -> list[Patch]:
-        """Put in the rows of a table; those that are there already stay as they stand."""
+    def rows(self, location: Location, rows: Sequence[Value]) -> list[Patch]:
+        """Put in the items of a list; those that are there already stay as they stand."""
         node = self.node(location)
         if node is None or not node.children or not rows or node.kind != "sequence":
             return self.put(location, rows)
         old = [repr(row) for row in node.data]
-        new = [repr(list(row)) for row in rows]
+        new = [repr(data_of(row)) for row in rows]
         items = self.items(location)
         steps = SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
         for tag, start, end, new_start, new_end in reversed(steps):
             if tag == "equal":
                 continue
             for row in reversed(rows[new_start:new_end]):
-                items.insert(end, self._slot(row, items))
+                items.insert(end, self._text(row, items))
             for index in reversed(range(start, end)):
                 items.remove(index)
         return [items.patch()]

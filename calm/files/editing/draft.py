@@ -94,7 +94,7 @@ class Draft:
             if node is None or node.kind != "sequence" or not node.children:
                 continue
             taken = items_of(text, node)
-            lines = [slot.text for slot in taken.slots] if taken else [""] * len(node.children)
+            lines = taken.texts if taken else [""] * len(node.children)
             pairs = zip(node.children, lines, strict=True)
             found += [item_of(child, text, lines=own) for child, own in pairs]
         return tuple(found)
@@ -260,22 +260,15 @@ class Draft:
             for i, j, text in cells:
                 draft = draft.put_at((*place, i, j), text)
             return draft
-        patches = draft._page.rows(place, rows)
-        return draft._changed(patches, place, rows)
+        return draft.put_rows(place, rows)
+
+    def put_rows(self, location: Location, rows: Sequence[Value]) -> Draft:
+        """Put in the items of a list; those that it has already stay as they are written."""
+        return self._changed(self._page.rows(location, rows), location, rows)
 
     def put_component(self, id: str, values: Mapping[str, Value]) -> Draft:
         """Define a component used only here, in place of one of that id."""
         return self.put_at((changes.NAMED[0], id), values)
-
-    def assemble(self, indices: Iterable[int], id: str) -> Draft:
-        """Make items of the line that follow one another an assembly, used in their place."""
-        known = sorted(set(indices))
-        legs = {self.lists.place(index, above=True)[0] for index in known}
-        if len(legs) != 1 or known != list(range(known[0], known[-1] + 1)):
-            raise changes.EditError("an assembly is made of pieces that follow one another")
-        parts = {"kind": "assembly", "parts": _worded(self.copy(known))}
-        draft = self.put_component(id, parts).delete(known[1:])
-        return draft.insert(known[0], {"use": id}, above=True).delete([known[0] + 1])
 
     def _stands(self, rows: Location) -> None:
         """Raise where there is no item whose clamps a list is to be."""

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby, pairwise
-from typing import Any, Literal, NamedTuple
+from typing import Any
 
 from calm.files.composition import Node, compose
 from calm.files.editing import writing
@@ -21,9 +21,6 @@ from calm.files.yaml_document import Location
 LINE: Location = ("line",)
 """Where the items of the line stand."""
 
-_COMMA = re.compile(r"(?:\s|#[^\n]*\n)*,")
-_BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")
-"""What may follow a value on its line: a comment."""
 _LINE_BREAK = re.compile(r"\r\n|\n")
 
 
@@ -140,40 +137,18 @@ def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
     )
 
 
-def worded_slot(wording: Wording, items: Items, style: writing.WritingStyle) -> Slot:
-    """Place an item as it is worded; within brackets in one line it loses its comments.
-
-    Parameters
-    ----------
-    wording : of the item
-    items : those of the list
-    style : of the file
-    """
-    above = style.moved(wording.above, items.column)
-    slot = items.slot(style.moved(wording.lines, items.column), wording.inline, style)
-    if items.form != "rows":
-        return slot
-    return Slot(above + slot.value, wording.behind.replace("\n", style.line_break))
-
-
-def snippet_of(slot: Slot, node: Node, items: Items) -> str:
+def snippet_of(text: str, column: int) -> str:
     """Return the text of an item by itself, as an item of a block list that begins in column 1.
 
     Parameters
     ----------
-    slot : of the item
-    node : of the item
-    items : those of its list
+    text : of the item
+    column : of its dash, from 1; 0 of an item in brackets, which has none
     """
-    if items.form == "inline":
-        return _LINE_BREAK.sub("\n", f"- {slot.value}\n")
-    text = slot.text
-    if items.form == "rows":
-        own = len(slot.value) - (node.end - node.start)
-        comments = slot.value[:own].rstrip(" \t")
-        text = comments + " " * (items.column - 1) + "- " + slot.value[own:] + slot.behind
-    indent = re.compile(rf"^[ ]{{1,{items.column - 1}}}" if items.column > 1 else "(?!)", re.M)
-    return indent.sub("", _LINE_BREAK.sub("\n", text))
+    text = _LINE_BREAK.sub("\n", text)
+    if not column:
+        return f"- {text}\n"
+    return re.sub(rf"^[ ]{{1,{column - 1}}}", "", text, flags=re.M) if column > 1 else text
 
 
 def read_snippet(snippet: str) -> Wording | None:
@@ -186,25 +161,8 @@ def read_snippet(snippet: str) -> Wording | None:
         return None
     item = root.children[0]
     text = snippet[item.start : item.end]
-    above = snippet[: line_start(snippet, root.start)]
-    if item.style == "flow" and "\n" not in text:
-        return Wording(item.data, snippet, above, text, snippet[item.end :])
-    return Wording(item.data, snippet, above, inline(item.data), "\n")
-
-
-class Slot(NamedTuple):
-    """Hold the text of an item up to the end of its value, and what follows it (no comma).
-
-    Where items have lines of their own it is these lines, comments that belong to it included.
-    """
-
-    value: str
-    behind: str = ""
-
-    @property
-    def text(self) -> str:
-        """Return the whole of it."""
-        return self.value + self.behind
+    is_one_line = item.style == "flow" and "\n" not in text
+    return Wording(item.data, snippet, text if is_one_line else inline(item.data))
 
 
 @dataclass
@@ -214,76 +172,47 @@ class Items:
     Attributes
     ----------
     start, end : what is rearranged of the text
-    form : in lines; in brackets, items on lines of their own; any other in brackets
+    is_flow : they stand in brackets
     column : of the dashes, or of the items where there are none, counted from 1
-    slots : list of Slot
-    gaps : what stands before each item and is not its own (between two `inline` ones their comma)
+    texts : of each item: its lines, comments that belong to it included; in brackets what stands
+        between its commas
+    gaps : what stands before each item and is not its own, as a comment further left
     rest : what follows the last
-    ends_in_comma : there is a comma after the last of the `rows`
+    separator : stands between two items in brackets
     on_a_dash : the first entry of the mapping stands on the line of a dash, or of a `?`
     """
 
     start: int
     end: int
-    form: Literal["block", "rows", "inline"]
+    is_flow: bool
     column: int
-    slots: list[Slot]
+    texts: list[str]
     gaps: list[str]
     rest: str = ""
-    ends_in_comma: bool = False
+    separator: str = ""
     on_a_dash: bool = False
 
-    def slot(self, lines: str, inside: str, style: writing.WritingStyle) -> Slot:
-        """Write a new item after the form of the others: by its lines, or as within brackets."""
-        if self.form == "block":
-            return Slot(lines)
-        if self.form == "rows":
-            return Slot(" " * (self.column - 1) + inside, style.line_break)
-        return Slot(inside)
-
-    def remove(self, index: int) -> Slot:
+    def remove(self, index: int) -> str:
         """Take an item out. What is not its own stays in its place."""
-        slot, gap = self.slots.pop(index), self.gaps.pop(index)
-        last = index == len(self.slots)
-        if self.form != "inline":
-            if last:
-                self.rest = gap + self.rest
-            else:
-                self.gaps[index] = gap + self.gaps[index]
-        elif not last:
-            self.gaps[index] = gap + _comment(self.gaps[index])
+        text, gap = self.texts.pop(index), self.gaps.pop(index)
+        if index == len(self.texts):
+            self.rest = gap + self.rest
         else:
-            self.rest = _comment(gap) + self.rest
-        return slot
+            self.gaps[index] = gap + self.gaps[index]
+        return text
 
-    def insert(self, index: int, slot: Slot) -> None:
+    def insert(self, index: int, text: str) -> None:
         """Put an item in."""
-        separator = ", " if self.form == "inline" and self.slots else ""
-        self.slots.insert(index, slot)
-        self.gaps.insert(index, separator)
+        self.texts.insert(index, text)
+        self.gaps.insert(index, "")
         if index == 0 and len(self.gaps) > 1:
-            self.gaps[0], self.gaps[1] = self.gaps[1], separator
+            self.gaps[0], self.gaps[1] = self.gaps[1], ""
 
     def patch(self) -> Patch:
         """Return what comes in place of the list."""
-        text, last = "", len(self.slots) - 1
-        for i, (gap, slot) in enumerate(zip(self.gaps, self.slots, strict=True)):
-            text = _behind(text, gap) + slot.value
-            if self.form == "rows" and (i < last or self.ends_in_comma):
-                text = _behind(text, ",")
-            text += slot.behind
-        text = _behind(text, self.rest)
+        parts = [gap + text for gap, text in zip(self.gaps, self.texts, strict=True)]
+        text = self.separator.join(parts) + self.rest
         return Patch(self.start, self.end, text.lstrip(" ") if self.on_a_dash else text)
-
-
-def _behind(text: str, gap: str) -> str:
-    """Add what parts items; right behind a colon a comma would be part of the key."""
-    return f"{text} {gap}" if gap.startswith(",") and text.endswith(":") else text + gap
-
-
-def _comment(gap: str) -> str:
-    """Return what stays of a separator whose comma goes."""
-    return gap.replace(",", "", 1) if "#" in gap else ""
 
 
 def items_of(text: str, node: Node) -> Items | None:
@@ -294,7 +223,7 @@ def items_of(text: str, node: Node) -> Items | None:
         spans = [(key.start, max(key.end, child.end)) for key, child in pairs]
     if node.style == "block":
         return _block(text, node, spans)
-    return _rows(text, node, spans) or _inline(text, node, spans)
+    return _flow(text, node, spans)
 
 
 def _block(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
@@ -316,44 +245,20 @@ def _block(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
                 return None
             head = found.start() if found else following[0]
             starts.append(own_start(text, head, ends[-1], node.column))
-    slots = [Slot(text[start:end]) for start, end in zip(starts, ends, strict=True)]
+    texts = [text[start:end] for start, end in zip(starts, ends, strict=True)]
     if on_a_dash:
-        slots[0] = Slot(" " * (node.column - 1) + slots[0].value)
+        texts[0] = " " * (node.column - 1) + texts[0]
     gaps = ["", *(text[end:start] for end, start in zip(ends, starts[1:], strict=False))]
-    return Items(starts[0], ends[-1], "block", node.column, slots, gaps, on_a_dash=on_a_dash)
+    return Items(starts[0], ends[-1], False, node.column, texts, gaps, on_a_dash=on_a_dash)
 
 
-def _rows(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
-    """Take apart a list in brackets, items on lines of their own; None where it is no such list."""
-    starts: list[int] = []
-    ends: list[int] = []
-    slots: list[Slot] = []
-    gaps: list[str] = []
-    comma = False
-    for first, last in spans:
-        if not first_on_line(text, first):
-            return None
-        least = ends[-1] if ends else writing.line_end(text, node.start)
-        if line_start(text, first) < least:
-            return None
-        start = own_start(text, first, least)
-        comma = text.startswith(",", last)
-        behind = _BEHIND.match(text, last + comma)
-        if behind is None:
-            return None
-        gaps.append(text[ends[-1] : start] if ends else "")
-        slots.append(Slot(text[start:last], behind.group()))
-        starts.append(start)
-        ends.append(behind.end())
-    if any(not text.startswith(",", last) for _, last in spans[:-1]):
+def _flow(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
+    """Take apart a collection in brackets; None where comments stand between its items."""
+    between = [text[one[1] : other[0]] for one, other in pairwise(spans)]
+    if any("#" in each for each in between):
         return None
-    if not first_on_line(text, node.end - 1) or (not comma and _COMMA.match(text, ends[-1])):
-        return None
-    column = spans[0][0] - line_start(text, spans[0][0]) + 1
-    return Items(starts[0], ends[-1], "rows", column, slots, gaps, "", comma)
-
-
-def _inline(text: str, node: Node, spans: list[tuple[int, int]]) -> Items:
-    slots = [Slot(text[start:end]) for start, end in spans]
-    gaps = ["", *(text[one[1] : other[0]] for one, other in pairwise(spans))]
-    return Items(spans[0][0], spans[-1][1], "inline", node.column, slots, gaps)
+    # right behind the colon of an empty value a comma would be part of the key
+    texts = [text[start:end] + " " * text.endswith(":", start, end) for start, end in spans]
+    separator = between[0] if between and "\n" in between[0] else ", "
+    gaps = [""] * len(texts)
+    return Items(spans[0][0], spans[-1][1], True, node.column, texts, gaps, "", separator)

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from calm.files.composition import Node
+from calm.files.composition import Node, compose
 from calm.files.environment import Position
 from calm.files.logbook import DocumentKeys
 from calm.files.mooring_file import Solver
@@ -41,15 +41,12 @@ class Wording(NamedTuple):
     ----------
     value : Value
     lines : in a block list that begins in column 1, with its comments
-    above, inline, behind : the comments above it, its text within brackets, and what follows that
-        on its line
+    inline : its text within brackets, without comments
     """
 
     value: Value
     lines: str
-    above: str
     inline: str
-    behind: str
 
 
 class Worded(list[Value]):
@@ -185,6 +182,16 @@ def inline(value: Value) -> str:
     if isinstance(value, Worded):
         return "[" + ", ".join(one.inline for one in value.wordings) + "]"
     return "[" + ", ".join(inline(one) for one in value) + "]"
+
+
+def read_inline(text: str) -> Value:
+    """Read what `inline` writes; a text that is nothing of the kind is itself the value."""
+    composition = compose(text)
+    root = composition.root
+    if root is None or composition.refusals or root.style != "flow":
+        return text
+    value: Value = root.data
+    return value
 
 
 def place_of(name: str, names: Sequence[str]) -> int:

@@ -304,10 +304,19 @@ def test_a_copied_clamp_is_worded_as_the_one_it_was_copied_from() -> None:
         draft.copy([0], clamps_of(1))
 
 
-def test_a_copy_in_brackets_keeps_its_quotes_and_comments() -> None:
-    text = "line: [\n  # one\n  {use: 'a', label: \"b\"},   # two\n  {use: c}\n]\n"
-    item = "  # one\n  {use: 'a', label: \"b\"},   # two\n"
+def test_a_copy_in_brackets_keeps_its_quotes_and_lines() -> None:
+    text = "line: [\n  {use: 'a', label: \"b\"},\n  {use: c}   # the last\n]\n"
+    item = "  {use: 'a', label: \"b\"},\n"
     assert Draft(text).paste(1, Draft(text).copy([0])).text == text.replace(item, item * 2)
+
+
+def test_comments_between_items_in_brackets_are_not_lost() -> None:
+    draft = Draft("line: [\n  {use: a},   # one\n  {use: c}\n]\n")
+    for change in (lambda: draft.delete([1]), lambda: draft.insert(0, {"use": "x"})):
+        with pytest.raises(EditError, match=r"line 1: .* comments; change it in the text"):
+            change()
+    assert draft.put(0, "use", "b").text == draft.text.replace("use: a", "use: b")
+    assert Draft("line:\n  - use: d\n").paste(1, draft.copy([0])).text.endswith("  - {use: a}\n")
 
 
 def test_a_value_of_a_text_with_mistakes_is_none() -> None:
@@ -373,11 +382,3 @@ def test_all_items_of_a_leg_can_be_taken_out_and_put_in_again():
     assert "    line: []\n" in emptied.text
     back = emptied.paste(0, draft.copy([0, 1]))
     assert back.lists.legs == draft.lists.legs
-
-
-def test_an_assembly_is_made_of_a_whole_leg():
-    draft = Draft(NET).assemble([2, 3], "foot")
-    assert draft.lists.legs == ["upper", "upper", "stem"]
-    assert draft.items[2].values == {"use": "foot"}
-    with pytest.raises(EditError, match="follow one another"):
-        Draft(NET).assemble([1, 2], "both")

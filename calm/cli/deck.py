@@ -1,0 +1,201 @@
+"""``calm deck``: papers for the deployment."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from calm.cli import options, reading
+from calm.cli.outputs import ExitCode, narrate
+from calm.errors import NoEquilibrium, UsageError
+from calm.version import __version__
+
+if TYPE_CHECKING:
+    from calm.deck import Deck
+    from calm.report.diagram import Paper
+
+
+def deck(
+    files: options.MooringPaths,
+    /,
+    *,
+    output: options.OutputFile,
+    page: Literal["a4", "a3", "letter"] = "a4",
+    environment: list[str] | None = None,
+    order: Literal["anchor-last", "anchor-first"] = "anchor-last",
+    ship_speed: str = "1 m/s",
+    streamed: str | None = None,
+    course: str | None = None,
+    deck_time: str | None = None,
+    catalog: options.CatalogFiles = None,
+    units: options.Units = None,
+) -> ExitCode:
+    """Draw the diagram and write the lists for the deployment of moorings and nets.
+
+    Writes deck.pdf with a mooring diagram for the wall, deployment and recovery
+    logs, cutting list, hardware bill, shipping list, lifts, instrument sheet and,
+    anchor last, the plan of the anchor drop; the diagram by itself as diagram.pdf
+    and diagram.svg; the lists as CSV files and as sheets of deck.xlsx; and the plan
+    as plan.json. A net of legs is drawn as a whole, as net.svg too, and listed leg
+    by leg; its drop is not planned.
+
+    Parameters
+    ----------
+    output
+        The folder to write; with several moorings, each gets a subfolder of its
+        name.
+    page
+        The paper.
+    environment
+        The environment of depths and lengths: a name from the files, or an
+        environment file; further ones are design currents. By default the
+        file's own, with all those it names.
+    order
+        Which end goes over the side last.
+    ship_speed
+        Speed over the ground at which the ship tows the line out before the
+        anchor is let go.
+    streamed
+        Horizontal distance from the anchor to the top float when the anchor is
+        let go; by default that of the line towed at that speed.
+    course
+        Course over the ground as the ship tows the line out; by default against
+        the current at the surface.
+    deck_time
+        Handling time of each piece and clamp before it goes over, such as "3
+        min", except shackles and rings; by default by role, from `document:
+        deck_time:` in the file. Without either the plan has no start of the
+        run.
+
+    Examples
+    --------
+      calm deck mooring.yaml -o cruise/
+      calm deck mooring.yaml -o cruise/ --page a3 --environment storm
+      calm deck north.yaml south.yaml -o cruise/
+      calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --course "245 deg" --deck-time "3 min"
+      calm deck shallow.yaml -o cruise/ --order anchor-first
+    """
+    from calm.deck import deck_items, deck_of
+    from calm.report import diagram, provenance
+    from calm.report.folder import check_folder
+
+    check_folder(output)
+    provenance.moment()
+    ship = options.quantities(
+        ship_speed=(ship_speed, "speed"),
+        streamed=(streamed, "length"),
+        course=(course, "angle"),
+        deck_time=(deck_time, "time"),
+    )
+    designs, tows = reading.read_designs(files, environment, catalog or [], None, "calm deck")
+    if tows:
+        narrate(f"not drawn, because they are tows: {', '.join(map(str, tows))}")
+    options.show_units(units, [one.file for design in designs for one in design.moorings])
+    folders = _folders(designs, output)
+    decks: list[Deck] = []
+    for design in designs:
+        for notice in dict.fromkeys(n for one in design.moorings for n in one.file.notices):
+            narrate(f"{design.path}: {notice}")
+        try:
+            decks.append(deck_of(design.moorings, deck_items.Order(order), **ship))
+        except NoEquilibrium as failure:
+            narrate(f"{design.path}: {failure}")
+            return ExitCode.NO_EQUILIBRIUM
+    for folder, design, one in zip(folders, designs, decks, strict=True):
+        _write(folder, design.path, one, diagram.Paper(page))
+    return ExitCode.DONE
+
+
+def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
+    from calm.report.check_tables import verdict_of
+    from calm.report.folder import write_report
+
+    state, words = verdict_of(deck.assessment.all_findings())
+    narrate(f"{path}: {state.sign} {words}: calm check {path}")
+    notes = _signs_that_are_lacking(deck)
+    for note in (*deck.notes, *notes):
+        narrate(f"{path}: {note}")
+    write_report(folder, _contents(deck, paper, notes))
+    narrate(f"the sheets are in {folder}")
+
+
+def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
+    from calm.checks.finding import State
+    from calm.report import check_tables, deck_files, result_files
+    from calm.report.diagram import diagram_svg
+    from calm.report.folder import printed
+
+    texts = {"diagram.svg": diagram_svg(deck, paper), **deck_files.deck_csvs(deck)}
+    if deck.result.several:
+        texts["net.svg"] = deck_files.net_svg(deck)
+    counts = check_tables.counted_states(deck.assessment.all_findings())
+    fails, unknown = counts[State.FAIL], counts[State.UNKNOWN]
+    verdict = {"state": str(deck.assessment.state), "fails": fails, "unknown": unknown}
+    texts["plan.json"] = result_files.to_json(
+        [{"calm": __version__, **_plan(deck), "verdict": verdict}]
+    )
+    return {
+        "deck.pdf": printed(deck_files.deck_report(deck, paper, notes), paper, least=7.5),
+        "deck.xlsx": deck_files.deck_workbook(deck),
+        "diagram.pdf": printed(deck_files.diagram_report(deck, paper), paper, least=7.5),
+        **{name: text.encode("utf-8", "replace") for name, text in texts.items()},
+    }
+
+
+def _plan(deck: Deck) -> dict[str, Any]:
+    """The plan of the anchor drop, or why there is none."""
+
+    if deck.result.several:
+        return {"status": "net", "message": "The drop of a net of legs is not solved."}
+    if deck.plan is None:
+        return {"status": str(deck.order), "message": "The anchor goes first: it is not dropped."}
+    if isinstance(deck.plan, NoEquilibrium):
+        return {"name": deck.file.name, **deck.plan.to_dict()}
+    return deck.plan.to_dict()
+
+
+def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
+    """Return what the sheets cannot show of the names in a file, and where."""
+    from calm.drawing.typesetting import lacking
+
+    signs = lacking(text for text, _ in _texts(deck))
+    if not signs:
+        return ()
+    where = dict.fromkeys(place for text, place in _texts(deck) if lacking([text]))
+    named = ", ".join(f"{sign} (U+{ord(sign):04X})" for sign in signs)
+    return (f"The font of the sheets lacks {named}, which shows as �: in {', '.join(where)}",)
+
+
+def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
+    """Return what a person wrote, and where it stands."""
+    from calm.report.provenance import title_pairs
+
+    for name, text in title_pairs(deck.file):
+        yield text, name
+    if deck.file.document is not None:
+        for revision in deck.file.document.history:
+            yield f"{revision.by} {revision.change}", "history"
+    for one in deck.parts:
+        equipment = one.part.equipment
+        texts = (one.label, one.name, one.serial, one.deployed_serial, one.remark,
+                 equipment.sampling, equipment.termination)  # fmt: skip
+        yield " ".join(filter(None, texts)), f"`{one.label}`"
+
+
+def _folders(designs: Sequence[reading.DesignFile], output: Path) -> list[Path]:
+    """Return where each mooring's sheets go.
+
+    UsageError: two moorings would have the same folder, or a file that is read stands where one
+    goes.
+    """
+    if len(designs) == 1:
+        return [output]
+    # signs that systems refuse become a stroke
+    plain = (re.sub(r'[\x00-\x1f<>:"/\\|?*]+', "-", each.name).strip(" .") for each in designs)
+    folders = [output / (name or "mooring") for name in plain]
+    for folder in folders:
+        if [str(one).casefold() for one in folders].count(str(folder).casefold()) > 1:
+            raise UsageError(f"two moorings would go to {folder}; give them other names")
+    return folders

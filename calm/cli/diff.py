@@ -1,0 +1,91 @@
+"""``calm diff``: two designs compared, or a design and its deployment."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from calm.cli import options, reading
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
+from calm.errors import NoEquilibrium, UsageError
+
+if TYPE_CHECKING:
+    from calm.case import Design
+    from calm.checks.comparison import Comparison
+
+
+def diff(
+    before: Path,
+    after: Path | None = None,
+    /,
+    *,
+    environment: str | None = None,
+    catalog: options.CatalogFiles = None,
+    json: OutputPath = None,
+) -> ExitCode:
+    """Compare two designs piece by piece, and show the effect of the changes.
+
+    Pieces and clamps are matched by label, otherwise by component and position.
+    Parts added, removed, moved or changed are listed; depth, knockdown,
+    tensions, anchor, weights and the margins of calm check are shown side by
+    side. With one file, its design is compared with its `deployed:`. A design
+    without equilibrium is compared too. The exit code is 0 whether or not the
+    designs differ.
+
+    Parameters
+    ----------
+    before
+        A mooring, tow or net file.
+    after
+        Another; without it, the `deployed:` of the first is compared with its design.
+    environment
+        The environment to use instead: a name from both files, or an
+        environment file.
+    json
+        Write the differences as JSON, - to print it.
+
+    Examples
+    --------
+      calm diff design-A.yaml design-B.yaml
+      calm diff design-A.yaml design-B.yaml --environment storm.yaml
+      calm diff mooring.yaml             (its design against its deployed:)
+      calm diff design-A.yaml design-B.yaml --json - | jq '.changed[].where'
+    """
+    files = (before,) if after is None else (before, after)
+    outputs = Outputs(files, json)
+    from calm.case import load
+
+    lines = reading.read_all(load, files, environment, catalog or [])
+    for file, line in zip(files, lines, strict=True):
+        for notice in line.file.notices:
+            narrate(f"{file}: {notice}")
+    comparison = compared(files, lines)
+    from calm.report.explanation import comparison_part
+
+    outputs.write_answer(comparison.to_dict, comparison_part(comparison))
+    return ExitCode.DONE
+
+
+def compared(files: tuple[Path, ...], lines: list[Design]) -> Comparison:
+    """Two designs, or one with what was deployed of it.
+
+    UsageError: a mooring and a tow; a single tow, or a file that says nothing of a deployment.
+    """
+    from calm.case import Design
+    from calm.checks.comparison import comparison_of
+    from calm.checks.situations import as_deployed
+
+    first, last = lines[0], lines[-1]
+    if first.towed != last.towed:
+        raise UsageError(f"{files[0]} and {files[1]}: a mooring is not compared with a tow")
+    if len(lines) == 2:
+        return comparison_of((str(files[0]), str(files[1])), first, last)
+    if first.towed:
+        raise UsageError(f"{files[0]} is a tow; give the file to compare it with")
+    try:
+        deployed = as_deployed(first)
+        design, there = (Design(replace(one.file, deployed=None)) for one in (first, deployed))
+        return comparison_of(("design", "deployed"), design, there)
+    except NoEquilibrium as failure:
+        raise UsageError(f"{files[0]}: what is cut to fit has no length: {failure}") from failure

@@ -1,0 +1,58 @@
+"""``calm export``: a mooring or a tow written for another program."""
+
+from __future__ import annotations
+
+import os
+
+from calm.cli import options
+from calm.cli.outputs import ExitCode, narrate
+from calm.errors import UsageError
+
+
+def export(
+    file: options.MooringPath,
+    /,
+    *,
+    to: str,
+    output: options.OutputFile,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
+) -> ExitCode:
+    """Write a mooring or a tow for another program.
+
+    What the other program cannot represent is reported, and listed at the head of the file. A
+    piece cut to fit is exported with its cut length.
+
+    Parameters
+    ----------
+    to
+        The program: mdd (Mooring Design & Dynamics), cbl (WHOI Cable), moordyn (MoorDyn 2,
+        with the current in a file beside it) or csv (a list).
+    output
+        The file to write.
+
+    Examples
+    --------
+      calm export mooring.yaml --to mdd -o mooring.mat
+      calm export mooring.yaml --to cbl -o mooring.cbl --environment storm
+      calm export mooring.yaml --to moordyn -o moordyn/mooring.txt
+      calm export mooring.yaml --to csv -o mooring.csv
+    """
+    from calm.exchange.exporting import export_file
+    from calm.report.folder import check_destination, write_file
+
+    check_destination(output)
+    if os.path.realpath(output) == os.path.realpath(file):
+        raise UsageError(f"{output} would overwrite the file that is read")
+    exported = export_file(file, to, environment=environment, catalogs=catalog or [])
+    beside = {output.with_name(name): content for name, content in exported.beside.items()}
+    for path in beside:
+        check_destination(path)
+    write_file(output, exported.content)
+    for path, content in beside.items():
+        write_file(path, content)
+        narrate(f"{path} written")
+    for each in exported.lost:
+        narrate(f"{output}: lost: {each}")
+    narrate(f"{output} written")
+    return ExitCode.DONE

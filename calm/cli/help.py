@@ -1,0 +1,85 @@
+"""The form of `--help`: its width, the names of values, the examples."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from inspect import cleandoc
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cyclopts.help import HelpPanel
+    from rich.console import Console, ConsoleOptions
+
+_VALUES = {
+    "FILE|-": "json csv netcdf",
+    "FILE": "html pdf plot catalog currents pressures sea-level onto against update scatter "
+    "elements",
+    "DIR": "report",
+    "NAME": "environment",
+    "LABEL,...": "hold-out",
+    "LAT,LON": "at near",
+    "LENGTH": "diameter streamed length distance",
+    "DEPTH": "depth transducer",
+    "HEIGHT": "above-seabed height hs swell",
+    "ANGLE": "course declination toward phi-a phi-b",
+    "SPEED": "speed ship-speed",
+    "RANGE": "speeds",
+    "CONDITION": "target",
+    "CHANGE": "change",
+    "FLAGS": "flags",
+    "WORD": "match format to method",
+    "WORD,...": "fit variables",
+    "LEVELS": "levels",
+    "VALUE": "between",
+    "SPEED|FILE": "sound-speed",
+    "COLUMNS": "columns",
+    "NUMBER": "port gamma k cd",
+    "A/B": "time",
+    "TIME": "deck-time gap step tp swell-tp duration",
+    "COUNT": "samples workers",
+    "N": "every seed",
+    "ADDRESS": "scheduler",
+    "DENSITY": "density",
+    "N/m": "weight",
+    "FORCE": "tension-a tension-b",
+    "UNITS": "units",
+    "WORD|FILE": "spectrum",
+    "NAME=VALUE": "define",
+}
+"""Names of values in `--help`, with their options. Options that are not listed show their type."""
+
+_VALUE_OF = {f"--{name}": value for value, names in _VALUES.items() for name in names.split()}
+
+
+class HelpAtWidth:
+    """Formatter of `--help`: as wide as the terminal, with a name for the value of each option."""
+
+    def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
+        """Print a panel. The texts of options are filled anew, without their line breaks."""
+        from cyclopts.help import DefaultFormatter
+        from rich.text import Text
+
+        for place, entry in enumerate(panel.entries):
+            written = getattr(entry.description, "primary_renderable", None)
+            if isinstance(written, Text):
+                entry.description.primary_renderable = Text(" ".join(written.plain.split()))
+            value = next((_VALUE_OF[name] for name in entry.names if name in _VALUE_OF), None)
+            if value and entry.metavar:
+                several = "..." if entry.metavar.endswith("...") else ""
+                panel.entries[place] = entry.copy(metavar=f"{value}{several}")
+        DefaultFormatter()(console, options, panel)
+
+    def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
+        """Print the usage, with the name of each value instead of its type."""
+        from cyclopts.help import DefaultFormatter
+
+        known = re.compile(r"(--[\w-]+) ([A-Z]+)")
+        text = known.sub(lambda m: f"{m[1]} {_VALUE_OF.get(m[1], m[2])}", str(usage))
+        DefaultFormatter().render_usage(console, options, text)
+
+
+def examples(command: Callable[..., object]) -> str:
+    """The examples at the end of a docstring, as the epilogue of `--help`."""
+    text = cleandoc(command.__doc__ or "").partition("Examples\n--------\n")[2]
+    return f"Examples:\n\n{text}"

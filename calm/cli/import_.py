@@ -1,0 +1,181 @@
+"""``calm import``: mooring files from designs of other programs."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from calm.cli import options
+from calm.cli.outputs import STDOUT, ExitCode, OutputPath, narrate, show
+from calm.errors import InputError, Problem, UsageError
+
+if TYPE_CHECKING:
+    from calm.exchange.importing import Imported
+
+
+def import_(
+    *files: Path,
+    output: options.OutputFile,
+    format: str | None = None,
+    strict: bool = False,
+    define: Annotated[list[str] | None, Parameter(name=["--define", "-D"])] = None,
+    environment: Path | None = None,
+    columns: str | None = None,
+    elements: Path | None = None,
+    match_catalogue: bool = False,
+    allow_include: bool = False,
+    json: OutputPath = None,
+) -> ExitCode:
+    """Make mooring files from designs of other programs.
+
+    The program is found from the content of the file. Every figure is taken
+    from the file. Guesses are marked as comments on their lines, and reported
+    together with what was left out. A file that CALM cannot represent is
+    refused with the reason, and nothing is written.
+
+    Parameters
+    ----------
+    files
+        Files of other programs.
+    output
+        The mooring file to write; for several files, the folder.
+    format
+        The program: mdd, cbl, moordyn, oceanarray, moords or table. By default recognised
+        from the content.
+    strict
+        Refuse files that need guesses.
+    define
+        A macro of WHOI Cable, as NAME=VALUE, or the id in the catalogue of what oceanarray
+        names, as "NAME=ID". Repeatable.
+    environment
+        An environment file, in place of the water in the file.
+    columns
+        The columns of a table by their headings: name=Item,length=Len.
+    elements
+        A library of elements, with the figures that a list or oceanarray lacks: the mdcodes.mat of
+        Mooring Design & Dynamics, the table of moords, or a workbook.
+    match_catalogue
+        Use catalogue entries for components that agree in name and figures.
+    allow_include
+        Allow a file to include others from outside its own folder.
+    json
+        Write what was guessed and left out as JSON, - to print it.
+
+    Examples
+    --------
+      calm import moor001.mat -o moor001.yaml
+      calm import *.cbl -o moorings/ --environment site.yaml
+      calm import snare.cbl -o snare.yaml -D DEPTH=1200 --strict
+      calm import list.csv -o list.yaml --columns name=Item,length=Len --environment site.yaml
+    """
+    from calm.exchange.current_record import record_file
+    from calm.exchange.importing import import_file
+    from calm.exchange.model import ImportOptions
+    from calm.report import folder, result_files
+
+    if not files:
+        raise UsageError("calm import needs a file")
+    headings = _pairs("--columns", columns.split(",") if columns else [])
+    given = ImportOptions(_pairs("--define", define or []), headings, elements, allow_include)
+    targets = _targets(files, output)
+    if json is not None and json != STDOUT:
+        folder.check_destination(json)
+    done: list[tuple[Imported, Path]] = []
+    problems: list[Problem] = []
+    for file, target in zip(files, targets, strict=True):
+        try:
+            imported = import_file(
+                file, target, format=format, environment=environment, options=given,
+                match_catalogue=match_catalogue,
+            )  # fmt: skip
+        except InputError as error:
+            problems += error.problems
+            continue
+        if strict:
+            problems += [
+                Problem(str(file), 0, 0, f"--strict: {each} would be guessed")
+                for each in imported.guessed
+            ]
+        done.append((imported, target))
+    if problems:
+        raise InputError(problems)
+    if _is_folder(files, output):
+        output.mkdir(parents=True, exist_ok=True)
+    for imported, target in done:
+        record = _record_of(target) if imported.record is not None else None
+        if record is not None and imported.record is not None:
+            folder.write_file(record, record_file(imported.record, imported.file.name))
+        folder.write_file(target, imported.text.encode("utf-8", "replace"))
+        _tell(imported, target, record)
+    if json is not None:
+        text = result_files.to_json([_document(imported, target) for imported, target in done])
+        show(text) if json == STDOUT else folder.write_file(json, text.encode())
+    return ExitCode.DONE
+
+
+def _pairs(option: str, texts: list[str]) -> dict[str, str]:
+    """NAME=VALUE pairs."""
+    pairs = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not name.strip() or not equals:
+            raise UsageError(f"{option}: `{text}` is not NAME=VALUE")
+        pairs[name.strip()] = value.strip()
+    return pairs
+
+
+def _is_folder(files: tuple[Path, ...], output: Path) -> bool:
+    return len(files) > 1 or output.is_dir() or str(output).endswith(("/", os.sep))
+
+
+def _targets(files: tuple[Path, ...], output: Path) -> list[Path]:
+    """Return where each mooring file will stand.
+
+    UsageError: two would stand in one place, or one in the place of a file that is read.
+    """
+    from calm.report.folder import check_destination
+
+    if not _is_folder(files, output):
+        check_destination(output)
+        targets = [output]
+    else:
+        if output.exists() and not output.is_dir():
+            raise UsageError(f"cannot write into {output}: it is not a folder")
+        targets = [output / f"{file.stem}.yaml" for file in files]
+    for target in targets:
+        if targets.count(target) > 1:
+            raise UsageError(f"two of the files would both become {target}")
+        if any(os.path.realpath(target) == os.path.realpath(file) for file in files):
+            raise UsageError(f"{target} would overwrite the file that is read")
+    return targets
+
+
+def _record_of(target: Path) -> Path:
+    return target.with_name(f"{target.stem}-currents.nc")
+
+
+def _tell(imported: Imported, target: Path, record: Path | None) -> None:
+    for remark in imported.guessed:
+        narrate(f"{imported.file}: guessed: {remark}")
+    for remark in imported.dropped:
+        narrate(f"{imported.file}: left out: {remark}")
+    for match in imported.matched:
+        narrate(f"{imported.file}: {match.name} is {match.entry} of the catalogue")
+    if record is not None:
+        narrate(f"{record} written; solve it with: calm batch {target} --currents {record} -o …")
+    narrate(f"{target} written; solve it with: calm run {target}")
+
+
+def _document(imported: Imported, target: Path) -> dict[str, Any]:
+    return {
+        "file": str(imported.file),
+        "format": imported.format,
+        "output": str(target),
+        "record": None if imported.record is None else str(_record_of(target)),
+        "guessed": [vars(each) for each in imported.guessed],
+        "dropped": [vars(each) for each in imported.dropped],
+        "matched": [vars(each) for each in imported.matched],
+    }

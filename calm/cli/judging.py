@@ -1,0 +1,142 @@
+"""Designs solved and judged in all their environments, shared out over processes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import date, datetime
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+from calm.cli import progress
+from calm.errors import internal_failure
+
+if TYPE_CHECKING:
+    from calm.case import Design, uncertain
+    from calm.checks.assessment import Assessment, MooringInEnvironment
+    from calm.cli.reading import DesignFile
+    from calm.report.check_report import CheckedSection
+
+
+class DrawnSection(NamedTuple):
+    """A mooring's section of the report: its heading for the summary, its HTML and its PDF leaf."""
+
+    section: CheckedSection
+    html: str
+    pdf: str
+
+
+class CheckedMooring(NamedTuple):
+    """The assessment of a mooring, and its section of the report if there is a report."""
+
+    assessment: Assessment
+    drawn: DrawnSection | None
+
+
+def drawn_section(section: CheckedSection, number: int) -> DrawnSection:
+    """Draw the `number`th section of a report for HTML and PDF."""
+    from calm.report.folder import pdf_leaf
+    from calm.report.html import leaf
+
+    return DrawnSection(replace(section, parts=()), leaf(section, number), pdf_leaf(section))
+
+
+def judge(
+    designs: Sequence[DesignFile], workers: int | None, drawn: bool, draws: tuple[int, int] | None
+) -> list[CheckedMooring]:
+    """Judge designs on one day: the day of the report, by default today.
+
+    Processes share many moorings, and one process solves, judges and draws a mooring. They share
+    the environments of a few moorings.
+
+    Parameters
+    ----------
+    workers : number of processes; None for one on each core
+    drawn : draw the sections of the report
+    draws : samples and seed of the probabilities; None without them
+    """
+    from calm.checks.situations import SOLVES
+    from calm.report.provenance import moment
+    from calm.solve import expect_many
+
+    day = (moment() or datetime.now()).date()
+    stands = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
+    expect_many(SOLVES * len(stands))
+    if len(designs) > progress.FEW:
+        load_ahead(len(stands), drawn)
+        whole = [(number, design, day, drawn, draws) for number, design in enumerate(designs, 1)]
+        return progress.mapped(_solve_and_conclude, whole, workers, "moorings judged")
+    solved = iter(progress.mapped(_stands, stands, workers, "environments solved"))
+    shared = partial(progress.mapped, workers=workers, what="blocks of samples solved")
+    found = ([stand for _ in design.moorings for stand in next(solved)] for design in designs)
+    return [
+        _concluded(number, design.name, stands, day, drawn, draws, shared)
+        for number, (design, stands) in enumerate(zip(designs, found, strict=True), 1)
+    ]
+
+
+def load_ahead(stands: int, drawn: bool) -> None:
+    """Import the modules that judging so many moorings needs, before processes are forked.
+
+    The compiled march is loaded if it is cached, but not compiled before all files are valid.
+    """
+    import calm.checks.assess
+    import calm.checks.recovery
+    from calm.checks.situations import SOLVES
+    from calm.solve.solution import COLD, expect_many
+
+    expect_many(min(SOLVES * stands, COLD - 1))
+    if drawn:
+        import calm.report.check_report
+        import calm.report.html  # noqa: F401
+        from calm.drawing.typesetting import signs
+
+        signs()  # has the font read
+
+
+def _solve_and_conclude(
+    task: tuple[int, DesignFile, date, bool, tuple[int, int] | None],
+) -> CheckedMooring:
+    number, design, day, drawn, draws = task
+    stands = [each for one in design.moorings for each in _stands((design.name, one, day))]
+    return _concluded(number, design.name, stands, day, drawn, draws, map)
+
+
+def _concluded(
+    number: int,
+    name: str,
+    stands: Sequence[MooringInEnvironment],
+    day: date,
+    drawn: bool,
+    draws: tuple[int, int] | None,
+    shared: uncertain.Mapped,
+) -> CheckedMooring:
+    """Assess a mooring solved in its environments, and draw the `number`th section of the report.
+
+    `draws` are samples and seed of the probabilities, or None; `shared` solves blocks of samples.
+    """
+    from calm.checks import assess, design_check
+    from calm.report.check_report import mooring_section
+
+    assessment = design_check.assessment_of(name, stands, day)
+    if draws is not None:
+        assessment = assess.with_probabilities(assessment, *draws, shared)
+    return CheckedMooring(
+        assessment, drawn_section(mooring_section(assessment), number) if drawn else None
+    )
+
+
+def _stands(task: tuple[str, Design, date]) -> list[MooringInEnvironment]:
+    """A mooring in an environment, or each leg of a net; CALM's own failure there does not stop
+    the others.
+    """
+    from calm.checks.design_check import failed_stand, stands_of
+
+    name, mooring, day = task
+    try:
+        return stands_of(mooring, name, day)
+    except Exception as error:
+        if os.environ.get("CALM_DEBUG") == "1":
+            raise
+        return [failed_stand(mooring, name, internal_failure(error))]

@@ -1,0 +1,158 @@
+"""``calm locate``: the position of an anchor from acoustic ranges."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from calm.cli import options
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
+from calm.errors import UsageError
+
+if TYPE_CHECKING:
+    from calm.ranging import Sound
+
+
+DEFAULT_SPEED = "1500 m/s"
+
+
+def locate(
+    file: Path,
+    /,
+    *,
+    sound_speed: str | None = None,
+    transducer: str = "0 m",
+    depth: str | None = None,
+    above_seabed: str = "0 m",
+    plot: Path | None = None,
+    json: OutputPath = None,
+    near: options.Signed = None,
+    update: Path | None = None,
+    accept: bool = False,
+    output: Annotated[Path | None, Parameter(name=["--output", "-o"], show=False)] = None,
+) -> ExitCode:
+    """Find where an anchor lies from acoustic ranges taken by a ship.
+
+    Outliers among the ranges are reported and left out, if enough ranges
+    remain. The position comes with its 95 % ellipse, the depth with its
+    interval, and a warning if the ship's positions leave them poorly known. If
+    two positions fit, the one near the planned position is taken, and the other
+    is given. Rays are taken as straight.
+
+    Parameters
+    ----------
+    file
+        CSV file with the columns latitude, longitude (WGS 84, of the
+        transducer; degrees, or degrees and minutes) and range[m], or the
+        two-way time[s]; or a survey without a heading, in the forms of WHOI's
+        and NOC's programs.
+    sound_speed
+        Speed of sound for times: a speed, or a CSV file with the columns
+        depth[m] and sound_speed[m/s]; 1500 m/s by default. Ranges in metres are
+        used as they are.
+    transducer
+        Depth of the ship's transducer.
+    depth
+        Depth of the water at the anchor, if known; otherwise it is estimated.
+    above_seabed
+        Height above the seabed of the transponder, such as the release.
+    plot
+        Draw the ranges as circles about the ship, with the position found:
+        .png, .svg or .pdf.
+    json
+        Write the place as JSON, - to print it.
+    near
+        Approximate latitude and longitude of the drop, to choose between two
+        positions; by default the planned position in the file of --update.
+    update
+        A mooring file: write position and depth into its `deployed:`, and
+        report the distance from its planned position. If the position is in
+        doubt nothing is written, and the exit code is 1.
+    accept
+        Write the position in spite of a doubt.
+
+    Examples
+    --------
+      calm locate ranges.csv
+      calm locate times.csv --sound-speed "1492 m/s" --transducer "5 m" --plot circles.png
+      calm locate times.csv --sound-speed profile.csv --depth "1103 m"
+      calm locate ranges.csv --depth "1103 m" --near "48 18.0 N, 5 12.0 W"
+      calm locate ranges.csv --update mooring.yaml   (its deployed: gets position and depth)
+
+    ranges.csv:
+
+      latitude[deg],longitude[deg],range[m]
+      48.30120,-5.19870,1432.5
+    """
+    from calm.drawing.picture import check_format, image
+    from calm.ranging import locate as found_at
+    from calm.ranging import range_fit, read_ranges
+    from calm.records.record import parse_place
+    from calm.report.anchor_sheets import located_figure, located_part
+    from calm.report.folder import check_destination, write_file
+
+    outputs = Outputs((file,), json)
+    if plot is not None:
+        check_format(plot)
+        check_destination(plot)
+    given = options.quantities(
+        transducer=(transducer, "length"),
+        depth=(depth, "length"),
+        above_seabed=(above_seabed, "length"),
+    )
+    under, height = given["transducer"], given["above_seabed"]
+    answering = given["depth"] - height if "depth" in given else None
+    if under < 0.0 or height < 0.0 or (answering is not None and answering <= under):
+        raise UsageError(
+            "--transducer and --above-seabed must not be negative, and the transponder must be "
+            "deeper than the transducer"
+        )
+    sound = _sound(sound_speed or DEFAULT_SPEED)
+    survey = read_ranges(file, under)
+    if sound_speed is not None and not survey.timed:
+        narrate("--sound-speed is not used: ranges in metres are taken as they are")
+    for notice in survey.notices:
+        narrate(f"{file}: {notice}")
+    if output is not None:
+        narrate("-o is now --update: the file is edited in place")
+        update = update or output
+    mooring = None if update is None else range_fit.located_mooring(update)
+    about = None if near is None else parse_place(near)
+    if about is None and mooring is not None and mooring.position is not None:
+        about = mooring.position.latitude, mooring.position.longitude
+    located = found_at(survey, sound, answering, about)
+    water_depth = located.depth + height
+    doubts, edited = located.doubts, None
+    if update is not None and mooring is not None:
+        working, text, beside, far = range_fit.with_deployed(update, mooring, located, water_depth)
+        edited, doubts = (working, text), (*doubts, *far)
+        for line in beside:
+            narrate(f"{update}: {line}")
+    outputs.write_answer(
+        lambda: {**located.to_dict(), "depth": water_depth}, located_part(located, water_depth)
+    )
+    if plot is not None:
+        write_file(plot, image(located_figure(located), plot.suffix))
+    if edited is None:
+        return ExitCode.DONE
+    if doubts and not accept:
+        narrate(f"{update} is not written: {'; '.join(doubts)}. --accept writes it anyway")
+        return ExitCode.FINDING
+    working, text = edited
+    lost = working.save(text)
+    narrate(f"{update}: `deployed:` now has position and depth" + (f"; {lost}" if lost else ""))
+    return ExitCode.DONE
+
+
+def _sound(text: str) -> Sound:
+    """One speed, or the profile of a file."""
+    from calm.ranging import Sound, ranges
+
+    if text.lower().endswith((".csv", ".txt", ".tsv")):
+        return ranges.read_sound(Path(text))
+    speed = options.quantities(sound_speed=(text, "speed"))["sound_speed"]
+    if not ranges.SLOWEST <= speed <= ranges.FASTEST:
+        raise UsageError(f"--sound-speed: `{text}` {ranges.sound_complaint()}")
+    return Sound.constant(speed)

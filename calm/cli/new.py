@@ -1,0 +1,69 @@
+"""``calm new``: a commented mooring file to start from, or a record of currents."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from calm.cli.outputs import ExitCode, narrate, show
+from calm.errors import UsageError
+from calm.shipped import Template, template
+
+
+def new(
+    kind: Template = "shelf",
+    /,
+    *,
+    record: bool = False,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    force: bool = False,
+) -> ExitCode:
+    """Write a commented mooring file to start from, or a record of currents for it.
+
+    Parameters
+    ----------
+    kind
+        Kind of mooring: on the shelf, in the deep sea, an ADCP, a surface buoy, or a tow.
+    record
+        Write a small synthetic record, NetCDF, for `calm batch`; needs --output.
+    output
+        The file to write; by default the standard output.
+    force
+        Overwrite an existing file.
+
+    Examples
+    --------
+      calm new
+      calm new -o mooring.yaml
+      calm new taut-surface -o buoy.yaml
+      calm new --record -o record.nc
+    """
+    if record:
+        return _new_record(output, force)
+    text = template(kind)
+    if output is None:
+        show(text)
+        return ExitCode.DONE
+    _write(output, text.encode(), force)
+    narrate(f"{output} written; solve it with: calm run {output}")
+    return ExitCode.DONE
+
+
+def _new_record(output: Path | None, force: bool) -> ExitCode:
+    from calm.records.record import made_record
+
+    if output is None:
+        raise UsageError("a record is not text; give the file to write, --output record.nc")
+    _write(output, made_record(), force)
+    result = output.with_name(f"{output.stem}-result.nc")
+    narrate(f"{output} written; solve it with: calm batch FILE --currents {output} -o {result}")
+    return ExitCode.DONE
+
+
+def _write(output: Path, content: bytes, force: bool) -> None:
+    from calm.report.folder import check_destination, write_file
+
+    if output.exists() and not force:
+        raise UsageError(f"{output} exists already; --force overwrites it")
+    check_destination(output)
+    write_file(output, content)

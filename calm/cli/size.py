@@ -1,0 +1,76 @@
+"""``calm size``: the smallest change of a mooring that meets a target."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from calm.cli import options
+from calm.cli.outputs import ExitCode, Outputs, narrate
+
+
+def size(
+    file: Path,
+    /,
+    *,
+    target: str,
+    change: str,
+    between: Annotated[tuple[str, str] | None, Parameter(allow_leading_hyphen=True)] = None,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
+    json: options.JsonAnswer = None,
+    units: options.Units = None,
+) -> ExitCode:
+    """Find the smallest change of a mooring that meets a target.
+
+    The changed mooring is solved as by calm run. A change of buoyancy leaves
+    size and drag unchanged. If the target cannot be met, the exit code is 3,
+    and the reason and the nearest value are reported.
+
+    Parameters
+    ----------
+    file
+        A mooring file, or that of a net of legs.
+    target
+        A quantity of a part of the line, <=, >= or =, and a limit with its unit.
+    change
+        What to change: the label of a part, and its buoyancy, length or count.
+        A label without its number means all pieces of that label.
+    between
+        The least and the greatest value, with units; by default a buoyancy may
+        change from 0 to 100 times itself, a length up to twice the water depth,
+        a count up to 1000.
+
+    Examples
+    --------
+      calm size mooring.yaml --target "knockdown(top) <= 20 m" \\
+          --change "top float.buoyancy"
+      calm size mooring.yaml --target "tilt(current meter) <= 5 deg" \\
+          --change "back-up glass.count" --between 4 40
+      calm size mooring.yaml --target "depth(CTD 130 m) = 130 m" \\
+          --change wire.length --environment storm
+      calm size mooring.yaml --target "required_weight <= 8 kN" \\
+          --change "top float.buoyancy" --json -
+
+    Targets: knockdown, depth, excursion, tilt or tension of a label or of top, and
+    required_weight of the anchor, in a net required_weight(LEG). Changes:
+    LABEL.buoyancy, LABEL.length, LABEL.count.
+    """
+    outputs = Outputs((file,), json)
+    from calm.case import load
+    from calm.case.size import size as sized
+    from calm.files.mooring_file import refuse_tow
+    from calm.report.explanation import refusal, sizing_part
+
+    mooring = load(file, environment, catalog or [])
+    refuse_tow(mooring.file)
+    options.show_units(units, [mooring.file])
+    sizing = sized(mooring, target, change, between)
+    if sizing.after is not None:
+        outputs.write_answer(sizing.to_dict, sizing_part(sizing))
+        return ExitCode.DONE
+    outputs.write_answer(sizing.to_dict, None)
+    narrate(f"{file}: {refusal(sizing)}")
+    return ExitCode.NO_EQUILIBRIUM

@@ -1,0 +1,184 @@
+"""``calm waves``: tensions and motions of a mooring in waves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from calm.cli import options
+from calm.cli.outputs import ExitCode, Outputs, narrate
+from calm.cli.progress import progress
+from calm.errors import NoEquilibrium, UsageError
+
+if TYPE_CHECKING:
+    from calm.records.sea_states import SeaState
+
+
+def waves(
+    file: options.MooringPath,
+    /,
+    *,
+    environment: options.EnvironmentName = None,
+    catalog: options.CatalogFiles = None,
+    hs: options.Signed = None,
+    tp: options.Signed = None,
+    spectrum: str = "bretschneider",
+    gamma: float = 3.3,
+    swell: options.Signed = None,
+    swell_tp: options.Signed = None,
+    toward: options.Signed = None,
+    scatter: Path | None = None,
+    duration: str = "3 h",
+    json: options.JsonAnswer = None,
+    report: Path | None = None,
+    units: options.Units = None,
+) -> ExitCode:
+    """Estimate tensions and motions of a mooring in waves, about its equilibrium.
+
+    Linear: small waves about the shape in the mean current, with drag
+    linearised for equal dissipation. If a piece falls slack this is no longer
+    valid: the status is slack-in-waves and the exit code 3. Without --hs,
+    --scatter or a file as the --spectrum, the seas are those under `waves:` in
+    the environment.
+
+    Parameters
+    ----------
+    hs
+        Significant wave height, such as "5 m".
+    tp
+        Peak period, such as "8.4 s", 1.41 times a mean zero-crossing period Tz;
+        by default that of a fully developed sea for pierson-moskowitz; not used
+        by ochi-hubble.
+    spectrum
+        bretschneider, jonswap, pierson-moskowitz, ochi-hubble (swell and sea),
+        or a file of a measured one: CSV of frequency[Hz],density[m^2/Hz], or
+        NetCDF.
+    gamma
+        Peak enhancement factor of jonswap.
+    swell
+        Significant height of a swell under the sea of --hs, running the same way.
+    swell_tp
+        Peak period of the swell.
+    toward
+        Direction the waves run, clockwise from north; 90 deg by default.
+    scatter
+        A CSV file of seas: significant_wave_height[m],peak_period[s],share.
+    duration
+        Time over which the greatest and the least tension are sought; 3 h by default.
+    report
+        A folder for waves.html and waves.pdf, with pictures of the tension.
+
+    Examples
+    --------
+      calm waves buoy.yaml --hs "5 m" --tp "8.4 s"
+      calm waves buoy.yaml --hs "2 m" --tp "6 s" --swell "3 m" --swell-tp "14 s"
+      calm waves buoy.yaml --hs "3 m" --tp "7 s" --spectrum jonswap --toward "45 deg"
+      calm waves buoy.yaml --scatter site.csv --json waves.json
+      calm waves buoy.yaml --spectrum measured.csv
+    """
+    outputs = Outputs((file,), json)
+    from calm.case import load
+    from calm.records.sea_states import OF_HEIGHT
+    from calm.report import folder, sea_response
+    from calm.waves.analysis import SLACK, analyse
+
+    if report is not None:
+        folder.check_folder(report)
+    asked, way, length = _asked(
+        {"hs": hs, "tp": tp, "swell": swell, "swell_tp": swell_tp},
+        spectrum, gamma, toward, scatter, duration,
+    )  # fmt: skip
+    mooring = load(file, environment, catalog or [])
+    leg = mooring.moored
+    given, seas = mooring.file.environment.waves, asked or mooring.file.environment.seas
+    if not seas:
+        missing = "--hs: missing" if spectrum in OF_HEIGHT else "--hs, --tp: missing"
+        raise UsageError(f"{missing}; or give a --scatter table, or `waves:` in {file}")
+    if way is None:
+        way = 90.0 if given is None else given.toward
+    options.show_units(units, [mooring.file])
+    try:
+        analysis = analyse(leg, seas, way, length, lambda each: progress(each, "seas"))
+    except NoEquilibrium as failure:
+        answer = {"name": mooring.file.name, **failure.to_dict()}
+        outputs.write_answer(lambda: answer, None)
+        narrate(f"{file}: {failure.status}: {failure.message} {failure.advice}")
+        return ExitCode.NO_EQUILIBRIUM
+    outputs.write_answer(analysis.to_dict, sea_response.sea_response_part(analysis))
+    if report is not None:
+        folder.write_pages(report, "waves", sea_response.sea_response_report(analysis))
+    if analysis.status != SLACK:
+        return ExitCode.DONE
+    narrate(
+        f"{file}: {SLACK}: the least tension falls below 0, where linear tensions do not "
+        "hold. Give the line more weight or more stretch, or solve it in the time "
+        "domain: `calm export --to moordyn`."
+    )
+    return ExitCode.NO_EQUILIBRIUM
+
+
+def _asked(
+    waves: dict[str, str | None],
+    spectrum: str,
+    gamma: float,
+    toward: str | None,
+    scatter: Path | None,
+    duration: str,
+) -> tuple[list[SeaState] | None, float | None, float]:
+    """Return the seas, where they run [degrees], and how long they last [s]; None: not said.
+
+    UsageError: with all that is wrong with the options.
+    """
+    from calm.errors import nearest
+    from calm.records import sea_states
+
+    given = options.quantities(
+        hs=(waves["hs"], "length"),
+        tp=(waves["tp"], "time"),
+        swell=(waves["swell"], "length"),
+        swell_tp=(waves["swell_tp"], "time"),
+        toward=(toward, "angle"),
+        duration=(duration, "time"),
+    )
+    complaints = [
+        f"{options.option(name)}: must be above 0"
+        for name in (*waves, "duration")
+        if name in given and not given[name] > 0.0
+    ]
+    if 0.0 < given["duration"] < 60.0:
+        complaints.append("--duration: a minute at least, for some waves to pass")
+    if not 1.0 <= gamma <= 10.0:
+        complaints.append("--gamma must be from 1, a fully developed sea, to 10")
+    named, path = spectrum in sea_states.SPECTRA, Path(spectrum)
+    if not named and not path.is_file():
+        near = nearest(spectrum, sea_states.SPECTRA)
+        meant = f"; did you mean `{near}`?" if near else ""
+        complaints.append(
+            f"--spectrum: `{spectrum}` is neither {', '.join(sea_states.SPECTRA)} nor a file{meant}"
+        )
+    chosen = [options.option(name) for name, each in waves.items() if each is not None]
+    swells = [name for name in ("--swell", "--swell-tp") if name in chosen]
+    if len(swells) == 1:
+        complaints.append("--swell, --swell-tp: a swell has both a height and a period")
+    if scatter is not None and (chosen or not named):
+        complaints.append(
+            f"--scatter: gives heights and periods; leave {', '.join(chosen) or 'the file'} out"
+        )
+    elif scatter is None and path.is_file() and not named and chosen:
+        complaints.append(f"{', '.join(chosen)}: a measured spectrum has its own")
+    elif scatter is None and named and (chosen or spectrum != "bretschneider"):
+        needs = ["--hs", *(["--tp"] if spectrum not in sea_states.OF_HEIGHT else [])]
+        if missing := [name for name in needs if name not in chosen]:
+            complaints.append(f"{', '.join(missing)}: missing; or give a --scatter table")
+    if complaints:
+        raise UsageError("\n".join(complaints))
+    seas = None
+    if scatter is not None:
+        seas = sea_states.scatter_states(scatter, spectrum, gamma)
+    elif not named:
+        seas = [sea_states.measured_spectrum(path)]
+    elif chosen:
+        seas = [sea_states.spectrum_of(spectrum, given["hs"], given.get("tp"), gamma)]
+        if swells:
+            seas = [sea_states.with_swell(seas[0], given["swell"], given["swell_tp"])]
+    return seas, given.get("toward"), given["duration"]

@@ -1,0 +1,310 @@
+"""A table of some rows that is edited cell by cell: of the water, of a form."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, ClassVar
+
+from rich.segment import Segment
+from rich.style import Style
+from textual import events, on
+
+from calm.records.delimited import NoTableError, copied_table
+from calm.tui import cell_editor, key_table, theme
+from calm.tui.checking import Reading
+from calm.tui.forms import Asked, FormColumn, Rows, rows_of, text_of_rows
+from calm.tui.scrolled import TableCells, TableColumn
+
+_WIDTH = 14
+_LEAD = 2
+_AS_TEXT = "this table is edited in the text of the file (t)"
+_NO_ROWS = "a  adds a row"
+_DIGITS = frozenset("0123456789.-+")
+
+
+class GridCells(TableCells, can_focus=True):
+    """Show the rows with a cursor on one cell."""
+
+    GAP = 2
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.headings: tuple[str, ...] = ()
+        self.rows: Rows = ()
+
+    def show(self, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        """Other rows, the cursor where it was if there is such a cell."""
+        self.headings = tuple(headings)
+        self.set_reactive(TableCells.column, self.validate_column(self.column))
+        self.take_rows(tuple(tuple(row) for row in rows))
+        self.styles.height = max(len(rows), 1) + self.HEADING
+
+    @property
+    def columns(self) -> list[TableColumn]:
+        """The columns, named by their numbers: a file may have two of one heading."""
+        return [*self._columns()] or [TableColumn("", _AS_TEXT, _LEAD, len(_AS_TEXT))]
+
+    def _columns(self) -> Iterator[TableColumn]:
+        widths = [
+            max(_WIDTH - self.GAP, len(heading), *(len(row[number]) for row in self.rows))
+            for number, heading in enumerate(self.headings)
+        ]
+        room = self.scrollable_content_region.width - _LEAD - self.GAP * len(widths)
+        while sum(widths) > room and max(widths) > _WIDTH:  # the widest are cut
+            widths[widths.index(max(widths))] -= 1
+        start = _LEAD
+        for number, (heading, width) in enumerate(zip(self.headings, widths, strict=True)):
+            yield TableColumn(str(number), heading, start, width)
+            start += width + self.GAP
+
+    @property
+    def editable(self) -> Sequence[str]:
+        """All columns, where there are any."""
+        return [str(number) for number in range(len(self.headings))]
+
+    def text_of(self, number: int, column: TableColumn) -> str:
+        """Return what stands in a cell of a row."""
+        return self.rows[number][int(column.name)]
+
+    def lead(self, number: int, style: Style) -> list[Segment]:
+        """Return the cursor, where the table has the focus."""
+        here = number == self.cursor and self.has_focus
+        return [Segment(f"{theme.CURSOR} " if here else "  ", style)]
+
+    def below(self, y: int) -> list[Segment]:
+        """Return how an empty table is begun."""
+        is_empty = y == self.HEADING and self.headings and not self.rows
+        cursor = theme.CURSOR if self.has_focus else " "
+        return [Segment(f"{cursor} {_NO_ROWS}", Style(dim=True))] if is_empty else []
+
+    def go_on(self, by: int) -> bool:
+        """Go to the next value or the one before, over the rows; whether there is one."""
+        count = len(self.headings)
+        row, column = divmod(self.cursor * count + self.column + by, count)
+        if is_there := 0 <= row < len(self.rows):
+            self.cursor, self.column = row, column
+        return is_there
+
+
+class Grid(cell_editor.EditableTable):
+    """Edit the cells and the rows of a table.
+
+    Values are texts as the file has them. Without columns nothing is shown and nothing can be
+    edited.
+
+    Parameters
+    ----------
+    changed : takes the table where its rows are other ones, and what was done to them
+    """
+
+    BINDINGS = key_table.bindings("grid")
+    DEFAULT_CSS = """
+    Grid { height: auto; min-height: 3; max-height: 16; }
+    Grid GridCells { height: auto; min-height: 3; max-height: 16; }
+    """
+    LEAST_ROWS: ClassVar[int] = 0
+    EDITS_ON: ClassVar[bool] = True
+    """Whether Enter edits the next value of a row that was added: where no digit begins one."""
+
+    def __init__(
+        self,
+        tell: Callable[..., object],
+        changed: Callable[[Any, str], object],
+        *,
+        id: str | None = None,
+    ) -> None:
+        self.cells = GridCells()
+        super().__init__(tell, self.cells, id=id)
+        self._changed = changed
+        self._columns: tuple[FormColumn, ...] = ()
+        self._place = 0, 0  # row and column that are edited
+        self._new = -1  # the row that was added last and is being filled
+        self._before: Rows | None = None  # the rows without the one that Enter has added
+
+    def show(self, columns: Sequence[FormColumn], rows: Sequence[Sequence[str]]) -> None:
+        """Show other rows."""
+        self._columns = tuple(columns)
+        self.cells.show([column.heading for column in columns], rows)
+
+    def change(self, rows: Rows, label: str) -> None:
+        """Show other rows, and tell what was done to them."""
+        self.cells.show(self.cells.headings, rows)
+        self._changed(self, label)
+
+    def write(self, text: str) -> None:
+        """Put a good text where it was typed; nothing where there is no such cell any more."""
+        rows, (row, column) = self.cells.rows, self._place
+        if row < len(rows) and column < len(self.cells.headings):
+            values = (*rows[row][:column], text, *rows[row][column + 1 :])
+            self.change((*rows[:row], values, *rows[row + 1 :]), "a value")
+
+    def new_row(self, at: int) -> tuple[str, ...]:
+        """The values that a row begins with, which is added at a place among the others."""
+        return ("",) * len(self._columns)
+
+    def ends_at(self, at: int) -> bool:
+        """Return whether no row is proposed at a place."""
+        return False
+
+    # keys
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """The keys of the rows are not those of a value that is typed."""
+        return not self.editor.is_open
+
+    def action_move_row(self, by: int) -> None:
+        """Go up or down, at the ends out of the table."""
+        if 0 <= self.cells.cursor + by < len(self.cells.rows):
+            self.cells.cursor += by
+        elif by > 0:
+            self.screen.focus_next()
+        else:
+            self.screen.focus_previous()
+
+    def action_move_cell(self, by: int) -> None:
+        """Go to the next value; what is typed after the last goes into no other field."""
+        has_rows = bool(self.cells.headings) and bool(self.cells.rows)
+        if has_rows and self.cells.go_on(by):
+            return
+        if by < 0:
+            self.screen.focus_previous()
+        elif has_rows:
+            self.tell("The table ends here: a adds a row, ↓ leaves it", wrong=True)
+        else:
+            self.screen.focus_next()
+
+    def on_key(self, event: events.Key) -> None:
+        """A digit begins a new value."""
+        if event.character in _DIGITS and event.is_printable and self.cells.rows:
+            event.stop()
+            self._edit(event.character)
+
+    @on(GridCells.Pressed)
+    def action_edit(self) -> None:
+        """Edit the cell."""
+        if self.cells.rows:
+            self._edit()
+
+    def _edit(self, begun: str | None = None) -> None:
+        """Edit the cell under the cursor, beginning with what it has or with what is `begun`."""
+        cells = self.cells
+        if not super().settle():  # the cell: the row may still lack values
+            return
+        self._place = row, column = cells.cursor, cells.column
+        text, check = begun or cells.rows[row][column], self._columns[column].check
+        self.open_editor(text, check, least_width=12, begun=begun is not None)
+
+    def action_add_row(self, below: int) -> None:
+        """Add a row beside this one."""
+        cells, rows = self.cells, self.cells.rows
+        if not cells.headings:
+            return
+        at = cells.cursor + below if rows else 0
+        at = min(at, len(rows) - 1) if self.ends_at(at) else at
+        self.change((*rows[:at], self.new_row(at), *rows[at:]), "a row more")
+        cells.cursor, cells.column = at, 0
+        self._new = at
+        self._edit()
+
+    def action_drop_row(self) -> None:
+        """Take the row out."""
+        rows, here = self.cells.rows, self.cells.cursor
+        if len(rows) > self.LEAST_ROWS:
+            self.change((*rows[:here], *rows[here + 1 :]), "a row less")
+
+    # what is typed
+
+    def go_on(self, then: cell_editor.Then, text: str | None) -> None:
+        """Go up or down, or to the next value; add a row below one that was added and is filled."""
+        cells = self.cells
+        if text is not None:
+            self._before = None  # it is filled
+        if then in ("up", "down"):
+            cells.cursor += 1 if then == "down" else -1
+        elif then == "right":
+            cells.column += 1
+        elif then == "edit next":
+            if cells.go_on(1):
+                self.action_edit()
+        elif cells.column < len(cells.headings) - 1:
+            cells.go_on(1)
+            if cells.cursor == self._new and self.EDITS_ON:
+                self.action_edit()
+        elif cells.cursor == self._new and not self.ends_at(cells.cursor + 1):
+            before = cells.rows
+            self.action_add_row(1)
+            self._before = before
+
+    def abandoned(self) -> None:
+        """Take out a row that was added and not filled."""
+        if self._before is not None:
+            self.change(self._before, "a row less")
+            self.cells.cursor -= 1
+        self._new, self._before = -1, None
+
+    # what is pasted
+
+    def on_paste(self, event: events.Paste) -> None:
+        """Rows from a spreadsheet or a text take the place of all rows."""
+        event.stop()
+        self.take_text(event.text)
+
+    def take_text(self, text: str) -> None:
+        """Take the rows of a text, of as many columns, in the place of all rows."""
+        try:
+            copied = copied_table(text).rows
+        except NoTableError as error:
+            self.tell(f"Nothing is pasted: {error}", wrong=True)
+            return
+        rows = []
+        for number, row in enumerate(copied, 1):
+            cells = zip(self._columns, row, strict=False)
+            readings = [column.check(value) for column, value in cells]
+            bad = [each.note for each in readings if not each.is_good]
+            if len(row) != len(self._columns):
+                bad = [f"{len(row)} values for {len(self._columns)} columns"]
+            if bad:
+                self.tell(f"Nothing is pasted: row {number}: {bad[0]}", wrong=True)
+                return
+            rows.append(tuple(reading.text for reading in readings))
+        self.change(tuple(rows), f"{len(rows)} rows pasted")
+
+
+class TableField(Grid):
+    """A table of a form, which is entered together with the other fields."""
+
+    def __init__(self, asked: Asked, tell: Callable[..., object]) -> None:
+        super().__init__(tell, lambda *_: None)
+        self.key, self.begun, self.asked = asked.key, asked.text, asked
+        rows = rows_of(asked.text, asked.columns)
+        self._shown = rows or ()
+        self.show(asked.columns if rows is not None else (), self._shown)
+
+    @property
+    def text(self) -> str:
+        """Return the rows as they are to be written; as they were, where nothing was typed."""
+        rows = self.cells.rows
+        return self.begun if rows == self._shown else text_of_rows(rows, self._columns)
+
+    @property
+    def reading(self) -> Reading:
+        """Return what the rows come to: a cell that was left blank may be needed."""
+        for number, row in enumerate(self.cells.rows, 1):
+            for column, text in zip(self._columns, row, strict=True):
+                reading = column.check(text)
+                if any(row) and not reading.is_good:
+                    return Reading(text, f"row {number}, {column.heading}: {reading.note}")
+        return Reading(self.text)
+
+    @property
+    def input(self) -> GridCells:
+        """Return where the keys go to."""
+        return self.cells
+
+    def settle(self) -> bool:
+        """Take what is typed; a row that lacks something stays to be completed."""
+        if not super().settle():
+            return False
+        if complaint := self.reading.complaint:
+            self.tell(complaint, wrong=True)
+        return not complaint
