@@ -900,6 +900,8 @@ def _says_what_it_means(finding: Finding) -> None:
 
 def _findings(flaw: Flaw, folder: Path) -> Iterable[Finding]:
     text = (shipped_folder("lines") / f"{flaw.line}.yaml").read_text(encoding="utf-8")
+    if flaw.line == CDMS:  # it accepts whatever the published case leaves open, a failure too
+        text, _, _ = text.partition("\nchecks:\n")
     for old, new in flaw.changes:
         assert text.count(old) >= 1, old
         text = text.replace(old, new, 1)
