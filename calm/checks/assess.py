@@ -21,7 +21,15 @@ import numpy as np
 from calm.case import Mooring, Result
 from calm.case.draws import Draw, checked_samples, drawn, draws_of, normals_of
 from calm.case.uncertain import BLOCK, Mapped
-from calm.checks import arrangement, catalogue_rules, handling, posture, situations, strength
+from calm.checks import (
+    arrangement,
+    catalogue_rules,
+    handling,
+    planned,
+    posture,
+    situations,
+    strength,
+)
 from calm.checks.assessment import (
     Acceptance,
     Assessment,
@@ -211,7 +219,7 @@ def handled(mooring: Mooring, result: Result) -> Handling:
     """Launch, recovery and breaks of a mooring that stands, or why one of them is not known."""
     launch = or_why_not(launch_of, mooring)
     recovery = or_why_not(recovery_of, mooring, result)
-    return Handling(mooring, launch, recovery, breaks_of(mooring), losses_of(mooring))
+    return Handling(mooring, launch, recovery, breaks_of(mooring), losses_of(mooring), result)
 
 
 def _handled(stand: MooringInEnvironment) -> Handling:
@@ -224,7 +232,7 @@ def _handled(stand: MooringInEnvironment) -> Handling:
     return Handling(mooring, failure, failure, breaks_of(mooring), losses_of(mooring))
 
 
-_MODULES = (arrangement, catalogue_rules, handling, posture, situations, strength)
+_MODULES = (arrangement, catalogue_rules, handling, planned, posture, situations, strength)
 
 
 _ORDER = list(TEXTS)

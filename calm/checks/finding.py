@@ -25,12 +25,14 @@ ON_THE_WAY = "launch, recovery, breaks"
 class State(StrEnum):
     """Tell how a rule judges, the least grave first.
 
-    Unknown, where a figure that the rule needs is missing, is graver than a warning: it may be a
-    failure. Accepted is a failure or an unknown that the design accepts with a reason; estimated
-    passes by the low bound of an `estimate`, and not by a figure that anyone prints.
+    Not judged is a rule without a limit or a plan to judge by. Unknown, where a figure that the
+    rule needs is missing, is graver than a warning: it may be a failure. Accepted is a failure or
+    an unknown that the design accepts with a reason; estimated passes by the low bound of an
+    `estimate`, and not by a figure that anyone prints.
     """
 
     PASS = "pass"
+    NOT_JUDGED = "not-judged"
     ACCEPTED = "accepted"
     ESTIMATED = "estimated"
     WARN = "warn"
@@ -45,7 +47,7 @@ class State(StrEnum):
     @property
     def sign(self) -> str:
         """Return what stands before a verdict or after a figure, legible without colour."""
-        return "✓◦≈~?!"[self.severity]
+        return "✓–◦≈~?!"[self.severity]
 
 
 _SEVERITIES = {state: severity for severity, state in enumerate(State)}
@@ -65,7 +67,7 @@ class Verdict:
     component, place : label and place of a piece or a clamp; None of the mooring as a whole
     value, limit : SI units and degrees; None where unknown
     margin : how far the value keeps within the limit, in its unit, negative where it does not
-    state : pass, accepted, warn, unknown or fail
+    state : of the rule on it
     message : what was found, with both figures
     remedy : what to change; None where nothing need be
     source : of the limit, where it is not that of the rule

@@ -22,6 +22,7 @@ from calm.checks.finding import AS_GIVEN, OWN, State, Verdict, unknown, verdict_
 from calm.checks.growth import grown
 from calm.checks.handling import backup
 from calm.checks.inventory import inventory_of
+from calm.checks.planned import planned_depth, planned_parts
 from calm.checks.recovery import Break, Loss, lifts_of, losses_among, required_margin
 from calm.errors import NoEquilibrium, or_why_not
 from calm.files import Flexible, Piece
@@ -144,6 +145,10 @@ def assessment_of_net(
         leg = Handling(estimated(stand.mooring), _NOT_SOLVED, _NOT_SOLVED, ())
         once += [(each, each.judge(leg), stand.environment)
                  for each in (swivel, clamp_place, metals)]  # fmt: skip
+    planned = [leg for leg in legs if planned_parts(leg)] or legs[:1]
+    for result in planned:
+        leg = Handling(estimated(result.mooring), _NOT_SOLVED, _NOT_SOLVED, (), result=result)
+        once.append((planned_depth, planned_depth.judge(leg), first))
     waters = {stand.mooring.file.environment.name: stand.mooring for stand in stands}
     findings = list(assess.findings_of_currents(list(waters.values()), name, acceptance))
     for rule, verdicts, environment in once:

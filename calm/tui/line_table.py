@@ -78,7 +78,8 @@ class LineTable(TableCells, can_focus=True):
         if self._arranged[0] != width:
             names = ("component", "label", "length", "leg")
             longest = (self._longest(name) for name in names)
-            self._arranged = (width, layout_for(width, *longest))
+            planned = any("planned_depth" in row.texts for row in self.rows)
+            self._arranged = (width, layout_for(width, *longest, planned=planned))
         return self._arranged[1]
 
     def _longest(self, column: str) -> int:
@@ -210,6 +211,8 @@ def layout_for(
     label: int = _MOST_LABEL,
     length: int = 0,
     leg: int = 0,
+    *,
+    planned: bool = False,
 ) -> tuple[TableColumn, ...]:
     """The columns of a table as wide as this, those least needed left out where it is narrow.
 
@@ -218,9 +221,12 @@ def layout_for(
     component, label : cells of the longest text in these columns, which share what is left
     length : cells of the longest length
     leg : cells of the longest name of a leg of a net; none of a line
+    planned : whether any row has a planned depth
     """
     heads = {name: "n" if name == "count" else name for name in ("leg", *EDITABLE)}
     figures = {one.name: _heading(one) for one in table_columns(Output.BUILDER)}
+    if not planned:
+        figures.pop("planned_depth")
     heads |= figures | {"margin": "margin"}
     shown = list(heads)[0 if leg else 1 :]
     fixed = _WIDTHS | {"length": min(max(length, _WIDTHS["length"]), _MOST_LENGTH)}
@@ -247,8 +253,9 @@ def layout_for(
 
 def _heading(figure: ResultColumn) -> str:
     """The head of a column of what is solved, with its unit."""
-    unit = "" if figure.quantity is None else figure.quantity.display_unit
-    return f"{figure.name} {unit}".rstrip()
+    if figure.quantity is None:
+        return figure.name
+    return f"{figure.quantity.heading} {figure.quantity.display_unit}".rstrip()
 
 
 def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:
