@@ -54,8 +54,13 @@ _SEVERITIES = {state: severity for severity, state in enumerate(State)}
 
 
 def worst_state(states: Iterable[State]) -> State:
-    """The gravest of some states; pass of none."""
-    return max(states, key=lambda state: state.severity, default=State.PASS)
+    """The gravest of some states; pass of none.
+
+    What is not judged counts only beside nothing that is: it says nothing of a mooring.
+    """
+    every = {*states}
+    judged = every - {State.NOT_JUDGED} or every
+    return max(judged, key=lambda state: state.severity, default=State.PASS)
 
 
 @dataclass(frozen=True)
@@ -238,5 +243,7 @@ def worst_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:
 
 
 def worst_of(findings: Iterable[Finding]) -> Finding:
-    """The first of those that are as bad as any."""
-    return min(findings, key=lambda one: one.rank)
+    """The first of those that are as bad as any; one that is not judged only if all are."""
+    found = [*findings]
+    judged = [one for one in found if one.state is not State.NOT_JUDGED]
+    return min(judged or found, key=lambda one: one.rank)

@@ -171,7 +171,12 @@ class LineTable(TableCells, can_focus=True):
         sign = Segment(" ", style)
         if row.spot in self.marked:
             sign = Segment(theme.MARK, style)
-        elif row.state is not None and row.state.value not in ("pass", "accepted", "estimated"):
+        elif row.state is not None and row.state.value not in (
+            "pass",
+            "not-judged",
+            "accepted",
+            "estimated",
+        ):
             colour = self.look(f"line-table--{row.state.value}")
             sign = Segment(row.state.sign, style + colour)
         cursor = theme.CURSOR if number == self.cursor else " "

@@ -94,12 +94,13 @@ def test_the_limits_of_the_file_are_used(tmp_path: Path) -> None:
 
 
 def test_without_a_plan_the_rule_is_not_judged(tmp_path: Path) -> None:
-    """It neither passes nor is it graver than what does."""
+    """It does not pass, and says nothing of the mooring as a whole."""
     mooring = load(shipped_folder("lines") / "cdms-1.yaml")
     (found,) = [one for one in check(mooring).all_findings() if one.rule == "planned-depth"]
     assert found.state is State.NOT_JUDGED and found.component is None
     assert found.value is found.limit is found.margin is None
-    assert worst_state([State.PASS, State.NOT_JUDGED]) is State.NOT_JUDGED
+    assert worst_state([State.NOT_JUDGED, State.PASS]) is State.PASS
+    assert worst_state([State.NOT_JUDGED]) is State.NOT_JUDGED
     order = [State.FAIL, State.UNKNOWN, State.WARN, State.ESTIMATED, State.ACCEPTED,
              State.NOT_JUDGED, State.PASS]  # fmt: skip
     assert sorted(State, key=lambda state: -state.severity) == order
