@@ -245,12 +245,6 @@ class ComponentRow:
         "purpose of the piece, such as float or instrument",
         of_part=lambda piece: piece.component.role,
     )
-    planned_depth: float = column(
-        "depth that the upper end is planned to have in still water; unknown without a plan",
-        _WITH_PLANS,
-        place=2,
-        of_part=lambda piece: _planned(piece),
-    )
     length: float = column(
         "length, stretched",
         FILES | LINE_TABLES,
@@ -281,6 +275,12 @@ class ComponentRow:
         found=lambda line: -line.bottom[:, 2],
         at_anchor=lambda end: end.seabed,
         attributes=_LEVEL,
+    )
+    planned_depth: float = column(
+        "depth that the upper end is planned to have in still water; unknown without a plan",
+        _WITH_PLANS,
+        place=2,
+        of_part=lambda piece: _planned(piece),
     )
     x_top: float = column(
         f"{_EAST}, of the upper end",

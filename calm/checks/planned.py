@@ -133,7 +133,9 @@ def _remedy(result: Result, parts: Sequence[PlannedPart], number: int) -> str:
     for part in reversed(parts[:number]) if above else parts[number + 1 :]:
         if abs(part.off - parts[number].off) > allowed:
             first, second = (part, last) if above else (last, part)
-            return f"Check the lengths between {first.row.label} and {second.row.label}."
+            clamps = any(isinstance(one.row, ClampRow) for one in (first, second))
+            what = "lengths and clamp places" if clamps else "lengths"
+            return f"Check the {what} between {first.row.label} and {second.row.label}."
         last = part
     if above:
         return f"Check the lengths above {last.row.label}, or its planned depth."

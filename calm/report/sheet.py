@@ -201,9 +201,8 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
     elif isinstance(result, NetResult):
         output, of_an_end = Output.NET_TABLE, "Depth, east and north"
         heads = {leg.file.legs[0].first: leg_title(leg) for leg in result.legs}
-    planned = any(
-        row.part.planned_depth is not None for row in (*result.components, *result.clamps)
-    )
+    plans = (*result.components.planned_depth, *result.clamps.planned_depth)
+    planned = not all(map(math.isnan, plans))
     figures = [one for one in table_columns(output) if planned or one.name != "planned_depth"]
     columns = [Column("no.", numeric=True, narrow=False), Column("piece", short="")]
     rows: list[tuple[Cell, ...]] = []

@@ -206,8 +206,8 @@ def test_every_column_says_what_it_is_and_how_it_is_found() -> None:
 def test_columns_are_named_as_files_of_others_know_them() -> None:
     """The contract: names may be added, none may go or change its meaning."""
     assert [one.name for one in Components.columns(Output.JSON)] == [
-        "index", "use", "label", "planned_depth", "length", "cut_length", "depth_top",
-        "depth_bottom", "x_top", "y_top", "x_bottom", "y_bottom", "tension_top", "tension_bottom",
+        "index", "use", "label", "length", "cut_length", "depth_top", "depth_bottom",
+        "planned_depth", "x_top", "y_top", "x_bottom", "y_bottom", "tension_top", "tension_bottom",
         "tilt", "knockdown", "safety_factor", "utilisation", "reynolds",
     ]  # fmt: skip
     assert [one.name for one in Clamps.columns(Output.JSON)] == [
@@ -221,8 +221,8 @@ def test_columns_are_named_as_files_of_others_know_them() -> None:
         "other_used_buoyancy",
     ]  # fmt: skip
     assert header() == (
-        "mooring", "part", "index", "use", "label", "planned_depth[m]", "length[m]",
-        "cut_length[m]", "depth_top[m]", "depth_bottom[m]", "x_top[m]", "y_top[m]",
+        "mooring", "part", "index", "use", "label", "length[m]", "cut_length[m]",
+        "depth_top[m]", "depth_bottom[m]", "planned_depth[m]", "x_top[m]", "y_top[m]",
         "x_bottom[m]", "y_bottom[m]", "tension_top[N]", "tension_bottom[N]",
         "tilt[deg]", "knockdown[m]",
         "safety_factor", "utilisation",

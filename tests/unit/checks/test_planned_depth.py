@@ -70,7 +70,7 @@ def test_a_wire_of_another_length_moves_what_is_above_it(
     assert before[0].value is not None  # 1.8 m too shallow
     assert after[0].value == pytest.approx(before[0].value + longer, abs=0.1)
     if state != "pass":
-        assert after[0].remedy == "Check the lengths between upper and middle."
+        assert after[0].remedy == "Check the lengths and clamp places between upper and middle."
 
 
 @pytest.mark.parametrize("deeper", [100.0, -80.0, 15.0])
