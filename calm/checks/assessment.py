@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from datetime import date
 from typing import TypeVar
 
-from calm.case import Mooring, Result
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
 from calm.checks.finding import AS_GIVEN, Finding, Rule, State, Verdict, worst_state
 from calm.checks.inventory import InventoryItem
 from calm.checks.recovery import Break, Loss, Recovery
@@ -17,7 +18,7 @@ from calm.errors import NoEquilibrium
 from calm.files import Accept, Clamp, MooringFile, Piece
 from calm.files.check_limits import LimitKey
 from calm.files.definition import EstimatedFigure
-from calm.files.mooring_file import parts_of
+from calm.files.pieces import parts_of
 from calm.files.rule_texts import RULES
 
 _Part = TypeVar("_Part", Piece, Clamp)
@@ -31,7 +32,7 @@ class Situation:
     """
 
     name: str
-    result: Result | None
+    result: LegResult | None
     failure: NoEquilibrium | None
 
 
@@ -42,7 +43,7 @@ class MooringInEnvironment:
     Attributes
     ----------
     environment : its name
-    mooring : in it
+    leg : of the design in it, which has as many of these as legs
     situations : what was solved, the first as given
     findings : all as given, and of the other situations those whose state is worse
     tighter : of each rule the finding of another situation that leaves less margin than all those
@@ -50,14 +51,14 @@ class MooringInEnvironment:
     """
 
     environment: str
-    mooring: Mooring
+    leg: Leg
     situations: tuple[Situation, ...]
     findings: tuple[Finding, ...]
     tighter: tuple[Finding, ...] = ()
     accepted: tuple[Finding, ...] = ()
 
     @property
-    def result(self) -> Result | None:
+    def result(self) -> LegResult | None:
         """As given; None where that has no equilibrium."""
         return self.situations[0].result
 
@@ -99,9 +100,9 @@ class Assessment:
         return f"{self.name}: {self.state} ({told})"
 
     @property
-    def mooring(self) -> Mooring:
-        """In its first environment."""
-        return self.stands[0].mooring
+    def file(self) -> MooringFile:
+        """The file, of several legs that of the first, in its first environment."""
+        return self.stands[0].leg.file
 
     def all_findings(self) -> Iterator[Finding]:
         """Return those of every environment, then those of launch, recovery and breaks."""
@@ -136,12 +137,12 @@ class Handling:
     be solved, and how it stands in its first environment; `result` is None without equilibrium.
     """
 
-    mooring: Mooring
+    leg: Leg
     launch: Launch | NoEquilibrium
     recovery: Recovery | NoEquilibrium
     backup: tuple[Break, ...]
     losses: tuple[Loss, ...] = ()
-    result: Result | None = None
+    result: LegResult | None = None
 
 
 @dataclass(frozen=True)
@@ -211,9 +212,9 @@ class Acceptance:
                 yield f"{what} is not needed: nothing there fails or is unknown"
 
 
-def estimated(mooring: Mooring) -> Mooring:
-    """Return the mooring with the low bounds of estimates for figures that are not given."""
-    file = mooring.file
+def estimated(leg: Leg) -> Leg:
+    """Return a leg with the low bounds of estimates for figures that are not given."""
+    file = leg.file
     pieces = tuple(
         _filled(piece.with_clamps(_filled))
         if any(part.component.estimates for part in parts_of([piece]))
@@ -221,15 +222,15 @@ def estimated(mooring: Mooring) -> Mooring:
         for piece in file.pieces
     )
     if pieces == file.pieces:
-        return mooring
+        return leg
     file = replace(file, pieces=pieces)
-    return Mooring(file, mooring.for_surface, mooring.memory, mooring.line, mooring.water)
+    return Leg(file, leg.for_surface, leg.memory, leg.line, leg.water)
 
 
-def estimated_result(result: Result) -> Result:
-    """Return a result whose mooring has the low bounds of estimates, as `estimated`."""
-    judged = estimated(result.mooring)
-    return result if judged is result.mooring else replace(result, mooring=judged)
+def estimated_result(result: LegResult) -> LegResult:
+    """Return a result whose leg has the low bounds of estimates, as `estimated`."""
+    judged = estimated(result.leg)
+    return result if judged is result.leg else replace(result, leg=judged)
 
 
 def _filled(part: _Part) -> _Part:

@@ -8,7 +8,7 @@ from math import isnan
 
 import numpy as np
 
-from calm.case import Result
+from calm.case.leg_result import LegResult
 from calm.case.result_tables import ClampRow, ComponentRow
 from calm.checks.assessment import Handling
 from calm.checks.criterion import cited
@@ -65,7 +65,7 @@ def planned_depth(handling: Handling) -> Iterator[Verdict]:
         yield from found
 
 
-def planned_parts(result: Result) -> list[PlannedPart]:
+def planned_parts(result: LegResult) -> list[PlannedPart]:
     """The pieces and clamps with a planned depth, down the line."""
     length = result.components.length
     above = np.cumsum(length) - length
@@ -102,7 +102,7 @@ def _verdict(file: MooringFile, part: PlannedPart, remedy: str) -> Verdict:
     return at_most(part.row, abs(off), most, f"{message}.", remedy, beyond, source)
 
 
-def _all_alike(result: Result, parts: Sequence[PlannedPart], worst: Verdict) -> Verdict:
+def _all_alike(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) -> Verdict:
     """One verdict on all parts, with the figures of the worst."""
     amounts = sorted((part.off for part in parts), key=abs)
     message = f"All {len(parts)} instruments with a planned depth hang "
@@ -122,7 +122,7 @@ def _amount(least: float, most: float) -> str:
     return f"{' to '.join(shown)} {way}"
 
 
-def _remedy(result: Result, parts: Sequence[PlannedPart], number: int) -> str:
+def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str:
     """Return which lengths to check: those between the parts that are off by the same amount and
     the next part in the direction of what holds them.
     """
@@ -142,7 +142,7 @@ def _remedy(result: Result, parts: Sequence[PlannedPart], number: int) -> str:
     return f"Check the lengths below {last.row.label} and `depth`, or its planned depth."
 
 
-def _hangs_from_above(result: Result, part: PlannedPart) -> bool:
+def _hangs_from_above(result: LegResult, part: PlannedPart) -> bool:
     """Whether lengths above a part determine its depth: below a float at the surface, and above a
     piece that is cut to fit a depth of the top.
     """

@@ -5,22 +5,22 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from calm.errors import about_quantity, shown, unknown
-from calm.files import components, logbook
+from calm.files import components, item_keys
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, Defined, define
 from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Anchor, Component, Flexible, Outline
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
-from calm.files.logbook import MOST_PIECES
-from calm.files.mooring_file import Clamp, Piece, Place, placed, unplanned
+from calm.files.item_keys import MOST_PIECES
+from calm.files.pieces import Clamp, Piece, Place, placed, unplanned
 from calm.files.planned_depth import named_depth
 from calm.files.rigid import Profiler, Rigid
 from calm.files.yaml_document import SourceMapping, unknown_key, validate
 from calm.units import QuantityError
 
 _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
-_ITEM_KEYS = frozenset(logbook.ItemKeys.model_fields)
+_ITEM_KEYS = frozenset(item_keys.ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
-_CLAMP_KEYS = frozenset(logbook.ClampKeys.model_fields)
+_CLAMP_KEYS = frozenset(item_keys.ClampKeys.model_fields)
 _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
@@ -87,7 +87,7 @@ class LineReader:
 
     def _item(self, item: SourceMapping) -> tuple[Piece, ...]:
         count = self._count(item)
-        logbook.check_counted(item, count)
+        item_keys.check_counted(item, count)
         entry = self._entry(item)
         definition = self._definition(entry, item, _ITEM_KEYS) if entry else None
         if entry is None or definition is None:
@@ -177,7 +177,7 @@ class LineReader:
             example = "{load: 2 kN, length: 480 m}"
             item.refuse(("length_at",), f"`length_at` must be as `{example}`")
             return math.nan, 0.0
-        measured = validate(logbook.LengthAt, item.child("length_at"))
+        measured = validate(item_keys.LengthAt, item.child("length_at"))
         if measured is None:
             return math.nan, 0.0
         breaking = component.breaking_load
@@ -238,11 +238,11 @@ class LineReader:
 
     def _equipment(
         self, item: SourceMapping, component: Component, *, clamped: bool
-    ) -> logbook.Equipment:
+    ) -> item_keys.Equipment:
         """Return what an item or a clamp says of the individual thing, with the depth that its
         label names unless it gives a `planned_depth`.
         """
-        equipment, label = logbook.read_equipment(item), item.data.get("label")
+        equipment, label = item_keys.read_equipment(item), item.data.get("label")
         if equipment.planned_depth is not None or not isinstance(label, str):
             return equipment
         serial = equipment.serial if isinstance(equipment.serial, str) else None

@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 from calm.case import load
-from calm.checks.assess import assessment_of, stand_of
+from calm.checks.design_check import check
 from calm.checks.finding import Finding, State, worst_state
-from calm.checks.net_check import check
 from calm.shipped import shipped_folder
 
 LINE = """\
@@ -35,9 +34,7 @@ def _found(
 ) -> list[Finding]:  # fmt: skip
     path = folder / "planned.yaml"
     path.write_text(LINE.format(depth=depth, upper=upper, lower=lower, checks=checks))
-    mooring = load(path)
-    assessment = assessment_of("planned", [stand_of(mooring, "planned")])
-    return [one for one in assessment.all_findings() if one.rule == "planned-depth"]
+    return [one for one in check(load(path)).all_findings() if one.rule == "planned-depth"]
 
 
 def test_the_depth_in_still_water_is_compared(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from calm.case import load
 from calm.errors import InputError
-from calm.files.mooring_file import parts_of
+from calm.files.pieces import parts_of
 from calm.files.planned_depth import depth_in_label
 
 
