@@ -188,7 +188,8 @@ EDITABLE: tuple[Column, ...] = ("component", "label", "count", "length")
 """The columns that a person fills, from the left."""
 
 _WORDS = ("leg", "component", "label")
-_WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "margin": 7}
+_WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "margin": 7,
+           "planned_depth": 7}  # fmt: skip
 _USUAL_WIDTH = 9
 _LEAST_TEXT, _WANTED_TEXT = 9, 12
 _MOST_COMPONENT, _MOST_LABEL, _MOST_LENGTH, _MOST_LEG = 30, 40, 13, 10
@@ -230,7 +231,9 @@ def layout_for(
     """
     heads = {name: "n" if name == "count" else name for name in ("leg", *EDITABLE)}
     figures = {one.name: _heading(one) for one in table_columns(Output.BUILDER)}
-    if not planned:
+    if planned:
+        figures["planned_depth"] = "planned"  # in the unit of the depth beside it
+    else:
         figures.pop("planned_depth")
     heads |= figures | {"margin": "margin"}
     shown = list(heads)[0 if leg else 1 :]
@@ -239,10 +242,11 @@ def layout_for(
     for name, head in figures.items():
         fixed[name] = max(_WIDTHS.get(name, _USUAL_WIDTH), len(head))
     others = [name for name in figures if name not in _WIDTHS]
-    for name in (*others, "margin", "tilt", "count", "tension", "depth"):
+    for name in (*others, "margin", "planned_depth", "tilt", "count", "tension", "depth"):
         if _text_room(shown, width, fixed) >= 2 * _WANTED_TEXT:
             break
-        shown.remove(name)
+        if name in shown:
+            shown.remove(name)
     room = max(_text_room(shown, width, fixed), 2 * _LEAST_TEXT)
     component = min(max(component, _LEAST_TEXT), _MOST_COMPONENT)
     component = min(component, room - min(max(label, _LEAST_TEXT), room // 2))
