@@ -342,6 +342,6 @@ def _beyond(rules: Sequence[Rule], evidence: object) -> set[Key]:
     return {
         (rule.name, verdict.place)
         for rule in rules
-        for verdict in rule.judge(evidence)
+        for verdict in (rule.counted or rule.judge)(evidence)
         if verdict.margin is not None and verdict.margin < 0.0
     }

@@ -162,6 +162,7 @@ class Rule:
     of_anchor : whether it judges the anchor, and nothing where a line has none
     once : whether it judges a `Handling`, once of a mooring
     situation : of what it judges once
+    counted : from the evidence to the verdicts counted in samples, if they differ from `judge`
     criteria : from a `Leg` to what is asked of it, where that can be counted in many profiles
     """
 
@@ -174,6 +175,7 @@ class Rule:
     criteria: Callable[[Any], Iterator[Any]] | None = None
     once: bool = False
     situation: str = AS_GIVEN
+    counted: Callable[[Any], Iterator[Any]] | None = None
 
     def find(
         self, verdict: Verdict, mooring: str, environment: str, situation: str = AS_GIVEN

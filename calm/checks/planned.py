@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isnan
 
 import numpy as np
@@ -39,30 +39,50 @@ class PlannedPart:
         return min(max(self.planned, self.least), self.most) - self.planned
 
 
-@rule("planned-depth", once=True)
-def planned_depth(handling: Handling) -> Iterator[Verdict]:
+def _judge(handling: Handling) -> Iterator[Verdict]:
     """Depth of each part in still water against its planned depth.
 
     Parts that are all off by the same amount are one finding: one figure is wrong for all of them.
     """
     if handling.result is None:
         return
-    file, parts = handling.result.file, planned_parts(handling.result)
+    parts, found = _judged(handling.result)
     if not parts:
         message = "No piece or clamp has a planned depth."
         remedy = "Give `planned_depth`, or name the depth in the label, as `meter 200 m`."
         yield verdict_on(None, State.NOT_JUDGED, message, remedy)
-        return
-    found = [
-        _verdict(file, part, _remedy(handling.result, parts, number))
-        for number, part in enumerate(parts)
-    ]
-    amounts = [part.off for part in parts]
-    alike = max(amounts) - min(amounts) <= file.checks.planned_depth_warning
-    if len(parts) > 1 and alike and any(one.state is not State.PASS for one in found):
+    elif _off_alike(handling.result, parts, found):
         yield _all_alike(handling.result, parts, min(found, key=lambda one: one.rank))
     else:
         yield from found
+
+
+def _counted(handling: Handling) -> Iterator[Verdict]:
+    """The verdict on each part, and that on all of them if they are off alike: a sample may have
+    other findings than the design.
+    """
+    if handling.result is not None:
+        yield from _judged(handling.result)[1]
+        yield from (one for one in _judge(handling) if one.place is None)
+
+
+planned_depth = replace(rule("planned-depth", once=True)(_judge), counted=_counted)
+
+
+def _judged(result: LegResult) -> tuple[list[PlannedPart], list[Verdict]]:
+    """The parts with a planned depth, and the verdict on each."""
+    parts = planned_parts(result)
+    return parts, [
+        _verdict(result.file, part, _remedy(result, parts, number))
+        for number, part in enumerate(parts)
+    ]
+
+
+def _off_alike(result: LegResult, parts: list[PlannedPart], found: list[Verdict]) -> bool:
+    """Whether several parts are all off by the same amount, and any of them by too much."""
+    amounts = [part.off for part in parts]
+    alike = max(amounts) - min(amounts) <= result.file.checks.planned_depth_warning
+    return len(parts) > 1 and alike and any(one.state is not State.PASS for one in found)
 
 
 def planned_parts(result: LegResult) -> list[PlannedPart]:

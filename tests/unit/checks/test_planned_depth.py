@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from calm.case import load
+from calm.checks.assess import with_probabilities
 from calm.checks.design_check import check
 from calm.checks.finding import Finding, State, worst_state
 from calm.shipped import shipped_folder
@@ -79,6 +80,17 @@ def test_all_off_by_one_amount_is_one_finding(deeper: float, tmp_path: Path) -> 
     assert found.message.startswith("All 3 instruments with a planned depth hang ")
     assert way in found.message
     assert found.remedy == "Check `depth`, and the lengths below lower."
+
+
+def test_probabilities_count_parts_whatever_the_others_do(tmp_path: Path) -> None:
+    """In most samples all parts are off alike, which is one finding there."""
+    _found(tmp_path)
+    path = tmp_path / "planned.yaml"
+    path.write_text(path.read_text() + "uncertainty: {depth: 3 %}\n")
+    assessment = with_probabilities(check(load(path)), 64, 1)
+    found = [one for one in assessment.findings if one.rule == "planned-depth"]
+    assert len(found) == 3
+    assert all(one.probability is not None and one.probability > 0.1 for one in found)
 
 
 def test_the_limits_of_the_file_are_used(tmp_path: Path) -> None:
