@@ -114,9 +114,9 @@ class Assessment:
 
     @property
     def state(self) -> State:
-        """The worst of all findings; pass where it is accepted."""
+        """The worst of all findings; pass where that is accepted or not judged."""
         worst = worst_state(finding.state for finding in self.all_findings())
-        return State.PASS if worst is State.ACCEPTED else worst
+        return State.PASS if worst in (State.ACCEPTED, State.NOT_JUDGED) else worst
 
     def accepted_findings(self) -> list[Finding]:
         """Return what is accepted, once for each rule and component, in the order of the rules."""
@@ -135,13 +135,16 @@ class Assessment:
 
 @dataclass(frozen=True)
 class Handling:
-    """Hold what the rules of launch, recovery and breaks look at, or why it could not be solved."""
+    """Hold what is judged once of a mooring: its launch, recovery and breaks, or why they could not
+    be solved, and how it stands in its first environment; `result` is None without equilibrium.
+    """
 
     leg: Leg
     launch: Launch | NoEquilibrium
     recovery: Recovery | NoEquilibrium
     backup: tuple[Break, ...]
     losses: tuple[Loss, ...] = ()
+    result: LegResult | None = None
 
 
 @dataclass(frozen=True)
