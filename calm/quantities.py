@@ -105,6 +105,7 @@ _USUAL = {
 
 _TABLE = (
     Quantity("depth", "depth", "m", "Depth below the still-water surface."),
+    Quantity("planned_depth", "planned", "m", "Depth planned in still water."),
     Quantity("height", "height", "m", "Height above the seabed."),
     Quantity("offset", "offset", "m", "Horizontal distance from the anchor."),
     Quantity("layback", "layback", "m", "Horizontal distance behind the tow point."),

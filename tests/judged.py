@@ -48,6 +48,7 @@ def unaccepting(name: str, folder: Path) -> Path:
     """A line of `lines/` that accepts nothing and may not move: some fails, some is unknown."""
     path = folder / name
     text, _, _ = (LINES / name).read_text(encoding="utf-8").partition("\nchecks:\n")
+    text = text.replace("label: swivel}", "label: swivel, estimate: []}")
     path.write_text(f"{text}\nchecks: {{maximum_excursion: 1 cm}}\n", encoding="utf-8")
     return path
 

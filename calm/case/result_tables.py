@@ -215,6 +215,11 @@ _EAST, _NORTH = "offset to the east of the anchor", "offset to the north of the 
 _IN_BATCHES = FILES | Output.BATCH
 _OF_PIECES = FILES & ~Output.NETCDF
 _OF_NODES = Output.JSON | Output.NETCDF
+_WITH_PLANS = Output.JSON | Output.CSV | Output.MOORING_TABLE | Output.NET_TABLE | Output.BUILDER
+
+
+def _planned(part: Piece | Clamp) -> float:
+    return nan if part.planned_depth is None else part.planned_depth
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,6 +275,12 @@ class ComponentRow:
         found=lambda line: -line.bottom[:, 2],
         at_anchor=lambda end: end.seabed,
         attributes=_LEVEL,
+    )
+    planned_depth: float = column(
+        "depth that the upper end is planned to have in still water; unknown without a plan",
+        _WITH_PLANS,
+        place=2,
+        of_part=lambda piece: _planned(piece),
     )
     x_top: float = column(
         f"{_EAST}, of the upper end",
@@ -409,6 +420,11 @@ class ClampRow:
         found=lambda held: -held.position[:, 2],
         at_anchor=lambda on: on.anchor.depth_top + on.clamp.at,
         attributes=_LEVEL,
+    )
+    planned_depth: float = column(
+        "depth planned for the clamped instrument in still water; unknown without a plan",
+        _WITH_PLANS,
+        of_part=lambda clamp: _planned(clamp),
     )
     x: float = column(
         f"{_EAST}, of the clamped instrument",

@@ -23,7 +23,15 @@ from calm.case.draws import Draw, checked_samples, drawn, draws_of, normals_of
 from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
 from calm.case.uncertain import BLOCK, Mapped
-from calm.checks import arrangement, catalogue_rules, handling, posture, situations, strength
+from calm.checks import (
+    arrangement,
+    catalogue_rules,
+    handling,
+    planned,
+    posture,
+    situations,
+    strength,
+)
 from calm.checks.assessment import (
     Acceptance,
     Assessment,
@@ -199,7 +207,7 @@ def handled(leg: Leg, result: LegResult) -> Handling:
     """Launch, recovery and breaks of a mooring that stands, or why one of them is not known."""
     launch = or_why_not(launch_of, leg)
     recovery = or_why_not(recovery_of, leg, result)
-    return Handling(leg, launch, recovery, breaks_of(leg), losses_of(leg))
+    return Handling(leg, launch, recovery, breaks_of(leg), losses_of(leg), result)
 
 
 def _handled(stand: MooringInEnvironment) -> Handling:
@@ -212,7 +220,7 @@ def _handled(stand: MooringInEnvironment) -> Handling:
     return Handling(leg, failure, failure, breaks_of(leg), losses_of(leg))
 
 
-_MODULES = (arrangement, catalogue_rules, handling, posture, situations, strength)
+_MODULES = (arrangement, catalogue_rules, handling, planned, posture, situations, strength)
 
 
 _ORDER = list(TEXTS)
@@ -334,6 +342,6 @@ def _beyond(rules: Sequence[Rule], evidence: object) -> set[Key]:
     return {
         (rule.name, verdict.place)
         for rule in rules
-        for verdict in rule.judge(evidence)
+        for verdict in (rule.counted or rule.judge)(evidence)
         if verdict.margin is not None and verdict.margin < 0.0
     }

@@ -6,12 +6,14 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import date
+from functools import partial
 from typing import TypeVar
 
 from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
 from calm.checks.finding import AS_GIVEN, Finding, Rule, State, Verdict, worst_state
 from calm.checks.inventory import InventoryItem
+from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss, Recovery
 from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
@@ -112,9 +114,9 @@ class Assessment:
 
     @property
     def state(self) -> State:
-        """The worst of all findings; pass where it is accepted."""
+        """The worst of all findings; pass where that is accepted or not judged."""
         worst = worst_state(finding.state for finding in self.all_findings())
-        return State.PASS if worst is State.ACCEPTED else worst
+        return State.PASS if worst in (State.ACCEPTED, State.NOT_JUDGED) else worst
 
     def accepted_findings(self) -> list[Finding]:
         """Return what is accepted, once for each rule and component, in the order of the rules."""
@@ -133,13 +135,16 @@ class Assessment:
 
 @dataclass(frozen=True)
 class Handling:
-    """Hold what the rules of launch, recovery and breaks look at, or why it could not be solved."""
+    """Hold what is judged once of a mooring: its launch, recovery and breaks, or why they could not
+    be solved, and how it stands in its first environment; `result` is None without equilibrium.
+    """
 
     leg: Leg
     launch: Launch | NoEquilibrium
     recovery: Recovery | NoEquilibrium
     backup: tuple[Break, ...]
     losses: tuple[Loss, ...] = ()
+    result: LegResult | None = None
 
 
 @dataclass(frozen=True)
@@ -210,16 +215,20 @@ class Acceptance:
 
 
 def estimated(leg: Leg) -> Leg:
-    """Return a leg with the low bounds of estimates for figures that are not given."""
+    """Return a leg with the low bounds of estimates for figures that are not given.
+
+    Waves move it where its environment has them, or its float is at the surface.
+    """
     file = leg.file
+    if not any(part.component.estimates for part in parts_of(file.pieces)):
+        return leg
+    filled = partial(_filled, file.environment.waves is not None or reaches_the_surface(leg))
     pieces = tuple(
-        _filled(piece.with_clamps(_filled))
+        filled(piece.with_clamps(filled))
         if any(part.component.estimates for part in parts_of([piece]))
         else piece
         for piece in file.pieces
     )
-    if pieces == file.pieces:
-        return leg
     file = replace(file, pieces=pieces)
     return Leg(file, leg.for_surface, leg.memory, leg.line, leg.water)
 
@@ -230,6 +239,7 @@ def estimated_result(result: LegResult) -> LegResult:
     return result if judged is result.leg else replace(result, leg=judged)
 
 
-def _filled(part: _Part) -> _Part:
-    low = {name: one.low for name, one in part.component.estimates.items()}
+def _filled(in_waves: bool, part: _Part) -> _Part:
+    estimates = part.component.estimates
+    low = {name: one.bound(in_waves=in_waves) for name, one in estimates.items()}
     return replace(part, component=part.component.model_copy(update=low)) if low else part

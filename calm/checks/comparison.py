@@ -215,7 +215,7 @@ def _margins(designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
     ]
     for rule in RULES.values():
         sides = [each.get(rule.name) for each in worst]
-        if sides != [None, None]:
+        if {one.state for one in sides if one} - {State.NOT_JUDGED}:
             before, after = (
                 (one.margin, one.state) if one else (None, State.PASS) for one in sides
             )

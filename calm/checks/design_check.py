@@ -26,6 +26,7 @@ from calm.checks.finding import AS_GIVEN, OWN
 from calm.checks.handling import backup
 from calm.checks.inventory import inventory_of
 from calm.checks.leg_graph import LegGraph
+from calm.checks.planned import planned_depth, planned_parts
 from calm.errors import NoEquilibrium
 from calm.files.legs import stand_in_anchor
 from calm.files.mooring_file import refuse_tow
@@ -125,6 +126,9 @@ def assessment_of(
         alone = Handling(estimated(stand.leg), _NOT_SOLVED, _NOT_SOLVED, ())
         once += [(each, each.judge(alone), stand.environment)
                  for each in (swivel, clamp_place, metals)]  # fmt: skip
+    for result in [each for each in found if planned_parts(each)] or found[:1]:
+        alone = Handling(estimated(result.leg), _NOT_SOLVED, _NOT_SOLVED, (), result=result)
+        once.append((planned_depth, planned_depth.judge(alone), first))
     waters = {stand.leg.file.environment.name: stand.leg for stand in stands}
     findings = list(assess.findings_of_currents(list(waters.values()), name, acceptance))
     for rule, verdicts, environment in once:

@@ -25,12 +25,14 @@ ON_THE_WAY = "launch, recovery, breaks"
 class State(StrEnum):
     """Tell how a rule judges, the least grave first.
 
-    Unknown, where a figure that the rule needs is missing, is graver than a warning: it may be a
-    failure. Accepted is a failure or an unknown that the design accepts with a reason; estimated
-    passes by the low bound of an `estimate`, and not by a figure that anyone prints.
+    Not judged is a rule without a limit or a plan to judge by. Unknown, where a figure that the
+    rule needs is missing, is graver than a warning: it may be a failure. Accepted is a failure or
+    an unknown that the design accepts with a reason; estimated passes by the low bound of an
+    `estimate`, and not by a figure that anyone prints.
     """
 
     PASS = "pass"
+    NOT_JUDGED = "not-judged"
     ACCEPTED = "accepted"
     ESTIMATED = "estimated"
     WARN = "warn"
@@ -45,15 +47,20 @@ class State(StrEnum):
     @property
     def sign(self) -> str:
         """Return what stands before a verdict or after a figure, legible without colour."""
-        return "✓◦≈~?!"[self.severity]
+        return "✓–◦≈~?!"[self.severity]
 
 
 _SEVERITIES = {state: severity for severity, state in enumerate(State)}
 
 
 def worst_state(states: Iterable[State]) -> State:
-    """The gravest of some states; pass of none."""
-    return max(states, key=lambda state: state.severity, default=State.PASS)
+    """The gravest of some states; pass of none.
+
+    What is not judged counts only beside nothing that is: it says nothing of a mooring.
+    """
+    every = {*states}
+    judged = every - {State.NOT_JUDGED} or every
+    return max(judged, key=lambda state: state.severity, default=State.PASS)
 
 
 @dataclass(frozen=True)
@@ -65,7 +72,7 @@ class Verdict:
     component, place : label and place of a piece or a clamp; None of the mooring as a whole
     value, limit : SI units and degrees; None where unknown
     margin : how far the value keeps within the limit, in its unit, negative where it does not
-    state : pass, accepted, warn, unknown or fail
+    state : of the rule on it
     message : what was found, with both figures
     remedy : what to change; None where nothing need be
     source : of the limit, where it is not that of the rule
@@ -155,6 +162,7 @@ class Rule:
     of_anchor : whether it judges the anchor, and nothing where a line has none
     once : whether it judges a `Handling`, once of a mooring
     situation : of what it judges once
+    counted : from the evidence to the verdicts counted in samples, if they differ from `judge`
     criteria : from a `Leg` to what is asked of it, where that can be counted in many profiles
     """
 
@@ -167,6 +175,7 @@ class Rule:
     criteria: Callable[[Any], Iterator[Any]] | None = None
     once: bool = False
     situation: str = AS_GIVEN
+    counted: Callable[[Any], Iterator[Any]] | None = None
 
     def find(
         self, verdict: Verdict, mooring: str, environment: str, situation: str = AS_GIVEN
@@ -236,5 +245,7 @@ def worst_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:
 
 
 def worst_of(findings: Iterable[Finding]) -> Finding:
-    """The first of those that are as bad as any."""
-    return min(findings, key=lambda one: one.rank)
+    """The first of those that are as bad as any; one that is not judged only if all are."""
+    found = [*findings]
+    judged = [one for one in found if one.state is not State.NOT_JUDGED]
+    return min(judged or found, key=lambda one: one.rank)

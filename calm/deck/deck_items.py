@@ -62,6 +62,11 @@ class DeckItem:
         return self.part.component.name or self.part.use
 
     @property
+    def planned_depth(self) -> float | None:
+        """Depth planned in still water [m]; None without a plan."""
+        return self.part.planned_depth
+
+    @property
     def hardware(self) -> str:
         """Return the name of a connector in short, as people write it: `13 shackle`."""
         sized = _SIZED.fullmatch(self.part.use)

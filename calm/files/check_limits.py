@@ -142,6 +142,16 @@ class Checks(definition.Model):
     ] = definition.optional(
         "least depth of the top of a sub-surface line, at low water too", "10 m"
     )
+    planned_depth_warning: Annotated[float, definition.LENGTH, Limit()] = definition.described(
+        "distance from the planned depth beyond which the check warns, unless 2 % of that is more",
+        "10 m",
+        default=10.0,
+    )
+    planned_depth_limit: Annotated[float, _SHARE, Limit()] = definition.described(
+        "distance from the planned depth, as a share of it, beyond which the check fails",
+        "10 %",
+        default=0.1,
+    )
     fishbite_depth: Annotated[float, definition.LENGTH, Limit(_BERTEAUX)] = definition.described(
         "depth down to which fish bite synthetic rope; 0 m for nowhere", "1500 m", default=1000.0
     )

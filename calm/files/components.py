@@ -302,8 +302,11 @@ class Outline(definition.Definition):
 
     def asks(self, id: str) -> str:
         """Return what a line is to give, for people."""
-        keys = ", ".join(f"`{key}`" for key in self.lacks)
+        given = self.model_dump(exclude_none=True)
+        also = [key for key in self.searched or () if key not in (*given, *self.lacks)]
+        keys, judged = (", ".join(f"`{key}`" for key in each) for each in (self.lacks, also))
         said = f"no source prints {keys} of `{id}`: measure or ask the maker, and give it here"
+        said += f", with {judged} for the design check" if judged else ""
         return f"{said} (the rest is from: {self.source})" if self.source else said
 
 

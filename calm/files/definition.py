@@ -7,7 +7,7 @@ gravity.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -172,31 +172,63 @@ def _alone_or_listed(schema: dict[str, Any]) -> None:
 
 
 class EstimatedFigure(Model):
-    """Say what a figure that nobody prints is taken as: of its class, and at least `low`."""
+    """Estimate of a figure that no source prints, from its class: at least `low`.
+
+    A figure that its source prints for steady loads alone has a lesser bound for a line that waves
+    move, `low_in_waves`.
+    """
 
     quantity: Literal[
         "working_load", "breaking_load", "opening_load", "grip", "max_tilt", "depth_rating"
     ] = described("the figure that is estimated", "working_load")
-    value: Annotated[float, WithJsonSchema(_ANY_QUANTITY)] = described("best estimate", "20 kN")
+    value: Annotated[float | None, WithJsonSchema(_ANY_QUANTITY)] = optional(
+        "best estimate, where there is one", "20 kN"
+    )
     low: Annotated[float, WithJsonSchema(_ANY_QUANTITY)] = described(
         "lower bound, by which it is judged", "12 kN"
     )
+    low_in_waves: Annotated[float | None, WithJsonSchema(_ANY_QUANTITY)] = optional(
+        "lower bound for a line that waves move, where it is less than `low`", "8 kN"
+    )
+    quality: Literal["high", "medium", "low"] | None = optional(
+        "how far its source holds for the item: high, its maker prints the alternatives; medium, "
+        "an owner's list or use at that depth; low, a similar item, or derived",
+        "low",
+    )
     source: Text = described("where the figures come from", "the chain it hangs on")
 
-    @field_validator("value", "low", mode="plain")
+    @field_validator("value", "low", "low_in_waves", mode="plain")
     @classmethod
     def _quantity(cls, text: object, info: ValidationInfo) -> float:
         return _estimated(info.data.get("quantity", "")).read(text)
 
+    def bound(self, *, in_waves: bool) -> float:
+        """Return the lower bound of a line that waves move, or of one that they do not."""
+        return self.low_in_waves if in_waves and self.low_in_waves is not None else self.low
+
+    def in_words(self, said: Callable[[float], str]) -> str:
+        """Return the bounds, the best estimate, the source and its quality, each figure `said`."""
+        waves = self.low_in_waves
+        figures = (
+            f"{said(self.low)} at least",
+            f"{said(waves)} in waves" if waves is not None else "",
+            f"{said(self.value)} likely" if self.value is not None else "",
+        )
+        quality = f", quality {self.quality}" if self.quality is not None else ""
+        return f"{', '.join(filter(None, figures))} ({self.source}{quality})"
+
     def __str__(self) -> str:
         unit = DIMENSIONS[_estimated(self.quantity).dimension].unit
-        low, value = with_unit(self.low, unit), with_unit(self.value, unit)
-        return f"`{self.quantity}` is estimated: {low} at least, {value} ({self.source})"
+        return f"`{self.quantity}` is estimated: {self.in_words(lambda one: with_unit(one, unit))}"
 
     @model_validator(mode="after")
     def _low_is_least(self) -> EstimatedFigure:
-        if self.low > self.value:
+        if self.value is not None and self.low > self.value:
             raise ValueError(f"`low` is {self.low:g}, above the `value` of {self.value:g}")
+        if self.low_in_waves is not None and self.low_in_waves > self.low:
+            raise ValueError(
+                f"`low_in_waves` is {self.low_in_waves:g}, above the `low` of {self.low:g}"
+            )
         return self
 
 

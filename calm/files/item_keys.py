@@ -17,7 +17,7 @@ class Equipment(definition.Model):
     """Hold what the file says of the individual thing at a place of the line.
 
     `serial` is a text, or as many as the `count` of the item; of an item, one of it is chosen for
-    each piece.
+    each piece. As read, `planned_depth` also holds a depth that the label names.
     """
 
     serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
@@ -33,6 +33,14 @@ class Equipment(definition.Model):
     termination: Text | None = optional(
         "how the ends of a cable are made, e.g. swaged sockets", "swaged sockets"
     )
+    planned_depth: Annotated[float | None, definition.LENGTH] = optional(
+        "depth it is planned to hang at in still water; unless given, the depth in its label",
+        "200 m",
+    )
+
+    def planned_for(self, depth: float | None) -> Equipment:
+        """Return the equipment with another planned depth [m]."""
+        return self.model_copy(update={"planned_depth": depth})
 
     def of(self, repeat: int) -> Equipment:
         """Return the equipment of one of a count, from 0."""
@@ -108,8 +116,10 @@ def read_equipment(item: SourceMapping) -> Equipment:
     return validate(Equipment, item.holding(given)) or NO_EQUIPMENT
 
 
-def check_serials(item: SourceMapping, count: int) -> None:
-    """Check that serial numbers given as a list are as many as the item, and its clamps, count."""
+def check_counted(item: SourceMapping, count: int) -> None:
+    """Check that serial numbers given as a list are as many as the item, and its clamps, count,
+    and that one planned depth is not given for several pieces.
+    """
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]
     for place, data in [((), item.data), *below]:
@@ -117,6 +127,9 @@ def check_serials(item: SourceMapping, count: int) -> None:
         if _is_list(serials) and len(serials) != count:
             message = f"`serial` has {len(serials)} numbers for a count of {count}"
             item.refuse((*place, "serial"), message)
+        if isinstance(data, dict) and "planned_depth" in data and count > 1:
+            message = f"`planned_depth` is of one piece; this item counts {count}: list them"
+            item.refuse((*place, "planned_depth"), message, key=True)
 
 
 def _is_list(value: object) -> TypeGuard[Sequence[object]]:

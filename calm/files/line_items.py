@@ -11,7 +11,8 @@ from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Anchor, Component, Flexible, Outline
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.item_keys import MOST_PIECES
-from calm.files.pieces import Clamp, Piece, Place, placed
+from calm.files.pieces import Clamp, Piece, Place, placed, unplanned
+from calm.files.planned_depth import named_depth
 from calm.files.rigid import Profiler, Rigid
 from calm.files.yaml_document import SourceMapping, unknown_key, validate
 from calm.units import QuantityError
@@ -86,7 +87,7 @@ class LineReader:
 
     def _item(self, item: SourceMapping) -> tuple[Piece, ...]:
         count = self._count(item)
-        item_keys.check_serials(item, count)
+        item_keys.check_counted(item, count)
         entry = self._entry(item)
         definition = self._definition(entry, item, _ITEM_KEYS) if entry else None
         if entry is None or definition is None:
@@ -100,6 +101,8 @@ class LineReader:
         if len(once) * count > MOST_PIECES:
             item.refuse(("count",), f"{count} times makes more than {MOST_PIECES} pieces")
             return ()
+        if count > 1:  # several do not hang at one depth
+            once = tuple(map(unplanned, once))
         number = item.location[-1]
         assert isinstance(number, int)  # its place in a list
         first = 0 if isinstance(definition, Assembly) else -1
@@ -164,7 +167,7 @@ class LineReader:
             column=place.column,
             place=Place(0),
             fit_body_depth=fit_depth if self._towed else None,
-            equipment=item_keys.read_equipment(item),
+            equipment=self._equipment(item, component, clamped=False),
             measured_load=load,
         )
 
@@ -225,13 +228,26 @@ class LineReader:
             if isinstance(component, Rigid) and at is not None:
                 self._tell_of_mass(clamp.data["use"], component)
                 where = Place(0, clamp=len(clamps))
-                own = item_keys.read_equipment(clamp)
+                own = self._equipment(clamp, component, clamped=True)
                 label = self._label(clamp)
                 clamps.append(Clamp(clamp.data["use"], label, component, at, where, own))
             elif component is not None and at is not None:
                 message = f"a component of kind {component.kind} cannot be clamped on a line"
                 clamp.refuse(("use",), message)
         return tuple(clamps)
+
+    def _equipment(
+        self, item: SourceMapping, component: Component, *, clamped: bool
+    ) -> item_keys.Equipment:
+        """Return what an item or a clamp says of the individual thing, with the depth that its
+        label names unless it gives a `planned_depth`.
+        """
+        equipment, label = item_keys.read_equipment(item), item.data.get("label")
+        if equipment.planned_depth is not None or not isinstance(label, str):
+            return equipment
+        serial = equipment.serial if isinstance(equipment.serial, str) else None
+        named = named_depth(label, component, serial, clamped=clamped)
+        return equipment if named is None else equipment.planned_for(named)
 
     def _assembly(self, entry: CatalogueEntry, item: SourceMapping) -> tuple[Piece, ...]:
         """Return the pieces of an assembly, all at the place of the item that uses it."""

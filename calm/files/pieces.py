@@ -83,6 +83,11 @@ class Clamp:
         """Return the serial number of this instrument, where the file gives it."""
         return _serial(self.equipment)
 
+    @property
+    def planned_depth(self) -> float | None:
+        """Depth it is planned to hang at in still water [m]; None without a plan."""
+        return self.equipment.planned_depth
+
 
 @dataclass(frozen=True)
 class Piece:
@@ -124,6 +129,11 @@ class Piece:
         """Return the serial number of this piece, where the file gives it."""
         return _serial(self.equipment)
 
+    @property
+    def planned_depth(self) -> float | None:
+        """Depth its upper end is planned to hang at in still water [m]; None without a plan."""
+        return self.equipment.planned_depth
+
     def with_clamps(self, changed: Callable[[Clamp], Clamp], **own: Any) -> Piece:
         """Return the piece with each of its clamps changed, and with other fields of its own."""
         return replace(self, clamps=tuple(map(changed, self.clamps)), **own)
@@ -142,6 +152,15 @@ def placed(piece: Piece, place: Place) -> Piece:
         return replace(clamp, place=own, equipment=clamp.equipment.of(place.repeat))
 
     return piece.with_clamps(moved, place=place, equipment=piece.equipment.of(place.repeat))
+
+
+def unplanned(piece: Piece) -> Piece:
+    """Take the planned depths from a piece and its clamps."""
+
+    def without(clamp: Clamp) -> Clamp:
+        return replace(clamp, equipment=clamp.equipment.planned_for(None))
+
+    return piece.with_clamps(without, equipment=piece.equipment.planned_for(None))
 
 
 def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:

@@ -91,6 +91,14 @@ RULES = {
         "least depth of the top of a sub-surface line, at low water too",
         "`minimum_top_depth`: a failure; where it is not given, 10 m: a warning",
         "A default of this program: clear of waves, hulls and nets"),
+    "planned-depth": RuleText("Planned depth", "depth",
+        "distance of every piece and clamp with a `planned_depth`, or with a depth in its label, "
+        "from that depth in still water",
+        "`planned_depth_warning`, 10 m, or 2 % of the planned depth if that is more: a warning; "
+        "`planned_depth_limit`, 10 % of it: a failure; not judged without any planned depth",
+        "A default of this program: an instrument that hangs elsewhere than planned measures "
+        "another water, or a length or the depth is wrong",
+        _ONCE),
     "stretch": RuleText("Stretch", "length",
         "synthetic ropes without `stiffness` or `elongation`; the load of a `length_at`",
         "unknown where published stiffnesses of such ropes let it stretch by more than 2 % of the "

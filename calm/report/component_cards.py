@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from typing import Any
 
 from pydantic import BaseModel
@@ -185,8 +186,8 @@ def _text(name: str, value: Any) -> str:
     if isinstance(value, float) and name in QUANTITIES:
         return QUANTITIES[name].figure(value)
     if isinstance(value, EstimatedFigure):
-        low, figure = (_text(value.quantity, each) for each in (value.low, value.value))
-        return f"{_heading(value.quantity)} at least {low}, {figure} likely: {value.source}"
+        said = value.in_words(partial(_text, value.quantity))
+        return f"{_heading(value.quantity)} {said}"
     if isinstance(value, BaseModel):
         value = value.model_dump(exclude_none=True)
     if isinstance(value, Mapping):

@@ -95,9 +95,10 @@ _COLUMNS = {
     """,
     "instruments": """
         label=item.label use=item.part.use name=item.name serial=item.serial clamped_on=item.on
-        depth[m]=item.depth still_depth[m]=still least_depth[m]=shallowest.depth
-        least_in=shallowest.environment greatest_depth[m]=deepest.depth
-        greatest_in=deepest.environment greatest_tilt[deg]=greatest_tilt
+        depth[m]=item.depth still_depth[m]=still planned_depth[m]=item.planned_depth
+        least_depth[m]=shallowest.depth least_in=shallowest.environment
+        greatest_depth[m]=deepest.depth greatest_in=deepest.environment
+        greatest_tilt[deg]=greatest_tilt
         warn_tilt[deg]=item.part.component.warn_tilt max_tilt[deg]=item.part.component.max_tilt
         sampling=item.part.equipment.sampling battery_until=item.part.equipment.battery_until
         calibrated=item.part.equipment.calibrated
@@ -110,7 +111,7 @@ _COLUMNS = {
     "lifts": "stage= index label lift_mass[kg]=mass lift_weight[N]=weight hanging[N]",
     "deployment": """
         number= index label use=part.use name serial clamped_on=on at[m] cut_length[m] depth[m]
-        height[m] time_over=- remarks=- checked=-
+        planned_depth[m] height[m] time_over=- remarks=- checked=-
     """,
     "recovery": """
         number= index=item.index label=item.label use=item.part.use name=item.name

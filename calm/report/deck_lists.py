@@ -207,6 +207,7 @@ def _stages(deck: Deck) -> blocks.Table:
 def instruments_part(deck: Deck) -> ReportPart:
     """Every instrument and release: where it hangs, and what the file says of it."""
     several, legs = len(deck.environments) > 1, leg_titles(deck.result)
+    planned = any(one.item.planned_depth is not None for one in deck.instruments)
     rows: list[Any] = []
     for name, own in deck.by_leg(deck.instruments, lambda one: one.item.index):
         rows += [*([Cell(legs[name], strong=True)] if name else []), *own]
@@ -242,6 +243,7 @@ def instruments_part(deck: Deck) -> ReportPart:
         words("serial number", "item.serial", 0.8),
         quantity("depth", "item.depth", "depth"),
         quantity("depth", "still", "still\nwater"),
+        *([quantity("planned_depth", "item.planned_depth")] if planned else []),
         *([extreme("least", "shallowest"), extreme("greatest", "deepest")] if several else []),
         number("tilt", lambda one: QUANTITIES["tilt"].format(one.greatest_tilt), "°"),
         number("limit", limits, "°"),

@@ -9,7 +9,18 @@ from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
 from calm.report.anchor_sheets import whereabouts
-from calm.report.blocks import Block, Cell, Prose, ReportPart, Table, blank, number, table_of, words
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Prose,
+    ReportPart,
+    Table,
+    blank,
+    number,
+    quantity,
+    table_of,
+    words,
+)
 from calm.report.provenance import position_text
 from calm.report.sheet import leg_titles
 
@@ -191,6 +202,7 @@ def _releases(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
 
 def _over_the_side(deck: Deck) -> list[Table]:
     order = {id(one): number for number, one in enumerate(deck.deployment, 1)}
+    planned = any(one.planned_depth is not None for one in deck.deployment)
 
     def length(row: DeckRow) -> str:
         first = row.first
@@ -198,11 +210,16 @@ def _over_the_side(deck: Deck) -> list[Table]:
             return placed(row.items, deck)
         return "\n".join(filter(None, (row.lengths, placed(row.floats, deck))))
 
-    unit = QUANTITIES["length"].display_unit
+    def plan(row: DeckRow) -> str:
+        depth = row.first.planned_depth
+        return "" if depth is None else QUANTITIES["planned_depth"].format(depth)
+
+    unit, deep = QUANTITIES["length"].display_unit, QUANTITIES["depth"].display_unit
     fields = (
         number("no.", lambda row: _numbers(row, order)),
         words("piece", _piece, 3.8),
         words("length,\nor place", length, 1.3, unit=unit),
+        *([quantity("depth", "first.depth"), number("planned", plan, deep)] if planned else []),
         words("serial\nnumber", "first.serial", 0.7),
         blank("over", "UTC", 0.6),
         blank("remarks"),

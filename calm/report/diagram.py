@@ -11,7 +11,7 @@ from calm.case.leg_result import LegResult
 from calm.deck import Deck
 from calm.drawing import schematic
 from calm.drawing.schematic import FONT, HEAD, LEADING, PlacedPart, placed
-from calm.drawing.schematic.deck_parts import parts_of
+from calm.drawing.schematic.deck_parts import has_plans, parts_of
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
 from calm.drawing.schematic.symbols import LINES, Sign, draw_cable, figure_of
@@ -22,6 +22,7 @@ from calm.report.sheet import ends_told, leg_title
 
 _HEADINGS = (
     (("cut,", "or place"), "length"), (("stretched",), "length"), (("depth",), "depth"),
+    (("planned",), "planned_depth"),
     (("above", "seabed"), "height"), (("tension",), "tension"),
     (("net", "buoyancy"), "wet_weight"),
 )  # fmt: skip
@@ -101,7 +102,8 @@ class _Diagram:
         parts = [part for leg in legs for part in leg]
         self.title, self.paper, self.fields = one_line(deck.file.name), paper, _fields(deck, paper)
         self.bottom = paper.size[1] - _MARGIN - sum(map(_height, self.fields))
-        headings = [(*words, QUANTITIES[name].display_unit) for words, name in _HEADINGS]
+        headings = [(*words, QUANTITIES[name].display_unit) for words, name in _HEADINGS
+                    if name != "planned_depth" or has_plans(deck)]  # fmt: skip
         rows = (row for part in parts for row in part.rows)
         self.column = column = schematic.column_of(rows, headings, paper.column_width)
         self.legend = tuple({part.sign.symbol: part.sign for part in parts}.values())

@@ -197,7 +197,9 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
     elif result.several:
         output, of_an_end = Output.NET_TABLE, "Depth, east and north"
         heads = {leg.leg.keys.first: leg_title(leg) for leg in result.legs}
-    figures = table_columns(output)
+    plans = (*result.components.planned_depth, *result.clamps.planned_depth)
+    planned = not all(map(math.isnan, plans))
+    figures = [one for one in table_columns(output) if planned or one.name != "planned_depth"]
     columns = [Column("no.", numeric=True, narrow=False), Column("piece", short="")]
     rows: list[tuple[Cell, ...]] = []
     for number, (piece, clamps) in enumerate(rows_down(result)):

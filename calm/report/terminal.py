@@ -18,8 +18,8 @@ from calm.report import blocks
 from calm.report.blocks import Block, Cell, Column, Heading, Line, Pairs, Prose, ReportPart, Table
 
 _STYLES = {
-    State.PASS: "green", State.ACCEPTED: "", State.ESTIMATED: "green", State.WARN: "yellow",
-    State.UNKNOWN: "bold", State.FAIL: "bold red",
+    State.PASS: "green", State.NOT_JUDGED: "", State.ACCEPTED: "", State.ESTIMATED: "green",
+    State.WARN: "yellow", State.UNKNOWN: "bold", State.FAIL: "bold red",
 }  # fmt: skip
 """How a state looks; its word or its mark shows it without colour."""
 _QUIET = "dim"

@@ -63,8 +63,8 @@ edit_column('label') | n | label |  | Edit its label.
 edit_column('count') | equals_sign,asterisk | count |  | Edit its count.
 screen.change_component | O | change component |  | Change the component of the row, one of the
   file's own, in its form.
-equipment | N | serial number |  | Serial number, calibration, sampling, battery and termination
-  of the row.
+equipment | N | serial number |  | Serial number, calibration, sampling, battery, termination
+  and planned depth of the row.
 find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
 find_next(1) | greater_than_sign,f3 | find next |  | To the next row that has them.
 find_next(-1) | less_than_sign | find last |  | To the one before.

@@ -78,7 +78,8 @@ class LineTable(TableCells, can_focus=True):
         if self._arranged[0] != width:
             names = ("component", "label", "length", "leg")
             longest = (self._longest(name) for name in names)
-            self._arranged = (width, layout_for(width, *longest))
+            planned = any("planned_depth" in row.texts for row in self.rows)
+            self._arranged = (width, layout_for(width, *longest, planned=planned))
         return self._arranged[1]
 
     def _longest(self, column: str) -> int:
@@ -170,7 +171,12 @@ class LineTable(TableCells, can_focus=True):
         sign = Segment(" ", style)
         if row.spot in self.marked:
             sign = Segment(theme.MARK, style)
-        elif row.state is not None and row.state.value not in ("pass", "accepted", "estimated"):
+        elif row.state is not None and row.state.value not in (
+            "pass",
+            "not-judged",
+            "accepted",
+            "estimated",
+        ):
             colour = self.look(f"line-table--{row.state.value}")
             sign = Segment(row.state.sign, style + colour)
         cursor = theme.CURSOR if number == self.cursor else " "
@@ -182,7 +188,8 @@ EDITABLE: tuple[Column, ...] = ("component", "label", "count", "length")
 """The columns that a person fills, from the left."""
 
 _WORDS = ("leg", "component", "label")
-_WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "margin": 7}
+_WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "margin": 7,
+           "planned_depth": 7}  # fmt: skip
 _USUAL_WIDTH = 9
 _LEAST_TEXT, _WANTED_TEXT = 9, 12
 _MOST_COMPONENT, _MOST_LABEL, _MOST_LENGTH, _MOST_LEG = 30, 40, 13, 10
@@ -210,6 +217,8 @@ def layout_for(
     label: int = _MOST_LABEL,
     length: int = 0,
     leg: int = 0,
+    *,
+    planned: bool = False,
 ) -> tuple[TableColumn, ...]:
     """The columns of a table as wide as this, those least needed left out where it is narrow.
 
@@ -218,9 +227,14 @@ def layout_for(
     component, label : cells of the longest text in these columns, which share what is left
     length : cells of the longest length
     leg : cells of the longest name of a leg of a net; none of a line
+    planned : whether any row has a planned depth
     """
     heads = {name: "n" if name == "count" else name for name in ("leg", *EDITABLE)}
     figures = {one.name: _heading(one) for one in table_columns(Output.BUILDER)}
+    if planned:
+        figures["planned_depth"] = "planned"  # in the unit of the depth beside it
+    else:
+        figures.pop("planned_depth")
     heads |= figures | {"margin": "margin"}
     shown = list(heads)[0 if leg else 1 :]
     fixed = _WIDTHS | {"length": min(max(length, _WIDTHS["length"]), _MOST_LENGTH)}
@@ -228,10 +242,11 @@ def layout_for(
     for name, head in figures.items():
         fixed[name] = max(_WIDTHS.get(name, _USUAL_WIDTH), len(head))
     others = [name for name in figures if name not in _WIDTHS]
-    for name in (*others, "margin", "tilt", "count", "tension", "depth"):
+    for name in (*others, "margin", "planned_depth", "tilt", "count", "tension", "depth"):
         if _text_room(shown, width, fixed) >= 2 * _WANTED_TEXT:
             break
-        shown.remove(name)
+        if name in shown:
+            shown.remove(name)
     room = max(_text_room(shown, width, fixed), 2 * _LEAST_TEXT)
     component = min(max(component, _LEAST_TEXT), _MOST_COMPONENT)
     component = min(component, room - min(max(label, _LEAST_TEXT), room // 2))
@@ -247,8 +262,9 @@ def layout_for(
 
 def _heading(figure: ResultColumn) -> str:
     """The head of a column of what is solved, with its unit."""
-    unit = "" if figure.quantity is None else figure.quantity.display_unit
-    return f"{figure.name} {unit}".rstrip()
+    if figure.quantity is None:
+        return figure.name
+    return f"{figure.quantity.heading} {figure.quantity.display_unit}".rstrip()
 
 
 def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:

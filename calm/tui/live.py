@@ -270,7 +270,9 @@ def rows_of(
             if row is not None:
                 length = row.cut_length if isinstance(row, ComponentRow) else None
                 told = {one.name: one.value(row, file) for one in columns}
-                figures = {name: value for name, value in told.items() if value is not None}
+                figures = {
+                    name: one for name, one in told.items() if one is not None and one == one
+                }
             gravest = max(own, key=lambda each: each.state.severity, default=None)
             yield FoundRow(
                 part.place,

@@ -182,6 +182,7 @@ LOOKS = {
     State.UNKNOWN: "bold",
     State.ESTIMATED: "green",
     State.ACCEPTED: "dim",
+    State.NOT_JUDGED: "dim",
     State.PASS: "green",
 }
 """The styles of rich that go with the signs of the states."""

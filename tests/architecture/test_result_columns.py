@@ -206,12 +206,13 @@ def test_every_column_says_what_it_is_and_how_it_is_found() -> None:
 def test_columns_are_named_as_files_of_others_know_them() -> None:
     """The contract: names may be added, none may go or change its meaning."""
     assert [one.name for one in Components.columns(Output.JSON)] == [
-        "index", "use", "label", "length", "cut_length", "depth_top", "depth_bottom", "x_top",
-        "y_top", "x_bottom", "y_bottom", "tension_top", "tension_bottom", "tilt", "knockdown",
-        "safety_factor", "utilisation", "reynolds",
+        "index", "use", "label", "length", "cut_length", "depth_top", "depth_bottom",
+        "planned_depth", "x_top", "y_top", "x_bottom", "y_bottom", "tension_top", "tension_bottom",
+        "tilt", "knockdown", "safety_factor", "utilisation", "reynolds",
     ]  # fmt: skip
     assert [one.name for one in Clamps.columns(Output.JSON)] == [
-        "index", "use", "label", "depth", "x", "y", "tension", "tilt", "knockdown",
+        "index", "use", "label", "depth", "planned_depth", "x", "y", "tension", "tilt",
+        "knockdown",
     ]  # fmt: skip
     assert [one.variable for part in Profiles.columns().values() for one in part] == [
         "depth_top", "x_top", "y_top", "tension_top", "tension_bottom", "tilt", "knockdown",
@@ -220,17 +221,23 @@ def test_columns_are_named_as_files_of_others_know_them() -> None:
         "other_used_buoyancy",
     ]  # fmt: skip
     assert header() == (
-        "mooring", "part", "index", "use", "label", "length[m]", "cut_length[m]", "depth_top[m]",
-        "depth_bottom[m]", "x_top[m]", "y_top[m]", "x_bottom[m]", "y_bottom[m]", "tension_top[N]",
-        "tension_bottom[N]", "tilt[deg]", "knockdown[m]", "safety_factor", "utilisation",
+        "mooring", "part", "index", "use", "label", "length[m]", "cut_length[m]",
+        "depth_top[m]", "depth_bottom[m]", "planned_depth[m]", "x_top[m]", "y_top[m]",
+        "x_bottom[m]", "y_bottom[m]", "tension_top[N]", "tension_bottom[N]",
+        "tilt[deg]", "knockdown[m]",
+        "safety_factor", "utilisation",
     )  # fmt: skip
     assert [one.name for one in table_columns(Output.MOORING_TABLE)] == [
-        "length", "depth", "height", "knockdown", "offset", "tilt", "tension", "safety_factor",
+        "length", "depth", "planned_depth", "height", "knockdown", "offset", "tilt", "tension",
+        "safety_factor",
     ]  # fmt: skip
     assert [one.name for one in table_columns(Output.TOW_TABLE)] == [
         "length", "depth", "layback", "tilt", "tension", "safety_factor",
     ]  # fmt: skip
     assert [one.name for one in table_columns(Output.NET_TABLE)] == [
-        "length", "depth", "x", "y", "knockdown", "tilt", "tension", "safety_factor",
+        "length", "depth", "planned_depth", "x", "y", "knockdown", "tilt", "tension",
+        "safety_factor",
     ]  # fmt: skip
-    assert [one.name for one in table_columns(Output.BUILDER)] == ["depth", "tension", "tilt"]
+    assert [one.name for one in table_columns(Output.BUILDER)] == [
+        "depth", "planned_depth", "tension", "tilt",
+    ]  # fmt: skip

@@ -18,10 +18,10 @@ def parts_of(deck: Deck, listed: Sequence[DeckItem], *, surface: bool) -> tuple[
 
     Connectors that follow one another make one junction.
 
-    Beside each stand cut length or place on the wire, stretched length, depth, height, tension and
-    net buoyancy.
+    Beside each stand cut length or place on the wire, stretched length, depth, planned depth if any
+    part has one, height, tension and net buoyancy.
     """
-    own = _own_labels(deck.parts)
+    own, planned = _own_labels(deck.parts), has_plans(deck)
     weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
     codes = {one.serial: " · ".join(one.code_lines) for one in deck.file.releases}
     found: list[ShownPart] = []
@@ -34,17 +34,22 @@ def parts_of(deck: Deck, listed: Sequence[DeckItem], *, surface: bool) -> tuple[
             joints += (*row.items, *row.joints)
             continue
         if joints:
-            found.append(_junction(joints, own, weights))
+            found.append(_junction(joints, own, weights, planned=planned))
         joints = [*row.joints] if len(row.items) == 1 else []
         if row.first.on is None:
             sign = _sign(row.first)
             cable = sign.symbol if sign.symbol in LINES else None
-        found.append(_piece(row, cable, weights, codes))
+        found.append(_piece(row, cable, weights, codes, planned=planned))
     if joints:
-        found.append(_junction(joints, own, weights))
+        found.append(_junction(joints, own, weights, planned=planned))
     if surface:
         found[0] = replace(found[0], sign=afloat(found[0].sign))
     return tuple(found)
+
+
+def has_plans(deck: Deck) -> bool:
+    """Whether any part of a deck has a planned depth."""
+    return any(one.planned_depth is not None for one in deck.parts)
 
 
 def _own_labels(parts: Sequence[DeckItem]) -> dict[int, str]:
@@ -64,7 +69,12 @@ _Weights = Mapping[str, float | None]
 
 
 def _piece(
-    row: DeckRow, cable: Symbol | None, weights: _Weights, codes: Mapping[str | None, str]
+    row: DeckRow,
+    cable: Symbol | None,
+    weights: _Weights,
+    codes: Mapping[str | None, str],
+    *,
+    planned: bool,
 ) -> ShownPart:
     first, label = row.first, one_line(row.label)
     words = [
@@ -84,7 +94,7 @@ def _piece(
     row_beside = TextRow(
         label,
         " · ".join(filter(None, words)),
-        (*lengths, *_figures([*row.items, *row.floats], weights)),
+        (*lengths, *_figures([*row.items, *row.floats], weights, planned=planned)),
         strong=first.role != "line" or bool(row.floats),
     )
     return ShownPart(
@@ -97,14 +107,18 @@ def _piece(
     )
 
 
-def _figures(items: Sequence[DeckItem], weights: _Weights) -> tuple[str, ...]:
-    """Depth and height of the first, the greatest tension, and the net buoyancy of all."""
+def _figures(items: Sequence[DeckItem], weights: _Weights, *, planned: bool) -> tuple[str, ...]:
+    """Depth, planned depth and height of the first, the greatest tension, and the net buoyancy of
+    all.
+    """
+    plan = items[0].planned_depth
     tension = max((one.tension for one in items if one.tension is not None), default=None)
     own = [weights.get(one.label) for one in items]
     known = [one for one in own if one is not None]
     buoyancy = -sum(known) if len(known) == len(own) else None
     return (
         _said("depth", items[0].depth),
+        *(["" if plan is None else _said("planned_depth", plan)] if planned else []),
         _said("depth", items[0].height),
         "" if tension is None else _said("tension", tension),
         "?" if buoyancy is None else _said("wet_weight", buoyancy),
@@ -115,7 +129,9 @@ def _said(name: str, value: float | None) -> str:
     return QUANTITIES[name].format(value)
 
 
-def _junction(parts: Sequence[DeckItem], own: Mapping[int, str], weights: _Weights) -> ShownPart:
+def _junction(
+    parts: Sequence[DeckItem], own: Mapping[int, str], weights: _Weights, *, planned: bool
+) -> ShownPart:
     words = []  # connectors as people write them, with their own labels and serial numbers
     for one in parts:
         hardware, label = one_line(one.hardware), one_line(own[id(one)])
@@ -128,6 +144,9 @@ def _junction(parts: Sequence[DeckItem], own: Mapping[int, str], weights: _Weigh
     signs = [_sign(one) for one in parts]
     lengths = (sum(one.cut_length or 0.0 for one in parts),
                sum(one.stretched or 0.0 for one in parts))  # fmt: skip
-    figures = (*(_said("length", length) for length in lengths), *_figures(parts, weights))
+    figures = (
+        *(_said("length", length) for length in lengths),
+        *_figures(parts, weights, planned=planned),
+    )
     sign = next((sign for sign in signs if sign.symbol is Symbol.SWIVEL), signs[0])
     return ShownPart(sign, (TextRow(joined, "", figures),), junction=True)

@@ -3,7 +3,7 @@
 for (const table of document.querySelectorAll("table.sortable")) {
   const body = table.tBodies[0];
   const heads = [...table.tHead.rows[0].cells];
-  const gravity = ["pass", "accepted", "estimated", "warn", "unknown", "fail"];
+  const gravity = ["pass", "not-judged", "accepted", "estimated", "warn", "unknown", "fail"];
   const text = (row, column) => row.cells[column].firstChild?.textContent.trim() ?? "";
 
   const compare = (column) => (one, other) => {

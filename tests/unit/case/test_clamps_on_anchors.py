@@ -51,6 +51,7 @@ def test_by_hand(tmp_path: Path) -> None:
     assert upper == bare.to_dict()["clamps"][0]
     pull = whole.anchor.tension
     still = {"index": 2, "use": "logger", "x": 0, "y": 0, "tilt": 0, "knockdown": 0}
+    still["planned_depth"] = None
     assert lid == {**still, "label": "lid", "depth": pytest.approx(99.5), "tension": pull}
     assert foot == {**still, "label": "foot", "depth": pytest.approx(100.0), "tension": pull}
 

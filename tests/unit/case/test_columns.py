@@ -14,7 +14,7 @@ from calm.files import Clamp, Place
 def clamps():
     figures = {
         name: np.array([1.5, np.nan])
-        for name in ("depth", "x", "y", "tension", "tilt", "knockdown")
+        for name in ("depth", "planned_depth", "x", "y", "tension", "tilt", "knockdown")
     }
     part = [
         Clamp("a", "A", None, 1.0, Place(0, clamp=0)),

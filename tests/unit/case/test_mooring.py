@@ -97,7 +97,7 @@ def test_the_result_is_plain_json(solve):
         "cut_length", "safety_factor", "utilisation",
     }  # fmt: skip
     assert set(data["clamps"][0]) == {
-        "index", "use", "label", "depth", "x", "y", "tension", "tilt", "knockdown",
+        "index", "use", "label", "depth", "planned_depth", "x", "y", "tension", "tilt", "knockdown",
     }  # fmt: skip
     assert set(data["top"]) == {
         "depth", "x", "y", "knockdown", "used_buoyancy", "reserve", "draft", "freeboard",

@@ -32,9 +32,13 @@ components:
 ESTIMATE = ", estimate: {quantity: working_load, value: 20 kN, low: LOW, source: its chain}"
 
 
-def judged(tmp_path: Path, figures: str, checks: str = "") -> Assessment:
+WAVES = "  waves: {significant_height: 5 cm, peak_period: 5 s}\n"
+
+
+def judged(tmp_path: Path, figures: str, checks: str = "", waves: str = "") -> Assessment:
     path = tmp_path / "m.yaml"
-    path.write_text(LINE.replace(" FIGURES", figures) + checks, encoding="utf-8")
+    text = LINE.replace(" FIGURES", figures).replace("line:\n", f"{waves}line:\n")
+    path.write_text(text + checks, encoding="utf-8")
     mooring = calm.load(path)
     return check(mooring)
 
@@ -52,7 +56,9 @@ def test_what_passes_by_the_low_bound_is_estimated(tmp_path: Path) -> None:
     assessment = judged(tmp_path, ESTIMATE.replace("LOW", "3 kN"))
     state, limit, message = of_link(assessment, "strength")
     assert (state, limit) == (State.ESTIMATED, 3000.0)
-    assert message.endswith("`working_load` is estimated: 3000 N at least, 20000 N (its chain).")
+    assert message.endswith(
+        "`working_load` is estimated: 3000 N at least, 20000 N likely (its chain)."
+    )
     every = [one for one in assessment.all_findings() if one.state is State.ESTIMATED]
     assert check_document([assessment])["estimated"] == len(every) >= 1
 
@@ -60,7 +66,7 @@ def test_what_passes_by_the_low_bound_is_estimated(tmp_path: Path) -> None:
 def test_what_passes_by_its_value_alone_is_unknown(tmp_path: Path) -> None:
     state, limit, message = of_link(judged(tmp_path, ESTIMATE.replace("LOW", "2.8 kN")), "strength")
     assert (state, limit) == (State.UNKNOWN, 2800.0)
-    assert "20000 N (its chain)" in message
+    assert "20000 N likely (its chain)" in message
 
 
 def test_a_figure_that_is_given_counts_and_not_its_estimate(tmp_path: Path) -> None:
@@ -90,9 +96,29 @@ def test_results_show_no_estimate_as_a_figure(tmp_path: Path) -> None:
     assert row.utilisation != row.utilisation
 
 
+def test_a_lower_bound_alone_is_enough_and_its_quality_is_shown(tmp_path: Path) -> None:
+    figures = ", estimate: {quantity: working_load, low: 3 kN, quality: low, source: its chain}"
+    state, limit, message = of_link(judged(tmp_path, figures), "strength")
+    assert (state, limit) == (State.ESTIMATED, 3000.0)
+    assert message.endswith("is estimated: 3000 N at least (its chain, quality low).")
+
+
+# Waves of 5 cm add next to nothing: the bound differs, not the load.
+@pytest.mark.parametrize(("waves", "limit"), [("", 3000.0), (WAVES, 2800.0)])
+def test_a_line_that_waves_move_is_judged_by_the_bound_for_waves(
+    waves: str, limit: float, tmp_path: Path
+) -> None:
+    figures = ESTIMATE.replace("LOW", "3 kN, low_in_waves: 2.8 kN")
+    state = State.UNKNOWN if waves else State.ESTIMATED
+    found = of_link(judged(tmp_path, figures, waves=waves), "strength")
+    assert found[:2] == (state, limit)
+    assert "3000 N at least, 2800 N in waves, 20000 N likely" in found[2]
+
+
 @pytest.mark.parametrize(
     ("written", "said"),
     [
+        ("{quantity: grip, low: 1 kN, low_in_waves: 2 kN, source: a}", "above the `low` of 1000"),
         ("{quantity: weight, value: 1 kN, low: 1 kN, source: a}", "`quantity: weight` must be one"),
         ("{quantity: grip, value: 1 kN, low: 20 deg, source: a}", "`low: 20 deg` is an angle"),
         ("{quantity: grip, value: 1 kN, low: 2 kN, source: a}", "above the `value` of 1000"),

@@ -771,8 +771,8 @@ FLAWS = (
         SLOPE,
         (
             (
-                "at: 1 m, label: CTD 305 m}",
-                "at: 80 m, label: CTD 305 m}, {use: rider, label: MMP, "
+                "at: 1 m, label: CTD 295 m}",
+                "at: 80 m, label: CTD 295 m}, {use: rider, label: MMP, "
                 "between: [swivel, meter 500 m]}",
             ),
             (
@@ -784,7 +784,7 @@ FLAWS = (
         "profiler",
         "MMP",
         "fail",
-        "CTD 305 m stands in the way of MMP, 80 m down",
+        "CTD 295 m stands in the way of MMP, 80 m down",
     ),
     Flaw(
         "a shackle of nobody knows what",
@@ -829,6 +829,24 @@ FLAWS = (
         "wire 1",
         "fail",
         "wire 1 lifts 1.2 N/m; water of its diameter weighs",
+    ),
+    Flaw(
+        "a wire of 250 m in place of 200 m",
+        SLOPE,
+        (("wire-jacketed-8-5, length: 200 m", "wire-jacketed-8-5, length: 250 m"),),
+        "planned-depth",
+        "CTD 295 m",
+        "fail",
+        "CTD 295 m hangs at 245.0 m in still water, planned for 295.0 m: 50.0 m too shallow.",
+    ),
+    Flaw(
+        "a bottom 250 m deeper than the design",
+        SLOPE,
+        (("depth: 1800 m", "depth: 2050 m"),),
+        "planned-depth",
+        None,
+        "fail",
+        "All 5 instruments with a planned depth hang",
     ),
     Flaw(
         "deployed where it is deeper",
@@ -900,6 +918,8 @@ def _says_what_it_means(finding: Finding) -> None:
 
 def _findings(flaw: Flaw, folder: Path) -> Iterable[Finding]:
     text = (shipped_folder("lines") / f"{flaw.line}.yaml").read_text(encoding="utf-8")
+    if flaw.line == CDMS:  # it accepts whatever the published case leaves open, a failure too
+        text, _, _ = text.partition("\nchecks:\n")
     for old, new in flaw.changes:
         assert text.count(old) >= 1, old
         text = text.replace(old, new, 1)

@@ -171,10 +171,10 @@ def test_a_hanging_instrument_bears_itself_alone() -> None:
     text = Y.replace(
         "  west:\n",
         "  pennant:\n    line:\n      - {use: wire-jacketed-8, length: 5 m, slack: allowed}\n"
-        "      - {use: rcm11}\n    top: {join: A}\n    bottom: free\n  west:\n",
+        "      - {use: aanderaa-tide-gauge}\n    top: {join: A}\n    bottom: free\n  west:\n",
     )
     found = judged(load(Path("y.yaml"), text=text))
     assert not [
         each for each in found.all_findings()
-        if each.rule == "strength" and each.component == "rcm11"
+        if each.rule == "strength" and each.component == "aanderaa-tide-gauge"
     ]  # fmt: skip

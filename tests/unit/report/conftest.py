@@ -20,7 +20,7 @@ class Columns(list):
 
 
 def component(index, use, label, role, length, depth, x, tension, tilt, **figures):
-    fields = dict(safety_factor=NAN, utilisation=NAN, knockdown=8.25) | figures
+    fields = dict(safety_factor=NAN, utilisation=NAN, knockdown=8.25, planned_depth=NAN) | figures
     return Record(
         index=index, use=use, label=label, role=role, kind="body", length=length,
         cut_length=length, depth_top=depth[0], depth_bottom=depth[1], x_top=x[0], x_bottom=x[1],
@@ -69,10 +69,10 @@ def build_result(**changes):
     )  # fmt: skip
     clamps = Columns(
         [
-            Record(index=2, use="sbe37", label="sbe37 1", depth=134.5, x=60.0, y=3.0,
-                   tension=6950.0, tilt=4.0, knockdown=8.1),
-            Record(index=2, use="adcp", label="adcp", depth=234.5, x=55.0, y=0.0,
-                   tension=6750.0, tilt=16.0, knockdown=NAN),
+            Record(index=2, use="sbe37", label="sbe37 1", depth=134.5, planned_depth=NAN,
+                   x=60.0, y=3.0, tension=6950.0, tilt=4.0, knockdown=8.1),
+            Record(index=2, use="adcp", label="adcp", depth=234.5, planned_depth=NAN,
+                   x=55.0, y=0.0, tension=6750.0, tilt=16.0, knockdown=NAN),
         ]
     )  # fmt: skip
     plain = Record(kind="body", role="instrument", material=None, max_tilt=None, warn_tilt=None)
@@ -146,8 +146,8 @@ def build_tow_result(**changes):
     )  # fmt: skip
     clamps = Columns(
         [
-            Record(index=0, use="sbe37", label="sbe37", depth=60.0, x=-60.0, y=4.0,
-                   tension=2000.0, tilt=60.0, knockdown=NAN),
+            Record(index=0, use="sbe37", label="sbe37", depth=60.0, planned_depth=NAN,
+                   x=-60.0, y=4.0, tension=2000.0, tilt=60.0, knockdown=NAN),
         ]
     )  # fmt: skip
     wire = Record(kind="cable", material="steel", max_tilt=None, warn_tilt=None)

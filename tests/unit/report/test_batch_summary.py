@@ -80,7 +80,7 @@ def test_the_document_is_strict_json_and_says_all(summary):
         "count", "mean", "p50", "p90", "p99", "p99.9", "maximum", "time"
     }  # fmt: skip
     assert first["knockdown"]["p50"] < first["knockdown"]["p99.9"] < first["knockdown"]["maximum"]
-    assert [part["label"] for part in said["clamps"]][:1] == ["CTD 305 m"]
+    assert [part["label"] for part in said["clamps"]][:1] == ["CTD 295 m"]
     assert said["responses"].keys() == RESPONSES.keys()
     assert tuple(said["worst"]) == RANKED
     assert {len(profiles) for profiles in said["worst"].values()} == {20}

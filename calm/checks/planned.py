@@ -1,0 +1,172 @@
+"""Depths at which instruments hang in still water, compared with their planned depths."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import isnan
+
+import numpy as np
+
+from calm.case.leg_result import LegResult
+from calm.case.result_tables import ClampRow, ComponentRow
+from calm.checks.assessment import Handling
+from calm.checks.criterion import cited
+from calm.checks.finding import State, Verdict, at_most, rule, verdict_on
+from calm.files import MooringFile
+from calm.quantities import say
+
+SHARE_OF_THE_PLAN = 0.02
+"""Share of the planned depth that is always allowed, for stretch and the error of a sounding."""
+
+
+@dataclass(frozen=True)
+class PlannedPart:
+    """A piece or a clamp with a planned depth [m].
+
+    `least` and `most` bound its depth in still water; they differ only if the line is slack there,
+    so that it has no unique shape: from the depth in the current to that on a straight line.
+    """
+
+    row: ComponentRow | ClampRow
+    planned: float
+    least: float
+    most: float
+
+    @property
+    def off(self) -> float:
+        """How much too deep it hangs [m], negative if too shallow; the least possible amount."""
+        return min(max(self.planned, self.least), self.most) - self.planned
+
+
+def _judge(handling: Handling) -> Iterator[Verdict]:
+    """Depth of each part in still water against its planned depth.
+
+    Parts that are all off by the same amount are one finding: one figure is wrong for all of them.
+    """
+    if handling.result is None:
+        return
+    parts, found = _judged(handling.result)
+    if not parts:
+        message = "No piece or clamp has a planned depth."
+        remedy = "Give `planned_depth`, or name the depth in the label, as `meter 200 m`."
+        yield verdict_on(None, State.NOT_JUDGED, message, remedy)
+    elif _off_alike(handling.result, parts, found):
+        yield _all_alike(handling.result, parts, min(found, key=lambda one: one.rank))
+    else:
+        yield from found
+
+
+def _counted(handling: Handling) -> Iterator[Verdict]:
+    """The verdict on each part, and that on all of them if they are off alike: a sample may have
+    other findings than the design.
+    """
+    if handling.result is not None:
+        yield from _judged(handling.result)[1]
+        yield from (one for one in _judge(handling) if one.place is None)
+
+
+planned_depth = replace(rule("planned-depth", once=True)(_judge), counted=_counted)
+
+
+def _judged(result: LegResult) -> tuple[list[PlannedPart], list[Verdict]]:
+    """The parts with a planned depth, and the verdict on each."""
+    parts = planned_parts(result)
+    return parts, [
+        _verdict(result.file, part, _remedy(result, parts, number))
+        for number, part in enumerate(parts)
+    ]
+
+
+def _off_alike(result: LegResult, parts: list[PlannedPart], found: list[Verdict]) -> bool:
+    """Whether several parts are all off by the same amount, and any of them by too much."""
+    amounts = [part.off for part in parts]
+    alike = max(amounts) - min(amounts) <= result.file.checks.planned_depth_warning
+    return len(parts) > 1 and alike and any(one.state is not State.PASS for one in found)
+
+
+def planned_parts(result: LegResult) -> list[PlannedPart]:
+    """The pieces and clamps with a planned depth, down the line."""
+    length = result.components.length
+    above = np.cumsum(length) - length
+    found = []
+    for row in (*result.components, *result.clamps):
+        planned = row.part.planned_depth
+        if planned is None:
+            continue
+        depth = row.upper[0]
+        still = depth - row.knockdown
+        if not isnan(still):
+            found.append(PlannedPart(row, planned, still, still))
+        else:
+            straight = depth
+            if result.type == "surface":
+                at = row.part.at if isinstance(row, ClampRow) else 0.0
+                straight = max(depth, float(above[row.index]) + at)
+            found.append(PlannedPart(row, planned, depth, straight))
+    return sorted(found, key=lambda part: (part.row.index, part.row.upper[0]))
+
+
+def _verdict(file: MooringFile, part: PlannedPart, remedy: str) -> Verdict:
+    """The verdict on one part: a warning beyond the allowance, a failure beyond the limit."""
+    checks, off = file.checks, part.off
+    allowed = max(checks.planned_depth_warning, SHARE_OF_THE_PLAN * part.planned)
+    limit = max(allowed, checks.planned_depth_limit * part.planned)
+    beyond, most = (State.FAIL, limit) if abs(off) > limit else (State.WARN, allowed)
+    where = say("depth", part.planned + off)
+    message = f"{part.row.label} hangs at {where} in still water, planned for "
+    message += say("depth", part.planned)
+    if abs(off) > allowed:
+        message += f": {_amount(off, off)}"
+    source = cited(file, "planned_depth_warning", "planned_depth_limit")
+    return at_most(part.row, abs(off), most, f"{message}.", remedy, beyond, source)
+
+
+def _all_alike(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) -> Verdict:
+    """One verdict on all parts, with the figures of the worst."""
+    amounts = sorted((part.off for part in parts), key=abs)
+    message = f"All {len(parts)} instruments with a planned depth hang "
+    message += f"{_amount(amounts[0], amounts[-1])} in still water."
+    remedy = f"Check `depth`, and the lengths below {parts[-1].row.label}."
+    if {_hangs_from_above(result, part) for part in parts} == {True}:
+        remedy = f"Check the lengths above {parts[0].row.label}, and `top_depth` if it is given."
+    return verdict_on(
+        None, worst.state, message, remedy, worst.value, worst.limit, worst.margin, worst.source
+    )
+
+
+def _amount(least: float, most: float) -> str:
+    """An amount, or a range of amounts, in words."""
+    way = "too deep" if most > 0.0 else "too shallow"
+    shown = dict.fromkeys(say("depth", abs(each)) for each in (least, most))
+    return f"{' to '.join(shown)} {way}"
+
+
+def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str:
+    """Return which lengths to check: those between the parts that are off by the same amount and
+    the next part in the direction of what holds them.
+    """
+    above, allowed = (
+        _hangs_from_above(result, parts[number]), result.file.checks.planned_depth_warning
+    )  # fmt: skip
+    last = parts[number]
+    for part in reversed(parts[:number]) if above else parts[number + 1 :]:
+        if abs(part.off - parts[number].off) > allowed:
+            first, second = (part, last) if above else (last, part)
+            clamps = any(isinstance(one.row, ClampRow) for one in (first, second))
+            what = "lengths and clamp places" if clamps else "lengths"
+            return f"Check the {what} between {first.row.label} and {second.row.label}."
+        last = part
+    if above:
+        return f"Check the lengths above {last.row.label}, or its planned depth."
+    return f"Check the lengths below {last.row.label} and `depth`, or its planned depth."
+
+
+def _hangs_from_above(result: LegResult, part: PlannedPart) -> bool:
+    """Whether lengths above a part determine its depth: below a float at the surface, and above a
+    piece that is cut to fit a depth of the top.
+    """
+    if result.type == "surface":
+        return True
+    fitted = [one.index for one in result.file.pieces if one.fit_top_depth is not None]
+    return any(part.row.index <= index for index in fitted)

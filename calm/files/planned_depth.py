@@ -1,0 +1,84 @@
+"""The planned depth of a piece or a clamp, as its label names it.
+
+A label names a depth if it has exactly one number with the unit of a length (``meter 200 m``,
+``CTD400m``, ``SBE37 @ 1500m``, ``buoy 650 ft``), a number after ``@``, or ends in four digits that
+a hyphen or an underscore joins to it (``CTD_0400``). No depth is
+
+- a serial number or another number with ``SN``, ``serial``, ``no.``, ``#`` or the like before it,
+  or the part's own serial number;
+- the depth rating of the component, unless ``@`` stands before it (``Aquadopp 6000 m``);
+- four digits that do not begin with 0 behind a model that has digits itself (``SBE37_1729``), which
+  mostly are a serial number;
+- any number of a label that names a length, a range or a height: of cable, wire, rope or chain,
+  ``range``, ``rated``, ``above``, ``below``, ``mab`` and the like;
+- a range such as ``50-1000 m``, or one of two numbers.
+
+The label of a cable or chain names no plan, nor does that of a connector, a release, an anchor or a
+profiler, which travels. A float counts if its label names 10 m or more: smaller numbers are sizes.
+"""
+
+from __future__ import annotations
+
+import re
+
+from calm.files.components import Component, Flexible
+from calm.files.rigid import Profiler
+
+_NUMBERED = re.compile(
+    r"(?:\bs/?n|\bser(?:ial)?(?:\s*(?:no|nr|number))?|\bno|\bnr|\bnumber|\bid|#)[\s.:#=_-]*"
+    r"[a-z]{0,3}\d[\w-]*",
+    re.IGNORECASE,
+)
+_LENGTHS = re.compile(
+    r"cable|wire|rope|chain|string|tether|pigtail|\blong\b|length|\brang(?:e|ing)|\brat(?:ed|ing)"
+    r"|version|housing|above|below|\boff\b|\bm?a[sb]b?\b|\bmab|\bhab\b|diameter|\bdia\b|\bcell",
+    re.IGNORECASE,
+)
+_RANGE = re.compile(r"(?<![A-Za-z0-9])[\d.]+\s*(?:m\s*)?(?:-|–|\.\.|to)\s*[\d.]+\s*(?:m|ft)\b")
+_WITH_UNIT = re.compile(
+    r"(@\s*)?(?<![\d.,])(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)\s*(m|met(?:er|re)s?|ft|feet)"
+    r"(?![A-Za-z0-9/²³^])"
+)
+_AFTER_AT = re.compile(r"(@\s*)(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)()(?![\w.,/])")
+_AT_THE_END = re.compile(r"^(.*)[_-](\d{4})$")
+_FOOT = 0.3048
+_LEAST_OF_A_FLOAT = 10.0
+
+
+def depth_in_label(label: str, serial: str | None = None, rating: float | None = None) -> float:
+    """Depth that a label names [m], by the rules above; NaN if it names none.
+
+    Parameters
+    ----------
+    serial : serial number of the part
+    rating : depth rating of its component [m]
+    """
+    text = _NUMBERED.sub("|", label)
+    if _LENGTHS.search(text) or _RANGE.search(text):
+        return float("nan")
+    found = {
+        (bool(at), float(digits.replace(",", "")) * (_FOOT if unit[:1] == "f" else 1.0), digits)
+        for pattern in (_WITH_UNIT, _AFTER_AT)
+        for at, digits, unit in pattern.findall(text)
+    }
+    if not found and (end := _AT_THE_END.match(text)):
+        model, digits = end.groups()
+        if digits[0] == "0" or not re.search(r"\d", model):
+            found = {(False, float(digits), digits)}
+    depths = {
+        depth for at, depth, digits in found if at or not (digits == serial or depth == rating)
+    }
+    return depths.pop() if len(depths) == 1 else float("nan")
+
+
+def named_depth(
+    label: str, component: Component, serial: str | None, *, clamped: bool
+) -> float | None:
+    """Planned depth that the label of a piece or a clamp names [m]; None if it names none."""
+    role = component.role
+    measures = role in ("instrument", "float") or clamped
+    if not measures or isinstance(component, Flexible | Profiler):
+        return None
+    depth = depth_in_label(label, serial, component.depth_rating)
+    least = _LEAST_OF_A_FLOAT if role == "float" else 0.0
+    return depth if depth >= least else None
