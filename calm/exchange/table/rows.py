@@ -205,11 +205,9 @@ def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
     """
     pieces = [row for row in rows if "at" not in row.figures and "length" in row.figures]
     lengths = [row.figures["length"] for row in pieces]
-    if len(lengths) >= _FEWEST and max(lengths) >= _GROWN:
+    if len({*lengths}) >= _FEWEST and max(lengths) >= _GROWN:
         longest = pieces[lengths.index(max(lengths))]
-        grow = any(
-            all(a < b for a, b in pairwise(each)) for each in (lengths, lengths[::-1])
-        )  # fmt: skip
+        grow = any(all(a <= b for a, b in pairwise(each)) for each in (lengths, lengths[::-1]))
         if grow and not longest.is_line:
             return [
                 f"the lengths grow from one piece to the next, {min(lengths):g} m to "

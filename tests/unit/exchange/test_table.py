@@ -624,7 +624,7 @@ Anchor,1,0.8,900,900
 @pytest.mark.parametrize("upward", [False, True])
 def test_lengths_that_are_counted_from_an_end_are_refused(upward, read):
     heading, *rows = SHORT.splitlines()
-    for i, length in enumerate(("1", "101", "101.43", "102.4", "103.2")):
+    for i, length in enumerate(("1", "101", "101", "102.4", "103.2")):  # of whole metres
         words = rows[i].split(",")
         rows[i] = ",".join([*words[:2], length, *words[3:]])
     rows = rows[::-1] if upward else rows
