@@ -9,7 +9,7 @@ from calm.checks.criterion import cited
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss, Recovery
-from calm.checks.strength import lesser_load, passes_load_on
+from calm.checks.strength import lesser_load, passes_load_on, wanted_load
 from calm.errors import NoEquilibrium
 from calm.files import LinePart
 from calm.quantities import QUANTITIES, say
@@ -86,9 +86,9 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         if limit is None:
             if passes_load_on(file, piece.index):
                 message = f"{bears}; neither its working nor its breaking load is known."
-                yield unknown(
-                    piece, message, "Give its `working_load` or `breaking_load`.", tension
-                )
+                remedy = "Give its `working_load` or `breaking_load`."
+                lacks = wanted_load(piece.component)
+                yield unknown(piece, message, remedy, tension, lacks=lacks)
             continue
         if working is not None and limit == times * working:
             load = "working load" if times == 1.0 else f"working load times {times:g}"
@@ -99,7 +99,8 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         message = f"{bears}; its {load} is {say('tension', limit)}."
         if tension > limit and not launch.anchor_drag_known:
             message += " This assumes an anchor without drag; its own is not known."
-            yield unknown(piece, message, "Give the anchor's `kt`.", tension)
+            remedy, anchor = "Give the anchor's `kt`.", file.pieces[-1]
+            yield unknown(piece, message, remedy, tension, lacks="kt", of=anchor)
             continue
         remedy = "Take a stronger one, or lower the anchor on a parachute or a wire."
         yield at_most(piece, tension, limit, message, remedy, source=source)
@@ -130,7 +131,7 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
     if launch.greatest_speed <= GREATEST_TOUCHDOWN_SPEED:
         yield at_most(anchor, speed, GREATEST_TOUCHDOWN_SPEED, message, remedy, State.WARN)
     else:
-        yield unknown(anchor, message, "Give the anchor's `kt`.", speed)
+        yield unknown(anchor, message, "Give the anchor's `kt`.", speed, lacks="kt")
 
 
 @rule("recovery", once=True)

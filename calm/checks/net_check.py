@@ -22,6 +22,7 @@ from calm.checks.finding import AS_GIVEN, OWN, State, Verdict, unknown, verdict_
 from calm.checks.growth import grown
 from calm.checks.handling import backup
 from calm.checks.inventory import inventory_of
+from calm.checks.missing import with_missing
 from calm.checks.recovery import Break, Loss, lifts_of, losses_among, required_margin
 from calm.errors import NoEquilibrium, or_why_not
 from calm.files import Flexible, Piece
@@ -148,6 +149,8 @@ def assessment_of_net(
     findings = list(assess.findings_of_currents(list(waters.values()), name, acceptance))
     for rule, verdicts, environment in once:
         findings += acceptance.findings(rule, verdicts, name, environment)
+    lacking = [one for stand in stands for one in stand.lacking]
+    findings = with_missing((*lacking, *findings), acceptance.parts, name, first)
     fast = (float(np.hypot(each.water.u, each.water.v).max()) for each in waters.values())
     if legs and max(fast) < situations.LEAST_CURRENT:
         findings.insert(

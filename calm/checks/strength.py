@@ -11,7 +11,7 @@ from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, pieces
 from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
 from calm.checks.posture import reaches_the_surface
-from calm.files import Cable, Component, MooringFile, Piece, SafetyFactors
+from calm.files import Cable, Component, Flexible, MooringFile, Piece, SafetyFactors
 from calm.quantities import say
 
 WEAK_LINK = 0.5
@@ -38,6 +38,12 @@ def lesser_load(component: Component, working_factor: float, factor: float) -> f
     if component.breaking_load is not None:
         known.append(component.breaking_load / factor)
     return min(known, default=None)
+
+
+def wanted_load(component: Component) -> str:
+    """The key of the load to ask for if a component gives none: ropes and wires are sold by their
+    breaking load, other things by their working load."""
+    return "breaking_load" if isinstance(component, Flexible) else "working_load"
 
 
 def passes_load_on(file: MooringFile, index: int) -> bool:
@@ -88,7 +94,8 @@ def strength(mooring: Mooring) -> Iterator[Criterion]:
         of_factor = limit is not None and limit != component.working_load
         source = cited(mooring.file, f"safety_factor.{name}") if of_factor else ""
         words = partial(_strength_words, part, limit, getattr(factors, name))
-        yield Criterion(part, "tension", limit, words, source=source)
+        lacks = wanted_load(component)
+        yield Criterion(part, "tension", limit, words, source=source, lacks=lacks)
 
 
 def _strength_words(
@@ -123,13 +130,14 @@ def release_load(mooring: Mooring) -> Iterator[Criterion]:
     factors, surface = mooring.file.checks.safety_factor, reaches_the_surface(mooring)
     for part in pieces_of(mooring):
         if part.component.role == "release":
+            lacks = wanted_load(part.component)
             stands = allowable_load(part.component, factors, surface)
             opens = part.component.opening_load
             words = partial(_release_words, part, "bears", stands)
-            yield Criterion(part, "tension", stands, words)
+            yield Criterion(part, "tension", stands, words, lacks=lacks)
             limit = stands if opens is None else opens
             words = partial(_release_words, part, "opens under", limit)
-            yield Criterion(part, "tension_bottom", limit, words)
+            yield Criterion(part, "tension_bottom", limit, words, lacks=lacks)
 
 
 def _release_words(
@@ -242,6 +250,7 @@ def anchor_weight(mooring: Mooring) -> Iterator[Criterion]:
         weight,
         words,
         source=cited(mooring.file, "anchor_factor", "anchor_friction"),
+        lacks="weight",
         stated=lambda required, result: (result.anchor.weight, required),
     )
 
@@ -262,7 +271,8 @@ def anchor_uplift(mooring: Mooring) -> Iterator[Criterion]:
         )
 
     source = cited(mooring.file, "anchor_factor")
-    yield Criterion(pieces_of(mooring)[-1], "vertical", limit, words, source=source)
+    anchor = pieces_of(mooring)[-1]
+    yield Criterion(anchor, "vertical", limit, words, source=source, lacks="weight")
 
 
 @criteria("anchor-sliding", of_anchor=True)
@@ -292,6 +302,7 @@ def anchor_sliding(mooring: Mooring) -> Iterator[Criterion]:
         None if weight is None else friction * weight / factor,
         words,
         source=cited(mooring.file, "anchor_factor", "anchor_friction"),
+        lacks="weight",
         stated=lambda _, result: (result.anchor.horizontal, held(result)),
     )
 

@@ -47,6 +47,12 @@ RULES = {
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 of its speed, 0.2 "
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
+    "missing": RuleText("Missing figures", "",
+        "figures that a component does not give and rules need: one finding for each component id "
+        "and figure, with these rules and the pieces that they cannot judge",
+        "unknown",
+        "The sources of the rules that need the figure",
+        _ONCE),
     "strength": RuleText("Strength", "tension",
         "greatest tension of every piece; of the top one and the anchor where they give a load",
         "the lesser of its working load and its breaking load over `safety_factor`: 3 steel, "

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from calm.checks.finding import State
+from calm.checks.missing import alternatives
 from calm.files import Clamp, Flexible, MooringFile, Piece, Place
 from calm.files.editing import Draft, Value
 from calm.files.logbook import DeployedItem, Equipment
@@ -254,13 +255,17 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
     if view.file is None:
         return []
     wanted: dict[Place, dict[str, None]] = {}
-    for finding in view.findings:
-        if finding.state is State.UNKNOWN and finding.place and RULES[finding.rule].figures:
-            asked = wanted.setdefault(finding.place, {})
-            asked.update(dict.fromkeys(RULES[finding.rule].figures))
+    pieces = [*parts_of(view.file.pieces)]
+    for figure in (one.missing for one in view.findings if one.missing is not None):
+        own_places = [part.place for part in pieces if part.use == figure.component_id]
+        places = [one for one in own_places if one in figure.places] or own_places
+        rules = (RULES[name].figures for name in figure.needed_by)
+        keys = dict.fromkeys((*alternatives(figure.quantity), *chain.from_iterable(rules)))
+        for place in places:
+            wanted.setdefault(place, {}).update(keys)
     own = draft.value(("components",)) or ()
     found: dict[str, Missing] = {}
-    for part in parts_of(view.file.pieces):
+    for part in pieces:
         if part.place not in wanted:
             continue
         missing = found.setdefault(part.use, Missing(part.use, part.component.kind))
