@@ -116,7 +116,7 @@ def _environment(name: str) -> str:
 
 def _stand(stand: MooringInEnvironment) -> Saying:
     """Return how the line does in one environment, in one line."""
-    said, result = _judged(stand.findings), stand.result
+    said, result = _judged((*stand.findings, *stand.lacking)), stand.result
     figures = ""
     if result is not None and result.type != "surface":
         figures = f"top at {say('depth', result.top.depth)}, "

@@ -604,7 +604,7 @@ FLAWS = (
         CDMS,
         (("stiffness: 2655 kN\n    material: aramid", "material: nylon"),),
         "missing",
-        "Kevlar 1",
+        "Kevlar 3",
         "unknown",
         "is nylon of unknown stiffness, taken as inextensible: it could stretch by",
     ),
