@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from math import isnan
 
+from calm.case.warnings import counted_working_load
 from calm.checks.assessment import Handling
 from calm.checks.criterion import cited
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
@@ -81,7 +82,8 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
     times, over = file.checks.launch_working_factor, file.checks.launch_safety_factor
     most = "" if launch.anchor_drag_known else "at most "
     for piece, tension in zip(file.pieces, launch.greatest_tension.tolist(), strict=False):
-        limit, working = lesser_load(piece.component, times, over), piece.component.working_load
+        limit = lesser_load(piece.component, times, over)
+        working = counted_working_load(piece.component)
         bears = f"{piece.label} bears {most}{say('tension', tension)} in the fall"
         if limit is None:
             if passes_load_on(file, piece.index):

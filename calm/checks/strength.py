@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from calm.case import Mooring, Result
-from calm.case.warnings import is_synthetic
+from calm.case.warnings import counted_working_load, is_synthetic
 from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, pieces_of
 from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
@@ -25,16 +25,19 @@ def allowable_load(component: Component, factors: SafetyFactors, surface: bool) 
     """Load that a component may bear in use [N], None where neither of its loads is known.
 
     The lesser of its working load and of its breaking load over the safety factor of a surface
-    mooring, of a synthetic rope, or of steel, as far as they are known.
+    mooring, of a synthetic rope, or of steel, as far as they are known and count.
     """
     return lesser_load(component, 1.0, safety_factor(component, factors, surface))
 
 
 def lesser_load(component: Component, working_factor: float, factor: float) -> float | None:
-    """The lesser of working load × `working_factor` and breaking load / `factor` [N]."""
-    known = []
-    if component.working_load is not None:
-        known.append(working_factor * component.working_load)
+    """The lesser of working load × `working_factor` and breaking load / `factor` [N].
+
+    Of a synthetic rope that gives both, the breaking load alone counts.
+    """
+    known, working = [], counted_working_load(component)
+    if working is not None:
+        known.append(working_factor * working)
     if component.breaking_load is not None:
         known.append(component.breaking_load / factor)
     return min(known, default=None)
@@ -107,17 +110,17 @@ def _strength_words(
             f"{bears}; neither its working nor its breaking load is known.",
             "Give its `working_load` or `breaking_load`.",
         )
-    if limit == component.working_load:
+    if limit == counted_working_load(component):
         allowed = f"its working load is {say('tension', limit)}"
     else:
         allowed = (
             f"its breaking load of {say('tension', component.breaking_load)} "
             f"over {factor:g} allows {say('tension', limit)}"
         )
-    return f"{bears}; {allowed}.", (
-        f"Take one with a working load of {say('tension', tension)} and a breaking load "
-        f"of {say('tension', factor * tension)} or more."
-    )
+    wanted = f"a breaking load of {say('tension', factor * tension)} or more"
+    if not is_synthetic(component):
+        wanted = f"a working load of {say('tension', tension)} and {wanted}"
+    return f"{bears}; {allowed}.", f"Take one with {wanted}."
 
 
 @criteria("release-load")
