@@ -7,8 +7,7 @@
 A deep mooring of twelve components in made currents at twenty levels, hourly: eddies, a tide and
 noise. The command is timed whole, from its start to the page of its statistics, and without them;
 memory is the most that the process ever held. What one thread can read, hash, pack and write is
-timed with profiles that are solved already: that is all that a process has to do whose profiles are
-solved by others. The last table is that of `docs/reference/batch.md`.
+timed with profiles that are solved already. The last table is that of `docs/reference/batch.md`.
 """
 
 import subprocess
@@ -24,7 +23,6 @@ from machine import describe
 import calm
 from calm.batch.profiles import Batch, Profiles
 from calm.batch.run import BLOCK, run_batch
-from calm.batch.statuses import Ending
 from calm.records.current_file import open_record
 from calm.records.current_terms import Terms
 
@@ -93,7 +91,7 @@ def write_record(path: Path, count: int) -> None:
                 current[start : start + len(t)] = decay * (0.6 * eddies + tide)[:, None] + noise
 
 
-def solver_alone(mooring: calm.Mooring, path: Path, workers: int) -> float:
+def solver_alone(mooring: calm.Design, path: Path, workers: int) -> float:
     """Profiles a second of `solve_profiles`, arrays in and arrays out."""
     with open_record(path, Terms(5000.0)) as record:
         depth, u, v, _ = record.profiles(0, min(SAMPLE, record.count))
@@ -104,21 +102,20 @@ def solver_alone(mooring: calm.Mooring, path: Path, workers: int) -> float:
 
 
 def without_statistics(
-    mooring: calm.Mooring, path: Path, output: Path, workers: int
+    mooring: calm.Design, path: Path, output: Path, workers: int
 ) -> tuple[float, float]:
     """Profiles a second from record to result, in this process, and the bytes of each."""
     start = time.perf_counter()
     with open_record(path, Terms(5000.0)) as record:
-        outcome = run_batch(mooring, record, output, workers=workers)
+        counts = run_batch(mooring, record, output, workers=workers)
         count = record.count
     rate = count / (time.perf_counter() - start)
-    assert outcome.done
-    unsolved = count - outcome.endings[Ending.SOLVED]
+    unsolved = count - counts["converged"]
     print(f"{'':12}{unsolved} without equilibrium, {output.stat().st_size / 1e6:.0f} MB")
     return rate, output.stat().st_size / count
 
 
-def without_solving(mooring: calm.Mooring, path: Path, output: Path) -> float:
+def without_solving(mooring: calm.Design, path: Path, output: Path) -> float:
     """Profiles a second that are read, hashed, packed and written: those of one block, again."""
     with open_record(path, Terms(5000.0)) as record:
         depth, u, v, _ = record.profiles(0, min(BLOCK, record.count))
@@ -133,7 +130,7 @@ def without_solving(mooring: calm.Mooring, path: Path, output: Path) -> float:
 
     start = time.perf_counter()
     with patch.object(Batch, "solve", solved), open_record(path, Terms(5000.0)) as record:
-        assert run_batch(mooring, record, output, workers=1).done
+        run_batch(mooring, record, output, workers=1)
         count = record.count
     output.unlink()
     return count / (time.perf_counter() - start)
@@ -143,18 +140,20 @@ MEASURE = """\
 import resource, subprocess, sys, time
 start = time.perf_counter()
 subprocess.run([sys.executable, "-m", "calm", *sys.argv[1:]], stdout=subprocess.DEVNULL, check=True)
-print(time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+seconds = time.perf_counter() - start
+print(seconds, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)
 """
 """Run by a small process: one that is large hands its own size on to those that it starts."""
 
 
-def whole_command(file: Path, path: Path, output: Path, workers: int) -> tuple[float, float]:
-    """Seconds of the whole command, and the most memory it held [MB]."""
+def whole_command(file: Path, path: Path, output: Path, workers: int) -> tuple[float, float, float]:
+    """Seconds of the whole command, those of its processors, and the most memory it held [MB]."""
     words = ["batch", str(file), "--currents", str(path), "-o", str(output)]
     command = [sys.executable, "-c", MEASURE, *words, "--workers", str(workers)]
     told = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
-    seconds, memory = map(float, told.split())
-    return seconds, memory
+    seconds, used, memory = map(float, told.split())
+    return seconds, used, memory
 
 
 def main() -> None:
@@ -167,7 +166,6 @@ def main() -> None:
         file = folder / "mooring.yaml"
         file.write_text(MOORING)
         mooring = calm.load(file)
-        assert isinstance(mooring, calm.Mooring)
         for count in counts:
             path = folder / f"{count}.nc"
             write_record(path, count)
@@ -179,11 +177,12 @@ def main() -> None:
                 rate, size = without_statistics(mooring, path, output, workers)
                 rates[workers] = rate
                 output.unlink()
-                seconds, memory = whole_command(file, path, output, workers)
+                seconds, used, memory = whole_command(file, path, output, workers)
                 print(
                     f"{workers} worker{'s' * (workers > 1):12}solver alone {alone:8.0f}/s; "
                     f"NetCDF to NetCDF {rate:8.0f}/s, {rate / alone:.0%}; "
-                    f"whole command {seconds:6.1f} s, {count / seconds:8.0f}/s, {memory:.0f} MB"
+                    f"whole command {seconds:6.1f} s, {count / seconds:8.0f}/s, "
+                    f"{count / used:8.0f}/s of a processor, {memory:.0f} MB"
                 )
             served = without_solving(mooring, path, folder / f"{count}.served.nc")
             print(f"{'':12}without solving, by one thread: {served:8.0f}/s")

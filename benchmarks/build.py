@@ -27,7 +27,7 @@ import pexpect
 import pyte
 from machine import describe
 
-from calm.case import Mooring
+from calm.case import Design
 from calm.files import read_mooring
 from calm.files.editing import Draft
 from calm.tui.live import judge
@@ -300,8 +300,8 @@ def edits(text: str, repetitions: int) -> Iterable[tuple[str, list[float], list[
             view = judge(changed, keep=view)
             times.append(time.perf_counter() - start)
             assert view.result is not None
-            mooring = Mooring(read_mooring("line.yaml", text=changed))
-            solving.append(seconds(lambda known=mooring: known.equilibrium(known.water)))
+            mooring = Design(read_mooring("line.yaml", text=changed))
+            solving.append(seconds(lambda known=mooring: known.leg.equilibrium()))
         yield kind, times, solving
 
 

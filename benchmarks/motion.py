@@ -33,7 +33,7 @@ def write_records(folder: Path, hours: int) -> list[str]:
     import gsw
 
     mooring = calm.load(FILE)
-    assert isinstance(mooring, calm.Mooring) and mooring.file.position is not None
+    assert isinstance(mooring, calm.Design) and mooring.file.position is not None
     line = Forward(mooring, {"cable_drag": 1.1})
     at = [labels_of(mooring).index(label) for label in METERS]
     random = np.random.default_rng(1)

@@ -26,7 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import s1000_by_hand as by_hand
 
 from calm.batch.profiles import Batch, Profiles
-from calm.case import Mooring, load
+from calm.case import Design, load
 from calm.case.measure import components_of
 from calm.physics.line import Floats, Water
 from calm.shipped import shipped_folder
@@ -40,7 +40,7 @@ MOORINGS = (
 Arrays = tuple[np.ndarray, ...]
 
 
-def currents(mooring: Mooring, count: int, seed: int = 1) -> Arrays:
+def currents(mooring: Design, count: int, seed: int = 1) -> Arrays:
     """Depths and u, v, w: the file's current, 0.3 to 1.5 times, turned by depth and ragged."""
     rng = np.random.default_rng(seed)
     water = mooring.water
@@ -77,9 +77,7 @@ def arrays_rate(batch: Batch, current: Arrays, workers: int) -> float:
     return len(u) / best(lambda: batch.solve(u, v, depth, w, workers=workers), 3)
 
 
-def errors(
-    mooring: Mooring, base: Water, current: Arrays, found: Profiles, count: int
-) -> list[str]:
+def errors(mooring: Design, base: Water, current: Arrays, found: Profiles, count: int) -> list[str]:
     """Worst differences from `calm run` at its usual angle step and at a tenth of it."""
     depth, u, v, w = current
     lines = []
@@ -92,7 +90,7 @@ def errors(
                 mooring.file.pieces[:-1],
                 solve_mooring(mooring.line, water, settings)
                 if degrees < 1.0
-                else mooring.equilibrium(water),
+                else mooring.leg.equilibrium(water),
             )
             for name in ("depth_top", "x_top", "y_top"):
                 off = getattr(found, name)[case, :-1] - getattr(exact, name)
@@ -153,7 +151,7 @@ LAWS = {
 """What stands in S1000 in place of its stiffness, below it, and for its line."""
 
 
-def s1000_with(stretch: str, solver: str, line: str) -> Mooring:
+def s1000_with(stretch: str, solver: str, line: str) -> Design:
     """S1000, its float a smooth sphere, under another law."""
     text = (shipped_folder("lines") / "s1000.yaml").read_text(encoding="utf-8")
     text = text.replace(LINE, line)
@@ -164,7 +162,6 @@ def s1000_with(stretch: str, solver: str, line: str) -> Mooring:
         path = Path(folder) / "s1000.yaml"
         path.write_text(f"{text}{solver}\n", encoding="utf-8")
         found = load(path)
-        assert isinstance(found, Mooring)
         assert found.line.length.size
     return found
 
@@ -175,7 +172,6 @@ def main(profiles: str = "8192", checked: str = "24", checkout: str = "") -> Non
     others = rates_of(Path(checkout), profiles) if checkout else {}
     for name in MOORINGS:
         mooring = load(shipped_folder("lines") / f"{name}.yaml")
-        assert isinstance(mooring, Mooring)
         batch = Batch(mooring)
         current = currents(mooring, int(profiles))
         depth, u, v, w = current

@@ -61,12 +61,11 @@ def at_either_speed(job: Callable[[], Any], repetitions: int) -> tuple[float, fl
 
 def solver_of(line: Any) -> tuple[Callable[[Any], Any], float]:
     """What solves a mooring or a tow at some settings, and its span [m]."""
-    from calm.case import Tow
     from calm.solve import solve_mooring, solve_tow
 
-    if isinstance(line, Tow):
+    if line.towed:
         span = float(line.line.length.sum())
-        return partial(solve_tow, line.line, line.water, line.towing), span
+        return partial(solve_tow, line.line, line.water, line.leg.towing), span
     return partial(solve_mooring, line.line, line.water), line.water.depth
 
 

@@ -17,8 +17,7 @@ from machine import describe
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from calm.case.net import Net, load
-from calm.case.result import NetResult
+from calm.case import Result, load
 from calm.errors import NoEquilibrium
 from tests.validation.surface_nets import SurfaceNet, surface_net
 
@@ -27,17 +26,16 @@ TURNED = np.array([[np.cos(TURN), -np.sin(TURN)], [np.sin(TURN), np.cos(TURN)]])
 MIRRORED = np.diag([1.0, -1.0])
 
 
-def solve(net: SurfaceNet) -> NetResult | NoEquilibrium:
+def solve(net: SurfaceNet) -> Result | NoEquilibrium:
     """The result, or why there is none."""
     mooring = load("surface-net.yaml", text=net.text)
-    assert isinstance(mooring, Net)
     try:
         return mooring.solve()
     except NoEquilibrium as failure:
         return failure
 
 
-def node(result: NetResult) -> np.ndarray:
+def node(result: Result) -> np.ndarray:
     """Where its node is."""
     (at,) = result.nodes
     return np.array([at.x, at.y, -at.depth])
@@ -47,7 +45,7 @@ def main(cases: str = "80", first: str = "0") -> None:
     """Solve nets and their images."""
     print(describe("calm-mooring", "numpy"))
     numbers = range(int(first), int(first) + int(cases))
-    found: dict[int, NetResult] = {}
+    found: dict[int, Result] = {}
     for water in ("still", "current"):
         begun, solved, slack, drifting = process_time(), 0, 0, 0
         for number in numbers:

@@ -27,8 +27,8 @@ def main() -> None:
         for number in range(2 if smoke else 60)
     ]
     solve = least(lambda: calm.load(LINE).solve(), 1 if smoke else 3)
-    one = least(lambda: analyse(mooring, seas[-1:], 90.0), 1 if smoke else 3)
-    table = least(lambda: analyse(mooring, seas, 90.0), 1)
+    one = least(lambda: analyse(mooring.leg, seas[-1:], 90.0), 1 if smoke else 3)
+    table = least(lambda: analyse(mooring.leg, seas, 90.0), 1)
     print(f"equilibrium {solve:.2f} s, one sea {one:.2f} s ({one / solve:.1f} times that)")
     megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(f"greatest memory of the process {megabytes:.0f} MB")

@@ -16,12 +16,11 @@ from calm.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from calm.batch.profiles import Profiles, solve_profiles
-    from calm.case import Mooring, Result, Tow, TowResult, load
+    from calm.case import Design, Result, load
     from calm.case.explain import explain
-    from calm.case.net import Net
-    from calm.case.result import AnyResult, NetResult
+    from calm.case.leg_result import LegResult
     from calm.case.size import size
-    from calm.checks.net_check import check
+    from calm.checks.design_check import check
     from calm.drop.plan import drop_plan
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
     from calm.motion.motion_estimate import estimate_motion
@@ -29,19 +28,18 @@ if TYPE_CHECKING:
     from calm.ranging import locate
 
 __all__ = [
-    "CalmError", "InputError", "Mooring", "MotionEstimate", "Net", "NetResult", "NoEquilibrium",
-    "Profiles", "Result", "Tow", "TowResult", "UsageError", "__version__", "check", "drop_plan",
-    "estimate_motion", "explain", "load", "locate", "size", "solve_profiles",
+    "CalmError", "Design", "InputError", "LegResult", "MotionEstimate", "NoEquilibrium", "Profiles",
+    "Result", "UsageError", "__version__", "check", "drop_plan", "estimate_motion", "explain",
+    "load", "locate", "size", "solve_profiles",
 ]  # fmt: skip
 
 _HOMES = {
     "calm.batch.profiles": ("Profiles", "solve_profiles"),
-    "calm.case": ("Mooring", "Result", "Tow", "TowResult"),
+    "calm.case": ("Design", "Result", "load"),
     "calm.case.explain": ("explain",),
-    "calm.case.net": ("Net", "load"),
-    "calm.case.result": ("NetResult",),
+    "calm.case.leg_result": ("LegResult",),
     "calm.case.size": ("size",),
-    "calm.checks.net_check": ("check",),
+    "calm.checks.design_check": ("check",),
     "calm.drop.plan": ("drop_plan",),
     "calm.errors": ("CalmError", "InputError", "NoEquilibrium", "UsageError"),
     "calm.motion.motion_estimate": ("estimate_motion",),
@@ -65,28 +63,28 @@ def __getattr__(name: str) -> object:
 
 def _give_results_their_forms() -> None:
     """Tell results how a notebook shows them, how they are plotted and become a dataset."""
-    from calm.case.result import ResultForms
+    from calm.case import Result
 
-    def html(result: AnyResult) -> str:
+    def html(result: Result) -> str:
         from calm.report.html import fragment
         from calm.report.sheet import result_part
 
         return fragment(result_part(result))
 
-    def netcdf(result: AnyResult) -> bytes:
+    def netcdf(result: Result) -> bytes:
         from calm.report.result_files import result_netcdf
 
         return result_netcdf(result)
 
-    def plot(result: AnyResult, ax: Any) -> Any:
+    def plot(result: Result, ax: Any) -> Any:
         from calm.drawing.line_picture import elevation_of
         from calm.drawing.plot import plot_elevation
 
         return plot_elevation(elevation_of(result), ax)
 
-    ResultForms.notebook_form = staticmethod(html)
-    ResultForms.plot_form = staticmethod(plot)
-    ResultForms.netcdf_form = staticmethod(netcdf)
+    Result.notebook_form = staticmethod(html)
+    Result.plot_form = staticmethod(plot)
+    Result.netcdf_form = staticmethod(netcdf)
 
 
 def __dir__() -> list[str]:

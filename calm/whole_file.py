@@ -1,6 +1,7 @@
 """Files read whole, and put whole in their place: a reader sees the old content or the new."""
 
 import contextlib
+import glob
 import os
 import stat
 import time
@@ -73,10 +74,11 @@ def put(
             _flush(target.parent)
 
 
-def sweep(folder: Path) -> None:
-    """Remove the parts that killed processes left in a folder."""
+def sweep(folder: Path, name: str = "") -> None:
+    """Remove the parts that killed processes left in a folder, of all files or of one."""
+    begin = f".{glob.escape(name[:_LONGEST])}." if name else "."
     with contextlib.suppress(OSError):
-        for part in folder.glob(f".*{UNFINISHED}"):
+        for part in folder.glob(f"{begin}*{UNFINISHED}"):
             if time.time() - part.stat().st_mtime > _STALE:
                 part.unlink()
 

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import calm
-from calm.checks.assess import assessment_of, stand_of
 from calm.checks.assessment import Assessment
+from calm.checks.design_check import assessment_of, stands_of
 
 LINES = Path(__file__).resolve().parents[1] / "lines"
 
@@ -39,7 +39,9 @@ def judged(path: Path, *environments: str) -> Assessment:
     """The assessment of a mooring in its own environment and in others of its file."""
     moorings = [calm.load(path, environment=name) for name in (None, *environments)]
     name = moorings[0].file.name
-    return assessment_of(name, [stand_of(mooring, name) for mooring in moorings])
+    return assessment_of(
+        name, [stand for mooring in moorings for stand in stands_of(mooring, name)]
+    )
 
 
 def unaccepting(name: str, folder: Path) -> Path:

@@ -15,8 +15,9 @@ from calm.files.rigid import Displacement
 from calm.physics import drag, seawater
 from calm.physics.drag import Friction
 from calm.physics.hull import Floating, Hull, cylindrical_hull, spherical_hull, tabulated_hull
-from calm.physics.line import REFERENCE_VISCOSITY, Floats, Line, Water
+from calm.physics.line import Floats, Line, Water
 from calm.physics.reynolds import DragCurve
+from calm.physics.seawater import REFERENCE_VISCOSITY
 from calm.physics.stretch import ElongationCurve
 from calm.physics.strumming import BourgetMarichal
 from calm.records.profile_tables import components

@@ -1,10 +1,8 @@
-"""The result of a batch before it is solved, its blocks as arrays, and the nodes of a shape."""
+"""The result of a batch before it is solved, and its blocks as arrays."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from math import ceil
 from pathlib import Path
 from typing import Any
 
@@ -13,44 +11,17 @@ from numpy.typing import NDArray
 
 from calm.batch.profiles import Profiles
 from calm.batch.statuses import STATUSES
-from calm.case import Mooring
-from calm.case.columns import Output, terms
-from calm.case.net import Net
-from calm.case.result_tables import Shape
+from calm.case import Design
+from calm.case.columns import terms
 from calm.dataset import netcdf
 from calm.dataset.netcdf import CLAMPS, ResultLayout, Variable, labels, numbers, station
-from calm.files import Clamp
-from calm.files.legs import leg_numbers
-from calm.files.mooring_file import clamps_down
-from calm.files.rigid import Body
-from calm.physics.line import Floats
+from calm.files.mooring_file import leg_numbers
+from calm.files.pieces import clamps_down
 from calm.records.record import Record
 
-_BESIDE = {
-    "component": "component_label depth_top",
-    "clamp": "clamp_label clamp_depth",
-    "node": "node_distance shape_depth",
-}
+_BESIDE = {"component": "component_label depth_top", "clamp": "clamp_label clamp_depth"}
 """Label and depth of what goes along a dimension, the coordinates of its variables."""
 _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
-
-
-def arrays_of(
-    layout: ResultLayout, time: NDArray[np.datetime64], profiles: Profiles, shape: ShapeNodes | None
-) -> dict[str, NDArray[Any]]:
-    """The values of some profiles, by the names of the variables that go with time.
-
-    Parameters
-    ----------
-    time : (n,) of the profiles
-    profiles : (n) solved; those of `shape.mooring` where there is a shape
-    """
-    columns = dict(vars(profiles))
-    if shape is not None:
-        held = (one.variable for one in profiles.columns()["clamp"])
-        columns |= {name: columns[name][:, list(shape.clamps)] for name in held}
-        columns |= {f"shape_{name}": array for name, array in shape.columns(profiles).items()}
-    return laid_out(layout, time, columns)
 
 
 def laid_out(
@@ -66,7 +37,7 @@ def laid_out(
     }
 
 
-def layout_of(mooring: Mooring | Net, record: Record, shape: ShapeNodes | None) -> ResultLayout:
+def layout_of(mooring: Design, record: Record) -> ResultLayout:
     """Lay out the result of a mooring in the profiles of a record."""
     pieces = mooring.file.pieces
     clamps = [clamp.label for clamp in clamps_down(pieces)]
@@ -80,10 +51,7 @@ def layout_of(mooring: Mooring | Net, record: Record, shape: ShapeNodes | None) 
     if clamps:
         sizes["clamp"] = len(clamps)
         variables.append(labels("clamp_label", "clamp", clamps, CLAMPS))
-    if shape is not None:
-        sizes["node"] = len(shape.distance)
-        variables += _nodes(shape)
-    entered = {**Profiles.columns(), "node": Shape.columns(Output.BATCH)}
+    entered = Profiles.columns()
     for dimension, beside in _BESIDE.items():
         if dimension in sizes:
             columns = terms(entered[dimension])
@@ -126,16 +94,7 @@ def time_axis(time: NDArray[np.datetime64], meaning: str) -> Variable:
     })  # fmt: skip
 
 
-def _nodes(shape: ShapeNodes) -> list[Variable]:
-    distance = {"units": "m", "long_name": "unstretched length of line above the node"}
-    component = {"units": "1", "long_name": "index of the component that the node is on, from 0"}
-    return [
-        Variable("node_distance", ("node",), "<f8", distance, shape.distance),
-        Variable("node_component", ("node",), "<i4", component, shape.component),
-    ]
-
-
-def _station(mooring: Mooring | Net, record: Record) -> tuple[list[Variable], str]:
+def _station(mooring: Design, record: Record) -> tuple[list[Variable], str]:
     """The mooring as a station: at the place of the currents where its file has no position."""
     name, position = mooring.file.name or "mooring", mooring.file.position
     if position is not None:
@@ -153,76 +112,4 @@ def _time_unit(time: NDArray[np.datetime64]) -> str:
         unit
         for unit, nanoseconds in _TIME_UNITS
         if not any((part % nanoseconds).any() for part in parts)
-    )
-
-
-_AT_A_NODE = ("depth", "x", "y", "tension")
-PARTS = 64
-"""Into so many parts, about, the nodes divide the cables and chains of a line."""
-
-
-@dataclass(frozen=True)
-class ShapeNodes:
-    """The nodes of a line: the top of every piece, points on its cables, the top of the anchor.
-
-    A node on a cable is a clamp that weighs nothing and takes no drag, so that what is solved for
-    clamps is solved for it.
-
-    Attributes
-    ----------
-    mooring : with the nodes among its clamps
-    component : (s,) of every node, the index of the piece that it is on
-    distance : (s,) unstretched, from the top of the line [m]
-    """
-
-    mooring: Mooring
-    component: NDArray[np.int32]
-    distance: Floats
-    clamps: tuple[int, ...]
-    order: NDArray[np.int64]
-    own: tuple[int, ...]
-
-    def columns(self, profiles: Profiles) -> Mapping[str, Floats]:
-        """Depth and offsets [m], and tension [N], of the nodes: (n, s) each."""
-        tops = (profiles.depth_top, profiles.x_top, profiles.y_top, profiles.tension_top)
-        between = (profiles.clamp_depth, profiles.clamp_x, profiles.clamp_y, profiles.clamp_tension)
-        return {
-            name: np.hstack([top, inner[:, list(self.own)]])[:, self.order]
-            for name, top, inner in zip(_AT_A_NODE, tops, between, strict=True)
-        }
-
-
-def nodes_of(mooring: Mooring) -> ShapeNodes:
-    """Lay the nodes along the line of a mooring.
-
-    NoEquilibrium: where a piece is to be cut to fit, and no length does.
-    """
-    lengths, flexible = mooring.line.length, mooring.line.flexible
-    part = float(lengths[flexible].sum()) / PARTS
-    tops = np.concatenate([[0.0], np.cumsum(lengths)])
-    nothing = Body.model_validate(
-        {"kind": "body", "length": "0 m", "buoyancy": "0 N", "drag_area": "0 m^2", "cd": 0}
-    )
-    pieces = []
-    component, distance = list(range(len(tops))), tops.tolist()
-    for piece in mooring.file.pieces:
-        index = piece.index
-        clamps = piece.clamps
-        if index < len(lengths) and flexible[index]:
-            length = float(lengths[index])
-            inner = np.linspace(0.0, length, max(ceil(length / part), 1) + 1)[1:-1]
-            clamps += tuple(Clamp("", "", nothing, float(at), piece.place) for at in inner)
-            component += [index] * len(inner)
-            distance += (tops[index] + inner).tolist()
-            piece = replace(piece, length=length, fit_top_depth=None, clamps=clamps)
-        pieces.append(piece)
-    order = np.lexsort((distance, component))
-    own = np.array([clamp.use == "" for clamp in clamps_down(pieces)], bool)
-    return ShapeNodes(
-        mooring=Mooring(replace(mooring.file, pieces=tuple(pieces))),
-        component=np.array(component, np.int32)[order],
-        distance=np.array(distance)[order],
-        clamps=tuple(np.flatnonzero(~own).tolist()),
-        own=tuple(np.flatnonzero(own).tolist()),
-        order=order,
     )

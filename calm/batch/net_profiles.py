@@ -19,21 +19,21 @@ from numpy.typing import NDArray
 from calm.batch import solving
 from calm.batch.solving import sea_of  # by name: what a compiled law calls
 from calm.batch.statuses import OF_PROFILES, STATUSES
+from calm.case.design import Design, Result, result_together
 from calm.case.line_figures import leaning_of
-from calm.case.net import Net, net_result
-from calm.case.result import NetResult
+from calm.case.net import net_legs
 from calm.case.result_tables import MOORED_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.files.legs import nodes_of
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import BETTER, Floats, Water
 from calm.physics.profile import Sea
 from calm.physics.track import head_count
 from calm.records.grids import SeabedGrid
 from calm.solve import expect_many, leg_closing, leg_numbers
-from calm.solve.leg_closing import AskedNet, ask_net, drifts, keep
+from calm.solve.leg_closing import NetTask, copy_values, do_task, drifts
 from calm.solve.leg_numbers import Marching, NetProblem, above_bed, place_of
 from calm.solve.net import NetSearch, NetSolution
 from calm.solve.problem import CHOSEN, FINE
@@ -87,7 +87,7 @@ class NetPaper(NamedTuple):
 
 
 def solve_net_rows(
-    ask: Callable[[AskedNet, float], float],
+    ask: Callable[[NetTask, float], float],
     net: NetProblem,
     step: float,
     paper: NetPaper,
@@ -113,15 +113,15 @@ def solve_net_rows(
         endings[case], sea = sea_of(paper.on, depth, u, v, w, case, paper.still)
         if endings[case] != 0:
             continue
-        keep(paper.start, paper.x)
+        copy_values(paper.start, paper.x)
         for k in range(len(paper.x)):
-            keep(paper.slopes[k], net.slopes[k])
-        keep(paper.scale, net.scale)
+            copy_values(paper.slopes[k], net.slopes[k])
+        copy_values(paper.scale, net.scale)
         how = Marching(sea, 4.0 * step, CHOSEN, False, False, FINE, 0.0)
-        ending = ask(AskedNet(leg_closing.CLOSE, net, paper.x, how, leg_closing.NEAR, True), 0.0)
+        ending = ask(NetTask(leg_closing.CLOSE, net, paper.x, how, leg_closing.NEAR, True), 0.0)
         if ending == FOUND:
             how = Marching(sea, step, CHOSEN, False, False, FINE, 0.0)
-            ending = ask(AskedNet(leg_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
+            ending = ask(NetTask(leg_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
         endings[case] = TO_SOLVE
         if ending == FOUND and stands(net, paper):
             endings[case] = 0
@@ -185,7 +185,7 @@ def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None
 class NetProfiles:
     """A net made ready for many profiles."""
 
-    net: Net
+    net: Design
 
     def water(self, depth: Column, u: Column, v: Column, w: Column) -> Water:
         """Its water with another current."""
@@ -197,16 +197,16 @@ class NetProfiles:
         """The net in still water; None where it does not stand there."""
         expect_many(inf)
         try:
-            return self.net.equilibrium(self.net.water.still())
+            return self.net.together(self.net.water.still())
         except NoEquilibrium:
             return None
 
     @cached_property
-    def at_rest(self) -> NetResult | None:
+    def at_rest(self) -> Result | None:
         """Return what is measured of it there; None where a check of it fails."""
         with suppress(NoEquilibrium):
             if self.still is not None:
-                return net_result(self.net, self.still, self.still.legs)
+                return result_together(self.net, self.still, self.still.legs)
         return None
 
     @cached_property
@@ -226,7 +226,7 @@ class NetProfiles:
         search.put_in(self.net.water.still() if self.still else self.net.water)
         how = search.marching(step, CHOSEN, FINE, given=False)
         # unknowns closed already; near them the legs' own scales are taken and the slopes found
-        search.asked(leg_closing.CLOSE, self.base.unknowns, how, np.inf)
+        search.do(leg_closing.CLOSE, self.base.unknowns, how, np.inf)
         return np.array(search.net.slopes), np.array(search.net.scale)
 
     def search(self) -> NetSearch:
@@ -234,7 +234,7 @@ class NetProfiles:
         settings = replace(self.net.settings, compiled=True)
         nodes = len(nodes_of(self.net.file.legs))
         water = self.water(*[(0.0,)] * 4)
-        return NetSearch(self.net.legs, nodes, water, settings, rough=True)
+        return NetSearch(net_legs(self.net.legs), nodes, water, settings, rough=True)
 
     def solve(
         self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
@@ -278,10 +278,7 @@ class NetProfiles:
         assert self.base is not None
         assert self.slopes is not None
         of_legs = self.net.file.legs
-        weights = [
-            line.anchor_weight if leg.bottom.anchor else inf
-            for line, leg in zip(self.net.lines, of_legs, strict=True)
-        ]
+        weights = [leg.anchor_weight if leg.anchored else inf for leg in self.net.legs]
         clamped = [len(piece.clamps) for piece in self.net.file.pieces]
         paper = NetPaper(
             on=solving.levels_for(current[0].shape[1], water),
@@ -296,7 +293,7 @@ class NetProfiles:
         )
         step = float(search.settings.angle_step)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        ask = by_address(ask_net, AskedNet(leg_closing.CLOSE, search.net, paper.x, how, 0.0, True))
+        ask = by_address(do_task, NetTask(leg_closing.CLOSE, search.net, paper.x, how, 0.0, True))
         given = (ask, search.net, step, paper, *current, rows, endings)
         outcome(solve_net_rows, True, *given)
 
@@ -308,7 +305,7 @@ class NetProfiles:
         above, below = np.zeros((count, pieces)), np.zeros((count, pieces))
         columns = {one.name: np.full((count, legs), np.nan) for one in MOORED_ENDS}
         of_clamps, leans, held = rows.clamps, np.zeros((count, clamps)), 0
-        for i, (leg, line) in enumerate(zip(file.legs, self.net.legs, strict=True)):
+        for i, (leg, line) in enumerate(zip(file.legs, net_legs(self.net.legs), strict=True)):
             own = slice(leg.first, leg.first + len(line.line.length))
             upper, lower = rows.pieces[:, own, :6], rows.pieces[:, own, 6:]
             hangs = line.lower.free and not line.upper.free
@@ -380,9 +377,9 @@ class NetProfiles:
             return
         water = self.water(*(tuple(column) for column in read[:count].T.tolist()))
         try:
-            solution = self.net.equilibrium(water, self.base)
+            solution = self.net.together(water, self.base)
             before: Any = [None] * len(solution.legs) if still is None else still.legs
-            result = net_result(self.net, solution, before)
+            result = result_together(self.net, solution, before)
         except NoEquilibrium as failure:
             status[case] = STATUSES.index(failure.status)
             return

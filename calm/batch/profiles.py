@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import prod
 from typing import TYPE_CHECKING, Any
@@ -18,13 +18,13 @@ from calm.batch import solving
 from calm.batch.net_profiles import NetProfiles
 from calm.batch.solving import LACKS_ROOM, OF_CLAMP, OF_ENDS, OF_PIECE, ProfileArrays, Results
 from calm.batch.statuses import STATUSES, implausible, status_of
-from calm.case import Mooring
+from calm.case import Design
 from calm.case.columns import Output, ResultColumn, derive, shown_in
+from calm.case.leg import Leg
 from calm.case.measure import clamps_of, components_of
-from calm.case.net import Net
 from calm.case.result_tables import MOORED_ENDS, Clamps, Columnar, Components
 from calm.files import Clamp, CurrentTable, Piece
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import Floats, Integers, Water
 from calm.solve import Status
@@ -143,7 +143,7 @@ class Profiles(Columnar):
 
 
 def solve_profiles(
-    mooring: Mooring | Net,
+    mooring: Design,
     u: ArrayLike,
     v: ArrayLike,
     depth: ArrayLike,
@@ -167,8 +167,10 @@ def solve_profiles(
 
     Raises
     ------
+    UsageError
+        The design is a tow.
     TypeError
-        The mooring is none, such as a tow, or the current is no numbers.
+        The current is no numbers.
     ValueError
         Arrays whose shapes do not fit together; less than one worker.
     NoEquilibrium
@@ -181,8 +183,7 @@ def solve_profiles(
 class Batch:
     """A mooring or a net made ready for many profiles, which may come in several goes."""
 
-    mooring: Mooring | Net
-    _starts: Floats | None = field(default=None, init=False, repr=False, compare=False)
+    mooring: Design
 
     @cached_property
     def water(self) -> Water:
@@ -191,7 +192,6 @@ class Batch:
 
     @cached_property
     def _net(self) -> NetProfiles:
-        assert isinstance(self.mooring, Net)
         return NetProfiles(self.mooring)
 
     def solve(
@@ -204,28 +204,23 @@ class Batch:
         workers: int | None = None,
     ) -> Profiles:
         """As `solve_profiles`."""
-        if not isinstance(self.mooring, Mooring | Net):
-            kind = type(self.mooring).__name__
-            raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
         if workers is not None and workers < 1:
             raise ValueError(f"{workers} workers: at least one is needed")
         shape, current = _checked(u, v, depth, w)
-        if isinstance(self.mooring, Net):
-            measured = self._solve_net(self.mooring, current, workers)
+        if self.mooring.several:
+            measured = self._solve_together(current, workers)
         else:
-            measured = self._solve_lines(self.mooring, current, workers)
+            measured = self._solve_alone(self.mooring.moored, current, workers)
         return measured if shape == measured.status.shape else _shaped(measured, shape)
 
-    def _solve_net(self, net: Net, current: tuple[Floats, ...], workers: int | None) -> Profiles:
+    def _solve_together(self, current: tuple[Floats, ...], workers: int | None) -> Profiles:
         status = np.zeros(len(current[1]), np.int8)
         status[self._implausible(current)] = _IMPLAUSIBLE
         columns: dict[str, Any] = self._net.solve(current, status, workers or processors())
-        return Profiles.made(net.file.pieces, status, columns)
+        return Profiles.made(self.mooring.file.pieces, status, columns)
 
-    def _solve_lines(
-        self, mooring: Mooring, current: tuple[Floats, ...], workers: int | None
-    ) -> Profiles:
-        line, count = mooring.line, len(current[1])
+    def _solve_alone(self, leg: Leg, current: tuple[Floats, ...], workers: int | None) -> Profiles:
+        line, count = leg.line, len(current[1])
         rows = Results(
             np.full((count, len(OF_PIECE), len(line.length)), np.nan),
             np.full((count, len(OF_CLAMP), len(line.clamp_piece)), np.nan),
@@ -238,13 +233,13 @@ class Batch:
             levels = depth if len(depth) == 1 else depth[block]
             mine = levels, *(array[block] for array in others)
             columns = Results(*(array[block] for array in rows))
-            self._solve_block(mooring, mine, columns, status[block])
+            self._solve_block(leg, mine, columns, status[block])
 
-        solve(slice(0, 0))  # compiles where need be
+        _ = self._starts  # compiles where need be, and by one thread
         with ThreadPoolExecutor(workers or processors()) as pool:
             for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
                 pass
-        return _measured(mooring, rows, status)
+        return _measured(leg, rows, status)
 
     def _implausible(self, current: tuple[Floats, ...]) -> NDArray[np.bool_]:
         """(n,) profiles with a level that is faster than any current, or deeper than any sea."""
@@ -253,7 +248,7 @@ class Batch:
         return np.asarray(implausible(depth, u, v, w, greatest).any(axis=1))
 
     def _solve_block(
-        self, mooring: Mooring, current: tuple[Floats, ...], rows: Results, status: NDArray[np.int8]
+        self, leg: Leg, current: tuple[Floats, ...], rows: Results, status: NDArray[np.int8]
     ) -> None:
         # always copies: what is read-only is of another type
         depth, u, v, w = (np.array(array, np.float64, order="C") for array in current)
@@ -261,57 +256,81 @@ class Batch:
         if false.any():
             u[false] = np.nan
         endings = np.zeros(len(status), np.int64)
-        self._solve_rows(mooring, (depth, u, v, w), rows, endings, MANY_ROOM)
+        self._solve_rows(leg, (depth, u, v, w), rows, endings, MANY_ROOM)
         for ending in np.unique(endings).tolist():
-            status[endings == ending] = status_of(mooring, ending)
-        lifts = (endings == FOUND) & (rows.ends[:, 1] > mooring.anchor_weight)
+            status[endings == ending] = status_of(leg, ending)
+        lifts = (endings == FOUND) & (rows.ends[:, 1] > leg.anchor_weight)
         status[lifts] = _ANCHOR_LIFTS
         status[false] = _IMPLAUSIBLE
         for array in rows:
             array[status != 0] = np.nan
 
+    @cached_property
+    def _starts(self) -> Floats:
+        """From where every profile of a line is sought."""
+        leg = self.mooring.moored
+        line, none = leg.line, np.zeros((0, 1))
+        rows = Results(
+            np.zeros((0, len(OF_PIECE), len(line.length))),
+            np.zeros((0, len(OF_CLAMP), len(line.clamp_piece))),
+            np.zeros((0, len(OF_ENDS))),
+        )
+        current = np.zeros((1, 1)), none, none, none
+        return self._march(leg, current, rows, np.zeros(0, np.int64), MANY_ROOM, None)
+
     def _solve_rows(
         self,
-        mooring: Mooring,
+        leg: Leg,
         current: tuple[Floats, ...],
         rows: Results,
         endings: Integers,
         room: int,
     ) -> None:
         """Solve profiles, with room for so many segments; with more where that is too little."""
-        line, water = mooring.line, self.water
+        self._march(leg, current, rows, endings, room, self._starts)
+        again = np.flatnonzero(endings == LACKS_ROOM)
+        if again.size:
+            depth, *parts = current
+            mine = depth if len(depth) == 1 else depth[again]
+            found, ends = Results(*(array[again] for array in rows)), endings[again]
+            few = (mine, *(np.ascontiguousarray(part[again]) for part in parts))
+            self._solve_rows(leg, few, found, ends, MORE_ROOM * room)
+            endings[again] = ends
+            for array, solved in zip(rows, found, strict=True):
+                array[again] = solved
+
+    def _march(
+        self,
+        leg: Leg,
+        current: tuple[Floats, ...],
+        rows: Results,
+        endings: Integers,
+        room: int,
+        starts: Floats | None,
+    ) -> Floats:
+        """Solve profiles from known starts, or first find these, and return the starts."""
+        line, water = leg.line, self.water
         depth, *parts = current
         on = solving.levels_for(depth.shape[1], water)
         problem = problem_of(
-            line, water, mooring.settings, compiled=True, rough=True, room=room,
+            line, water, leg.settings, compiled=True, rough=True, room=room,
             intervals=len(on.intervals),
         )  # fmt: skip
         # a profile without current is told apart from the others
         problem = problem._replace(limits=problem.limits._replace(at_rest=False))
         search, referee = search_of(problem, True), referee_of(line, water, 0.0, True)
-        first = self._starts is None
-        if not first:
-            known: Any = problem.starts
-            known[:] = self._starts
-        pieces = mooring.file.pieces[:-1]
+        found: Any = problem.starts
+        if starts is not None:
+            found[:] = starts
+        pieces = leg.file.pieces[:-1]
         paper = ProfileArrays(
             on=on,
             may_lie=np.array([one.component.kind == "chain" for one in pieces], np.int64),
         )
         find = by_address(find_asked, AskedSearch(search, referee))
-        given = (find, search, referee, paper, first, depth, *parts, rows, endings)
+        given = (find, search, referee, paper, starts is None, depth, *parts, rows, endings)
         outcome(solving.solve_rows, True, *given)
-        if first:
-            vars(self).update(_starts=problem.starts)
-        again = np.flatnonzero(endings == LACKS_ROOM)
-        if again.size:
-            mine = depth if len(depth) == 1 else depth[again]
-            found, ends = Results(*(array[again] for array in rows)), endings[again]
-            few = (mine, *(np.ascontiguousarray(part[again]) for part in parts))
-            self._solve_rows(mooring, few, found, ends, MORE_ROOM * room)
-            endings[again] = ends
-            for array, solved in zip(rows, found, strict=True):
-                array[again] = solved
+        return np.asarray(found)
 
 
 def processors() -> int:
@@ -362,13 +381,13 @@ def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
     return profiles.with_columns(**columns)
 
 
-def _measured(mooring: Mooring, rows: Results, status: NDArray[np.int8]) -> Profiles:
+def _measured(leg: Leg, rows: Results, status: NDArray[np.int8]) -> Profiles:
     """The results with the anchor, and with the knockdown from the shape in still water."""
     pieces, clamps, ends = rows
-    above = mooring.file.pieces[:-1]
+    above = leg.file.pieces[:-1]
     depth_top = np.full(pieces.shape[-1], np.nan)
     clamp_depth = np.full(clamps.shape[-1], np.nan)
-    still = mooring.at_rest
+    still = leg.at_rest
     if still is not None:
         depth_top = components_of(above, still).depth_top
         clamp_depth = clamps_of(above, still).depth
@@ -383,7 +402,7 @@ def _measured(mooring: Mooring, rows: Results, status: NDArray[np.int8]) -> Prof
         name: np.hstack([pieces[:, i], ends_at.get(name, nothing)])
         for i, name in enumerate(OF_PIECE)
     }
-    on_anchor = clamps_down(mooring.file.pieces[-1:])
+    on_anchor = clamps_down(leg.file.pieces[-1:])
     ends_at |= {
         "depth": ends_at["depth_top"] + [clamp.at for clamp in on_anchor],
         "tension": np.repeat(pull, len(on_anchor), axis=1),
@@ -398,4 +417,4 @@ def _measured(mooring: Mooring, rows: Results, status: NDArray[np.int8]) -> Prof
     columns["clamp_knockdown"] = np.hstack(
         [clamps[:, OF_CLAMP.index("depth")] - clamp_depth, standing]
     )
-    return Profiles.made(mooring.file.pieces, status, columns)
+    return Profiles.made(leg.file.pieces, status, columns)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.solving import HEAPED, LEVELS_COINCIDE, NO_CURRENT
-from calm.case import Mooring
+from calm.case.leg import Leg
 from calm.physics.line import Floats
 from calm.records.current_terms import DEEPEST, IMPOSSIBLE
 from calm.records.record import Record
@@ -45,10 +45,10 @@ OF_PROFILES = {NO_CURRENT: "no-current", LEVELS_COINCIDE: "levels-coincide"}
 """The status of a profile that is none, by how it ends."""
 
 
-def status_of(mooring: Mooring, ending: int) -> int:
+def status_of(leg: Leg, ending: int) -> int:
     """The index in `STATUSES` of how the solver ended with a profile of a mooring."""
     if ending == HEAPED:
-        return STATUSES.index(mooring.heaped("a piece").status)
+        return STATUSES.index(leg.heaped("a piece").status)
     return STATUSES.index(OF_PROFILES.get(ending) or STATUS_OF[ending].label)
 
 

@@ -12,7 +12,7 @@ from calm.case.targets import pointed
 from calm.errors import UsageError, unknown
 from calm.files import Anchor, Cable, Chain, Clamp, Flexible, MooringFile, Piece
 from calm.files.definition import STANDARD_GRAVITY
-from calm.files.mooring_file import numbered, placed
+from calm.files.pieces import numbered, placed
 from calm.units import DIMENSIONS, QuantityError, parse_quantity, with_unit
 
 MOST_BUOYANCY = 100.0

@@ -21,7 +21,8 @@ from math import radians
 
 import numpy as np
 
-from calm.case.net import Net
+from calm.case.design import Design
+from calm.case.net import net_legs
 from calm.files.legs import nodes_of
 from calm.physics.line import Floats, Line, Water
 from calm.solve import Settings
@@ -168,11 +169,11 @@ def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Var
     return near
 
 
-def of_a_net(net: Net, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
+def of_a_net(net: Design, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
     """The same of a point of a net."""
 
     def near(lines: Sequence[Line]) -> Varied:
-        legs, nodes = net.with_own(lines).legs, len(nodes_of(net.file.legs))
+        legs, nodes = net_legs(net.with_lines(lines).legs), len(nodes_of(net.file.legs))
         nearby = NearbyNet(legs, nodes, net.water, SETTINGS, net.standing)
         node = nearby.node(*point)
         return lambda leg, line: _observed(*nearby.shape(leg, line, point[0]), node)

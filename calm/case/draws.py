@@ -11,8 +11,8 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar, cast
 
 import numpy as np
 
+from calm.case.leg import Leg
 from calm.case.memory import Forgetful
-from calm.case.mooring import Mooring
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Spread, Uncertainty
 from calm.physics.line import Floats, Line, Water
@@ -143,9 +143,9 @@ def drawn_water(water: Water, draw: Draw) -> Water:
 class Neighbours(Forgetful):
     """Solves what differs little from a mooring from its equilibrium, or anew where that fails."""
 
-    def __init__(self, mooring: Mooring) -> None:
-        self._mooring = mooring
-        self._moving = Nearby(mooring.line, mooring.water, mooring.settings)
+    def __init__(self, leg: Leg) -> None:
+        self._leg = leg
+        self._moving = Nearby(leg.line, leg.water, leg.settings)
         self._still: Nearby | None = None
         self._laid: tuple[Line, Track] | None = None
 
@@ -157,7 +157,7 @@ class Neighbours(Forgetful):
         return super().of(solver, *given, **named)
 
     def _solved(self, line: Line, water: Water, settings: Settings) -> Solution:
-        moving = water.moving or not self._mooring.water.moving
+        moving = water.moving or not self._leg.water.moving
         try:
             if moving:
                 return self._moving.solved(line, water, self._track(line))
@@ -172,17 +172,17 @@ class Neighbours(Forgetful):
 
     def _at_rest(self, line: Line, settings: Settings) -> Nearby:
         if self._still is None:
-            given = replace(self._mooring.line, floating=line.floating)
-            self._still = Nearby(given, self._mooring.water.still(), settings)
+            given = replace(self._leg.line, floating=line.floating)
+            self._still = Nearby(given, self._leg.water.still(), settings)
         return self._still
 
 
-def drawn(mooring: Mooring, draws: Iterable[Draw]) -> Iterator[Mooring]:
-    """The mooring in some draws, each solved from the equilibrium of the mooring.
+def drawn(leg: Leg, draws: Iterable[Draw]) -> Iterator[Leg]:
+    """The line of a mooring in some draws, each solved from its equilibrium as given.
 
-    NoEquilibrium: the mooring itself has none.
+    NoEquilibrium: as given it has none.
     """
-    neighbours = Neighbours(mooring)
+    neighbours = Neighbours(leg)
     for draw in draws:
-        line, water = drawn_line(mooring.line, draw), drawn_water(mooring.water, draw)
-        yield Mooring(mooring.file, mooring.for_surface, neighbours, line, water)
+        line, water = drawn_line(leg.line, draw), drawn_water(leg.water, draw)
+        yield Leg(leg.file, leg.for_surface, neighbours, line, water)

@@ -7,16 +7,15 @@ from typing import Any
 import numpy as np
 
 from calm.case import attribution
+from calm.case.design import Design, Result
 from calm.case.draws import Draw, drawn_water
-from calm.case.mooring import Mooring
-from calm.case.net import Net
 from calm.case.parts import TOP, one_part
-from calm.case.result import NetResult, Result, legs_of
 from calm.case.result_tables import ColumnTable
 from calm.case.targets import Figures, figures_of, leg_at
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place
-from calm.files.mooring_file import clamps_in
+from calm.files.mooring_file import refuse_tow
+from calm.files.pieces import clamps_in
 from calm.physics.line import Floats, Line, Water
 from calm.solve import expect_many
 
@@ -116,7 +115,7 @@ def _change_document(change: WhatIf) -> dict[str, Any]:
     return {"change": change.name, "status": "converged", **asdict(change.figures)}
 
 
-def explain(result: Result | NetResult, label: str | None = None) -> Explanation:
+def explain(result: Result, label: str | None = None) -> Explanation:
     """Explain a solved mooring, or a net of legs.
 
     Parameters
@@ -133,20 +132,12 @@ def explain(result: Result | NetResult, label: str | None = None) -> Explanation
     Raises
     ------
     UsageError
-        No part above the anchor is called so.
+        No part above the anchor is called so; it is a tow.
     """
-    mooring = result.mooring
-    pieces = [
-        piece
-        for leg in legs_of(result)
-        for piece in leg.file.pieces[: len(leg.mooring.line.length)]
-    ]
-    free = [
-        leg.file.pieces[0].label
-        for leg in legs_of(result)
-        for keys in leg.file.legs
-        if keys.top.free
-    ]
+    refuse_tow(result.file)
+    mooring = result.design
+    pieces = [piece for leg in mooring.legs for piece in leg.file.pieces[: len(leg.line.length)]]
+    free = [leg.file.pieces[0].label for leg in mooring.legs if leg.top.free]
     try:
         part = one_part(pieces, label or (free or [TOP])[0])
     except LookupError as error:
@@ -193,10 +184,8 @@ _COLUMNS = ("knockdown", "excursion", "used_buoyancy")
 """What the columns of an `Attribution` add up to."""
 
 
-def _notes(
-    result: Result | NetResult, quantities: tuple[str, ...], *, surface: bool
-) -> Iterator[str]:
-    if isinstance(result, NetResult):
+def _notes(result: Result, quantities: tuple[str, ...], *, surface: bool) -> Iterator[str]:
+    if result.several:
         yield (
             "Excursions are from the origin of the file's places; the anchor is the one that "
             "needs the most weight."
@@ -211,19 +200,19 @@ def _notes(
             "In still water the line has no unique shape, so there is no knockdown: its excursion "
             "is explained instead."
         )
-    if not result.mooring.water.moving:
+    if not result.design.water.moving:
         yield "There is no current, and so no drag."
 
 
 def _shares(
-    result: Result | NetResult, figures: Figures, stands: bool, place: Place
+    result: Result, figures: Figures, stands: bool, place: Place
 ) -> attribution.Attribution:
-    mooring, point = result.mooring, _point(result, place)
-    lines = [leg.mooring.line for leg in legs_of(result)]
+    design, point = result.design, _point(result, place)
+    lines = [leg.line for leg in design.legs]
     whole = np.array([figures.depth, figures.excursion, figures.used_buoyancy])
     start = None
-    if isinstance(mooring, Net):
-        near = attribution.of_a_net(mooring, point)
+    if design.several:
+        near = attribution.of_a_net(design, point)
         if stands:
             bare = [attribution.with_drag(line, 0.0) for line in lines]
             start = near(bare)(0, bare[0])
@@ -231,26 +220,26 @@ def _shares(
     if stands:
         assert figures.knockdown is not None
         start = np.array([figures.depth - figures.knockdown, 0.0, 1.0])
-    return attribution.attribute(lines, attribution.of_a_line(mooring.water, point), start, whole)
+    return attribution.attribute(lines, attribution.of_a_line(design.water, point), start, whole)
 
 
-def _point(result: Result | NetResult, place: Place) -> attribution.SolverPart:
+def _point(result: Result, place: Place) -> attribution.SolverPart:
     """Leg, piece and clamp, or -1, by which the solver knows a part."""
     leg = leg_at(result, place)
     pieces, own = leg.file.pieces, replace(place, clamp=-1)
     index = next(piece.index for piece in pieces if piece.place == own)
     clamps = [clamp.place for clamp in clamps_in(pieces)]
-    number = [each is leg for each in legs_of(result)].index(True)
+    number = [each is leg for each in result.legs].index(True)
     return number, index, clamps.index(place) if place.is_clamp else -1
 
 
-def _causes(result: Result | NetResult, shares: attribution.Attribution) -> Causes:
-    legs = legs_of(result)
+def _causes(result: Result, shares: attribution.Attribution) -> Causes:
+    legs = result.legs
     labels = []
     for leg, piece, clamp in shares.parts:
         pieces = legs[leg].file.pieces
         labels.append((clamps_in(pieces)[clamp] if clamp >= 0 else pieces[piece]).label)
-    first = [leg.file.legs[0].first if leg.file.legs else 0 for leg in legs]
+    first = [leg.leg.keys.first for leg in legs]
     return Causes(
         index=np.array([first[leg] + piece for leg, piece, _ in shares.parts], dtype=np.int64),
         label=labels,
@@ -262,13 +251,9 @@ def _causes(result: Result | NetResult, shares: attribution.Attribution) -> Caus
     )
 
 
-def _drags(result: Result | NetResult, parts: list[attribution.SolverPart]) -> Floats:
+def _drags(result: Result, parts: list[attribution.SolverPart]) -> Floats:
     """(p,) size of the horizontal force of the water on each part [N]."""
-    mooring = result.mooring
-    if isinstance(mooring, Net):
-        solutions = mooring.standing.legs
-    else:
-        solutions = (mooring.solved(mooring.line),)
+    solutions = result.design.solutions
     found = []
     for leg, p, m in parts:
         one = solutions[leg]
@@ -279,7 +264,7 @@ def _drags(result: Result | NetResult, parts: list[attribution.SolverPart]) -> F
     return np.array(found)
 
 
-def _variations(mooring: Mooring | Net) -> Iterator[tuple[str, Mooring | Net]]:
+def _variations(mooring: Design) -> Iterator[tuple[str, Design]]:
     percent = f"{CHANGE:.0%}".replace("%", " %")
     yield f"buoyancy +{percent}", _with(mooring, lambda line: _with_buoyancy(line, 1.0 + CHANGE))
     yield f"drag −{percent}", _with(mooring, lambda line: attribution.with_drag(line, 1.0 - CHANGE))
@@ -288,13 +273,9 @@ def _variations(mooring: Mooring | Net) -> Iterator[tuple[str, Mooring | Net]]:
         yield f"current {sign}{percent}", _with(mooring, lambda line: line, flow)
 
 
-def _with(
-    mooring: Mooring | Net, changed: Callable[[Line], Line], water: Water | None = None
-) -> Mooring | Net:
-    """Return the same mooring or net with lines or water that differ from its file."""
-    if isinstance(mooring, Net):
-        return mooring.with_own([changed(leg.line) for leg in mooring.lines], water)
-    return Mooring(mooring.file, line=changed(mooring.line), water=water or mooring.water)
+def _with(design: Design, changed: Callable[[Line], Line], water: Water | None = None) -> Design:
+    """Return the same design with lines or water that differ from its file."""
+    return design.with_lines([changed(leg.line) for leg in design.legs], water)
 
 
 def _with_buoyancy(line: Line, factor: float) -> Line:
@@ -311,7 +292,7 @@ def _with_buoyancy(line: Line, factor: float) -> Line:
     )
 
 
-def _changed(name: str, mooring: Mooring | Net, place: Place) -> WhatIf:
+def _changed(name: str, mooring: Design, place: Place) -> WhatIf:
     try:
         return WhatIf(name, figures_of(mooring.solve(), place))
     except NoEquilibrium as failure:

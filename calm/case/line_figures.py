@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from calm.files import Clamp, Piece
-from calm.files.mooring_file import clamps_in
+from calm.files.pieces import clamps_in
 from calm.physics.line import Floats, Integers
 from calm.physics.track import head_count
 from calm.solve import Solution

@@ -3,48 +3,25 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from typing import Any
 
 import numpy as np
 
 from calm.errors import NoEquilibrium, UsageError, unknown
 from calm.files import Clamp, MooringFile, Piece, read_mooring
-from calm.files.mooring_file import parts_of
+from calm.files.mooring_file import legs_of
+from calm.files.pieces import parts_of
 from calm.files.yaml_document import Location
 from calm.physics.line import Floats
 from calm.solve import Solution
 from calm.whole_file import read_text
 
-if TYPE_CHECKING:
-    from calm.case.mooring import Mooring
-    from calm.case.tow import Tow
-
-
 TOP = "top"
 """The free end of the line, whatever its label."""
-
-
-def cut_like(file: MooringFile, case: Mooring | Tow) -> MooringFile:
-    """Return a file with the piece that is cut to fit at the length that it has in a case.
-
-    NoEquilibrium: no length fits there.
-    """
-    pieces = tuple(
-        piece
-        if piece.fit_top_depth is piece.fit_body_depth is None
-        else replace(
-            piece,
-            length=float(case.line.length[piece.index]),
-            fit_top_depth=None,
-            fit_body_depth=None,
-        )
-        for piece in file.pieces
-    )
-    return replace(file, pieces=pieces)
 
 
 def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
@@ -99,9 +76,6 @@ def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterato
         raise error.naming(f"{piece.label} (piece {piece.index + 1})") from error
 
 
-T = TypeVar("T")
-
-
 OtherEnvironment = str | Path | Mapping[str, Any]
 """The name of one in the file, an environment file, or keys to change in the file's own."""
 
@@ -115,10 +89,10 @@ class Origin:
     catalogs: tuple[Path, ...]
     text: str | None
 
-    def read(self, *, net: bool = False) -> MooringFile:
+    def read(self) -> MooringFile:
         """Return the file with all it refers to, as `read_mooring` does."""
         return read_mooring(
-            self.path, environment=self.environment, catalogs=self.catalogs, text=self.text, net=net
+            self.path, environment=self.environment, catalogs=self.catalogs, text=self.text
         )
 
     def changed(
@@ -171,46 +145,6 @@ def _place_of(file: MooringFile, label: str) -> Location:
     return (*clamps_of(place.item), place.clamp) if place.is_clamp else (*LINE, place.item)
 
 
-def as_read(kind: Callable[[MooringFile], T], file: MooringFile, origin: Origin) -> T:
-    """Return what a file says, which knows what it was read from."""
-    read = kind(file)
-    vars(read)["origin"] = origin
-    return read
-
-
-class ReadFromFile:
-    """A mooring, a tow or a net as read from its file."""
-
-    file: MooringFile
-    origin: Origin | None
-
-    def with_(
-        self, label: str | None = None, /, environment: OtherEnvironment | None = None, **keys: Any
-    ) -> Self:
-        """Return the same with some values of its file changed, as `Origin.changed`.
-
-        Parameters
-        ----------
-        label : of the piece or clamp that has the keys; the keys are the file's where it is not
-            given: ``mooring.with_("wire 1", length="480 m")``, ``tow.with_(tow={"speed": "4 kn"})``
-        environment : name of one of its `environments`, an environment file, or keys of its own
-
-        Raises
-        ------
-        InputError
-            With the mistakes that the values make.
-        UsageError
-            No piece has the label, or it was not loaded from a file.
-        """
-        if self.origin is None:
-            raise UsageError("what was not loaded from a file has no values to change")
-        origin = self.origin.changed(self.file, label, environment, keys)
-        file = origin.read(net=bool(self.file.legs))
-        if (file.tow is None) != (self.file.tow is None):
-            raise UsageError("a mooring does not become a tow, nor a tow a mooring")
-        return as_read(type(self), file, origin)
-
-
 def below_the_seabed(file: MooringFile, solution: Solution, depth: float) -> Floats:
     """Return how far below the seabed of its file every node of a line is (k+1,) [m]; NaN off its
     grid.
@@ -219,7 +153,7 @@ def below_the_seabed(file: MooringFile, solution: Solution, depth: float) -> Flo
     """
     seabed, place = file.environment.seabed, solution.position
     assert seabed is not None
-    anchor = file.legs[0].bottom.anchor if file.legs else None
+    anchor = legs_of(file)[0].bottom.anchor
     origin = (0.0, 0.0) if anchor is None else anchor.at
     below: Floats = -place[:, 2] - depth - seabed.deeper(place[:, :2] - np.array(origin))
     return below

@@ -30,7 +30,7 @@ from calm.case.columns import (
 from calm.case.line_figures import catalogue_figures
 from calm.errors import unknown
 from calm.files import Clamp, MooringFile, Piece, Place
-from calm.files.mooring_file import STAND_IN
+from calm.files.pieces import STAND_IN
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES
 
@@ -545,23 +545,21 @@ class Shape:
 
     depth: Floats = column(
         "depth of the line",
-        _OF_NODES | Output.BATCH,
+        _OF_NODES,
         found=lambda nodes: -nodes.position[:, 2],
         attributes=_LEVEL,
     )
     x: Floats = column(
         f"{_EAST}, of the line",
-        _OF_NODES | Output.BATCH,
+        _OF_NODES,
         found=lambda nodes: nodes.position[:, 0],
     )
     y: Floats = column(
         f"{_NORTH}, of the line",
-        _OF_NODES | Output.BATCH,
+        _OF_NODES,
         found=lambda nodes: nodes.position[:, 1],
     )
-    tension: Floats = column(
-        "tension of the line", _OF_NODES | Output.BATCH, found=lambda nodes: nodes.tension
-    )
+    tension: Floats = column("tension of the line", _OF_NODES, found=lambda nodes: nodes.tension)
     tilt: Floats = column(
         "angle of the segment that ends there from the vertical",
         _OF_NODES,
@@ -785,7 +783,7 @@ TOWED_ENDS = (
         QUANTITIES["speed"],
         "speed of the ship over the ground",
         Output.NETCDF,
-        found=lambda tow: tow.speed,
+        found=lambda tow: tow.file.tow.speed,
     ),
     ResultColumn(
         "body_depth",

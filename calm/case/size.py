@@ -6,12 +6,11 @@ from functools import cache, partial
 from typing import Any
 
 from calm.case.adjustment import Adjustment, parse_change, parse_range
-from calm.case.mooring import Mooring
-from calm.case.net import Net
-from calm.case.result import NetResult, Result
+from calm.case.design import Design, Result
 from calm.case.targets import Figures, Target, figures_of, parse_target
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place
+from calm.files.mooring_file import refuse_tow
 from calm.solve import expect_many
 from calm.solve.least_change import LeastChange
 from calm.units import with_unit
@@ -44,7 +43,7 @@ class Trial:
 
     value: float
     measured: float | None = None
-    result: Result | NetResult | None = field(default=None, repr=False)
+    result: Result | None = field(default=None, repr=False)
     failure: NoEquilibrium | None = None
     place: Place | None = None
 
@@ -129,11 +128,11 @@ def _trial_document(trial: Trial) -> dict[str, Any]:
 
 
 def size(
-    mooring: Mooring | Net, target: str, change: str, between: tuple[str, str] | None = None
+    mooring: Design, target: str, change: str, between: tuple[str, str] | None = None
 ) -> Sizing:
     """Find the smallest change of a mooring that meets a target.
 
-    Every value tried is solved as `Mooring.solve` does, a piece cut to fit being cut anew.
+    Every value tried is solved as `Design.solve` does, a piece cut to fit being cut anew.
 
     Parameters
     ----------
@@ -145,8 +144,9 @@ def size(
     Raises
     ------
     UsageError
-        Target, change or range cannot be understood; all their mistakes at once.
+        Target, change or range cannot be understood; all their mistakes at once. It is a tow.
     """
+    refuse_tow(mooring.file)
     wanted, adjustment, limits = _understood(mooring, target, change, between)
     at = cache(partial(_trial, wanted, adjustment))
     before = at(adjustment.now)
@@ -190,7 +190,7 @@ def size(
 def _trial(target: Target, change: Adjustment, value: float) -> Trial:
     file = change.file if value == change.now else change.to(value)
     try:
-        result = Net(file).solve() if file.legs else Mooring(file).solve()
+        result = Design(file).solve()
     except NoEquilibrium as failure:
         return Trial(value, failure=failure)
     place = target.place if file.legs else None
@@ -198,7 +198,7 @@ def _trial(target: Target, change: Adjustment, value: float) -> Trial:
 
 
 def _understood(
-    mooring: Mooring | Net, target: str, change: str, between: tuple[str, str] | None
+    mooring: Design, target: str, change: str, between: tuple[str, str] | None
 ) -> tuple[Target, Adjustment, tuple[float, float]]:
     mistakes: list[str] = []
     wanted, adjustment, limits = None, None, None

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from calm.case.leg import Leg
 from calm.errors import NoEquilibrium
 from calm.files import Solver
 from calm.physics.drag import line_drag
 from calm.physics.strumming import shedding_frequency
 from calm.solve import Solution, Status
 from calm.solve.audit import amplification, flow_across
-
-if TYPE_CHECKING:
-    from calm.case.mooring import Mooring
-    from calm.case.tow import Tow
 
 
 @dataclass(frozen=True)
@@ -72,17 +68,17 @@ class StrummingBand:
     tension: float | None = None
 
 
-def band_of(case: Mooring | Tow, still_depth: float | None = None) -> StrummingBand | None:
-    """The band of a tow, or of a mooring that is `still_depth` deep in still water [m].
+def band_of(leg: Leg, still_depth: float | None = None) -> StrummingBand | None:
+    """The band of a line, of a mooring that is `still_depth` deep in still water [m].
 
     None where nothing can strum or a law of strumming is already in use.
     """
-    line, cables = case.line, case.line.diameter > 0.0
-    if case.file.solver.strumming is not None or not (line.normal_drag[cables] > 0.0).any():
+    line, cables = leg.line, leg.line.diameter > 0.0
+    if leg.file.solver.strumming is not None or not (line.normal_drag[cables] > 0.0).any():
         return None
     try:
         raised = np.where(cables, FACTOR, 1.0) * line.normal_drag
-        solution = case.solved(replace(line, normal_drag=raised))
+        solution = leg.solved(replace(line, normal_drag=raised))
     except NoEquilibrium as failure:
         return StrummingBand(FACTOR, failure.status)
     node = solution.body_node if solution.line.towed else 0

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Any
 
+from calm.case.design import Result
+from calm.case.leg_result import LegResult
 from calm.case.parts import TOP, one_part
-from calm.case.result import NetResult, Result, legs_of
-from calm.case.result_tables import AnchorLoad, ClampRow, ComponentRow, EndLoad, rows_by_place
+from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place
 from calm.errors import UsageError, unknown
 from calm.files import MooringFile, Place
-from calm.files.mooring_file import STAND_IN, parts_of
+from calm.files.pieces import parts_of
 from calm.units import DIMENSIONS, QuantityError, parse_quantity
 
 QUANTITIES = {
@@ -63,11 +64,9 @@ class Target:
         """SI unit, or degrees."""
         return DIMENSIONS[QUANTITIES[self.quantity]].unit
 
-    def value(self, result: Result | NetResult) -> float | None:
+    def value(self, result: Result) -> float | None:
         """The quantity in a result; None for a knockdown that has no meaning."""
         if self.quantity == "required_weight":
-            if isinstance(result, Result):
-                return result.anchor.required_weight
             (anchor,) = (one for one in result.anchors if self.label in (None, one.leg))
             return anchor.required_weight
         value: float | None = spot_of(result, self.place)[self.quantity]
@@ -136,7 +135,7 @@ def parse_target(text: str, file: MooringFile) -> Target:
     return Target(text, quantity, label, RELATIONS[relation], limit, place)
 
 
-def spot_of(result: Result | NetResult, place: Place | None = None) -> dict[str, Any]:
+def spot_of(result: Result, place: Place | None = None) -> dict[str, Any]:
     """Return depth, excursion and knockdown [m], tilt [degrees] and tension [N] of a part.
 
     Of a piece they are those of its upper end, and the tension is the greatest in it; the knockdown
@@ -176,15 +175,13 @@ class Figures:
     required_weight: float | None
 
 
-def figures_of(result: Result | NetResult, place: Place | None = None) -> Figures:
+def figures_of(result: Result, place: Place | None = None) -> Figures:
     """The figures of a result; those of the line are of the part at a place, by default the top.
 
-    Of a net the anchor is the one that needs the most weight.
+    Of several anchors it is the one that needs the most weight.
     """
     spot, leg = spot_of(result, place), leg_at(result, place)
-    anchor: AnchorLoad | EndLoad | None = leg.anchor
-    if isinstance(result, NetResult):
-        anchor = max(result.anchors, key=lambda one: one.required_weight or 0.0, default=None)
+    anchor = max(result.anchors, key=lambda one: one.required_weight or 0.0, default=None)
     names = ("tension", "vertical", "horizontal", "required_weight")
     return Figures(
         *(spot["depth"], spot["knockdown"], spot["excursion"], leg.top.used_buoyancy),
@@ -192,10 +189,9 @@ def figures_of(result: Result | NetResult, place: Place | None = None) -> Figure
     )
 
 
-def leg_at(result: Result | NetResult, place: Place | None = None) -> Result:
+def leg_at(result: Result, place: Place | None = None) -> LegResult:
     """The leg that the part at a place is in, by default the first; a single line is one."""
-    for leg in legs_of(result):
-        own = [piece for piece in leg.file.pieces if piece.use != STAND_IN]
-        if place is None or any(part.place == place for part in parts_of(own)):
+    for leg in result.legs:
+        if place is None or any(part.place == place for part in parts_of(leg.leg.pieces)):
             return leg
     raise KeyError(place)

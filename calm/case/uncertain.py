@@ -16,11 +16,12 @@ from typing import Any
 
 import numpy as np
 
+from calm.case.design import Result
 from calm.case.draws import CAUSES, SAMPLES, Draw, checked_samples, drawn, draws_of, normals_of
+from calm.case.ends import anchor_load
+from calm.case.leg import Leg
 from calm.case.line_figures import LineFigures
-from calm.case.measure import anchor_load, clamps_of
-from calm.case.mooring import Mooring
-from calm.case.result import Result
+from calm.case.measure import clamps_of
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats
 from calm.solve import expect_many
@@ -140,18 +141,18 @@ def uncertain(
     Raises
     ------
     UsageError
-        The number of samples is no such number.
+        The number of samples is no such number; it is a tow, or has several legs.
     NoEquilibrium
         No sample has an equilibrium.
     """
-    mooring = result.mooring
+    leg = result.design.moored
     checked_samples(samples)
     expect_many(samples)
-    _figures(mooring, [Draw()])  # fetches what is compiled, once for the processes that are forked
+    _figures(leg, [Draw()])  # fetches what is compiled, once for the processes that are forked
     normal = normals_of(samples, seed) if normals is None else normals()
-    draws = draws_of(mooring.file.uncertainty, normal)
+    draws = draws_of(leg.file.uncertainty, normal)
     blocks = [draws[first : first + BLOCK] for first in range(0, samples, BLOCK)]
-    outcomes = [each for block in mapped(partial(_figures, mooring), blocks) for each in block]
+    outcomes = [each for block in mapped(partial(_figures, leg), blocks) for each in block]
     failures = [one for one in outcomes if isinstance(one, NoEquilibrium)]
     if len(failures) == samples:
         raise failures[0]
@@ -184,11 +185,11 @@ def uncertain(
 
 
 def _figures(
-    mooring: Mooring, draws: Sequence[Draw]
+    leg: Leg, draws: Sequence[Draw]
 ) -> list[tuple[Floats, tuple[float, float]] | NoEquilibrium]:
     """Return (5, p + m) figures of the pieces and clamps, and those of the anchor, draw by draw."""
     figures: list[tuple[Floats, tuple[float, float]] | NoEquilibrium] = []
-    for one in drawn(mooring, draws):
+    for one in drawn(leg, draws):
         try:
             figures.append(_figures_of(one))
         except NoEquilibrium as failure:
@@ -196,17 +197,17 @@ def _figures(
     return figures
 
 
-def _figures_of(mooring: Mooring) -> tuple[Floats, tuple[float, float]]:
-    solution = mooring.equilibrium(mooring.water)
-    still = mooring.still_beside(solution)
+def _figures_of(leg: Leg) -> tuple[Floats, tuple[float, float]]:
+    solution = leg.equilibrium()
+    still = leg.still_beside(solution)
     rows = LineFigures(solution, still)
-    load = anchor_load(mooring, solution)
+    load = anchor_load(leg, solution)
     (x, y, up), tension = rows.top.T, rows.greatest_tension
     excursion = hypot(x[0], y[0])
     offset = (x * x[0] + y * y[0]) / excursion if excursion else np.zeros(len(x))
     pieces = np.stack([-up, rows.knockdown, rows.tilt, tension, offset])
     anchor = [-rows.bottom[-1, 2], 0.0, 0.0, load.tension, 0.0]
-    held = clamps_of(mooring.file.pieces[:-1], solution, still)
+    held = clamps_of(leg.file.pieces[:-1], solution, still)
     clamps = np.stack([held.depth, held.knockdown, held.tilt, held.tension, 0.0 * held.depth])
     return np.column_stack([pieces, anchor, clamps]), (load.tension, load.required_weight)
 

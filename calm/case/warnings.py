@@ -4,22 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from math import hypot
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from calm.case.leg_result import LegResult
 from calm.case.parts import below_the_seabed
 from calm.files import Cable, Component
-from calm.files.mooring_file import clamps_in, parts_of
+from calm.files.pieces import clamps_in, parts_of
 from calm.physics.materials import fibre_of, published_stiffnesses
 from calm.quantities import say
 from calm.solve import Solution
 from calm.solve.audit import flow_across
 from calm.solve.finish import doubted_depth
-
-if TYPE_CHECKING:
-    from calm.case.result import Result
-    from calm.case.tow import TowResult
 
 LARGEST_REYNOLDS = 2e5
 """Above it a constant drag coefficient of a smooth sphere or cylinder no longer holds."""
@@ -46,15 +42,15 @@ def counted_working_load(component: Component) -> float | None:
     return component.working_load
 
 
-def warnings_of(result: Any, solution: Solution) -> tuple[str, ...]:
-    """Return every warning of a mooring's or a tow's result, the file's own notices first."""
+def warnings_of(result: LegResult, solution: Solution) -> tuple[str, ...]:
+    """Return every warning of the result of a leg, the file's own notices first."""
     # a leg that is marched from its other end is no tow
-    doubts = (*_OF_ANY, *(_OF_A_TOW if result.type == "tow" else _OF_A_MOORING))
+    doubts = (*_OF_ANY, *(_OF_A_TOW if result.leg.towed else _OF_A_MOORING))
     found = [warning for doubt in doubts for warning in doubt(result, solution)]
     return (*result.file.notices, *found)
 
 
-def _overloaded(result: Result | TowResult, _: Solution) -> Iterator[str]:
+def _overloaded(result: LegResult, _: Solution) -> Iterator[str]:
     for row in result.components:
         if row.safety_factor < 1.0:
             pull = say("tension", row.tension)
@@ -64,7 +60,7 @@ def _overloaded(result: Result | TowResult, _: Solution) -> Iterator[str]:
             yield f"{row.label} is overloaded: {pull} is above its working load."
 
 
-def _same_serial(result: Result | TowResult, _: Solution) -> Iterator[str]:
+def _same_serial(result: LegResult, _: Solution) -> Iterator[str]:
     seen: dict[tuple[str, str], str] = {}
     for part in parts_of(result.file.pieces):
         if part.serial is not None:
@@ -73,17 +69,17 @@ def _same_serial(result: Result | TowResult, _: Solution) -> Iterator[str]:
                 yield f"{other} and {part.label} have the same serial number, {part.serial}."
 
 
-def _anchor_too_light(result: Result, _: Solution) -> Iterator[str]:
+def _anchor_too_light(result: LegResult, _: Solution) -> Iterator[str]:
     anchor = result.anchor
     if anchor.weight < anchor.required_weight:
-        of = f" of leg {result.name}" if result.file.legs else ""
+        of = f" of leg {result.name}" if result.leg.of_several else ""
         yield (
             f"The anchor{of} weighs {say('wet_weight', anchor.weight)} in water; "
             f"{say('required_weight', anchor.required_weight)} is required to hold the line."
         )
 
 
-def _anchor_of_unknown_material(result: Result, _: Solution) -> Iterator[str]:
+def _anchor_of_unknown_material(result: LegResult, _: Solution) -> Iterator[str]:
     if not result.file.anchor.material_known:
         yield (
             f"{result.file.pieces[-1].label} gives only its mass and is taken as steel, 7850 "
@@ -91,7 +87,7 @@ def _anchor_of_unknown_material(result: Result, _: Solution) -> Iterator[str]:
         )
 
 
-def _tilted(result: Result | TowResult, _: Solution) -> Iterator[str]:
+def _tilted(result: LegResult, _: Solution) -> Iterator[str]:
     for row in (*result.components, *result.clamps):
         component, leans = row.part.component, f"{row.label} leans {row.tilt:.1f} degrees"
         limit, warned = component.max_tilt, component.warn_tilt
@@ -101,7 +97,7 @@ def _tilted(result: Result | TowResult, _: Solution) -> Iterator[str]:
             yield f"{leans}, above its warning limit of {warned:g}."
 
 
-def _stiffness_unknown(result: Result | TowResult, _: Solution) -> Iterator[str]:
+def _stiffness_unknown(result: LegResult, _: Solution) -> Iterator[str]:
     for piece, tension in zip(result.file.pieces, result.components.tension, strict=True):
         strains = unknown_stretch(piece.component, tension)
         if strains is not None:
@@ -144,7 +140,7 @@ def _percent(share: float) -> str:
     return f"{100 * share:.2g}" if share < 0.995 else f"{100 * share:.0f}"
 
 
-def _overstretched(result: Result | TowResult, solution: Solution) -> Iterator[str]:
+def _overstretched(result: LegResult, solution: Solution) -> Iterator[str]:
     line, greatest = solution.line, np.zeros(len(solution.line.length))
     linear = line.compliance[solution.element_piece] > 0.0
     np.maximum.at(greatest, solution.element_piece, np.where(linear, solution.strain, 0.0))
@@ -154,7 +150,7 @@ def _overstretched(result: Result | TowResult, solution: Solution) -> Iterator[s
             yield f"{label} stretches by {100 * strain:.0f} %: beyond any linear stiffness."
 
 
-def _beyond_the_table(result: Result | TowResult, solution: Solution) -> Iterator[str]:
+def _beyond_the_table(result: LegResult, solution: Solution) -> Iterator[str]:
     line = solution.line.reversed() if solution.line.towed else solution.line
     for row, curve in zip(result.components, line.elongation, strict=False):
         if curve is not None and row.tension > curve.limit:
@@ -165,7 +161,7 @@ def _beyond_the_table(result: Result | TowResult, solution: Solution) -> Iterato
             )
 
 
-def _fast_flow(result: Result | TowResult, solution: Solution) -> Iterator[str]:
+def _fast_flow(result: LegResult, solution: Solution) -> Iterator[str]:
     line = solution.line.reversed() if solution.line.towed else solution.line
     curves = [*line.drag_curve, None]
     fast = [
@@ -188,8 +184,8 @@ def _power(number: float) -> str:
     return f"{number:.2g}".replace("e+0", "e")
 
 
-def _bight(result: Result, solution: Solution) -> Iterator[str]:
-    if result.file.legs:  # which hang as their ends are held
+def _bight(result: LegResult, solution: Solution) -> Iterator[str]:
+    if result.leg.of_several:  # which hang as their ends are held
         return
     water, (east, north, up) = solution.water, solution.force[1:].T
     if solution.landed:  # as the seabed leads up so does the line above it
@@ -204,7 +200,7 @@ def _bight(result: Result, solution: Solution) -> Iterator[str]:
         )
 
 
-def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
+def _on_the_seabed(result: LegResult, solution: Solution) -> Iterator[str]:
     lying = solution.element_piece[solution.hanging :]
     rigid = [p for p in dict.fromkeys(lying.tolist()) if not solution.line.flexible[p]]
     clamps = [m for m in solution.element_clamp[solution.hanging :].tolist() if m >= 0]
@@ -213,7 +209,8 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
     if names:
         yield f"On the seabed: {', '.join(names)}."
     if solution.landed and result.file.environment.seabed is not None:
-        off = below_the_seabed(result.file, solution, solution.water.depth)[solution.hanging :]
+        depth = result.water.depth  # of a leg at its anchor
+        off = below_the_seabed(result.file, solution, depth)[solution.hanging :]
         worst = float(np.nan_to_num(np.abs(off)).max())
         if worst > solution.depth_error + 1e-3:
             yield (
@@ -224,7 +221,7 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
         yield "In still water the line on the seabed may lie any way: the offset is the greatest."
 
 
-def _slack(result: Result, solution: Solution) -> Iterator[str]:
+def _slack(result: LegResult, solution: Solution) -> Iterator[str]:
     if solution.slack > 0.0:
         pieces = result.file.pieces
         lying = {pieces[p].component.kind for p in solution.element_piece[solution.hanging :]}
@@ -235,19 +232,19 @@ def _slack(result: Result, solution: Solution) -> Iterator[str]:
         )
 
 
-def _far_too_long(result: Result, solution: Solution) -> Iterator[str]:
+def _far_too_long(result: LegResult, solution: Solution) -> Iterator[str]:
     line, depth, pieces = solution.line, solution.water.depth, result.file.pieces
     times = float(line.length.sum()) / depth
     lying = solution.element_piece[solution.hanging :].tolist()
     ropes = [pieces[p].label for p in lying if isinstance(pieces[p].component, Cable)]
-    if solution.surface and not result.file.legs and times > 2.0 and ropes:
+    if solution.surface and not result.leg.of_several and times > 2.0 and ropes:
         yield (
             f"The line is {times:.1f} times as long as the water is deep, and {ropes[0]} lies on "
             f"the seabed.{doubted_depth(depth)}"
         )
 
 
-def _other_equilibrium(_: Result | TowResult, solution: Solution) -> Iterator[str]:
+def _other_equilibrium(_: LegResult, solution: Solution) -> Iterator[str]:
     other = solution.other
     if other is None:
         return
@@ -266,7 +263,7 @@ def _other_equilibrium(_: Result | TowResult, solution: Solution) -> Iterator[st
     )
 
 
-def _hull_unknown(result: Result, solution: Solution) -> Iterator[str]:
+def _hull_unknown(result: LegResult, solution: Solution) -> Iterator[str]:
     """A float of unknown draft is taken as just immersed, or dragged by its `k_surface`."""
     riding, immersed = solution.riding, result.file.solver.buoy_drag == "immersed"
     if solution.surface and immersed and (riding is None or np.isnan(riding.draft)):
@@ -280,7 +277,7 @@ def _hull_unknown(result: Result, solution: Solution) -> Iterator[str]:
         yield f"{', '.join(afloat)} {reason}: {taken}, without a draft."
 
 
-def _wind_ignored(result: Result, solution: Solution) -> Iterator[str]:
+def _wind_ignored(result: LegResult, solution: Solution) -> Iterator[str]:
     wind = result.file.environment.wind
     floating = solution.line.floating
     felt = floating is not None and (floating.hull is not None or floating.wind_area is not None)
@@ -288,16 +285,16 @@ def _wind_ignored(result: Result, solution: Solution) -> Iterator[str]:
         yield "Wind on the float is neglected: its area above the water is not known."
 
 
-def _below_the_sea(result: TowResult, _: Solution) -> Iterator[str]:
+def _below_the_sea(result: LegResult, _: Solution) -> Iterator[str]:
     lowest = float(result.shape.depth.max())
-    tow = result.tow
-    if tow.towing.in_air and tow.towing.height > 0.0 and lowest > 0.0:
+    towing = result.leg.towing
+    if towing.in_air and towing.height > 0.0 and lowest > 0.0:
         yield (
             f"The line reaches {lowest:.1f} m below the surface, but all of it is taken as in air."
         )
 
 
-def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[str]:
+def _strums_along_the_flow(result: LegResult, solution: Solution) -> Iterator[str]:
     law = solution.line.strumming
     if law is None or result.strumming is None:
         return
@@ -314,15 +311,15 @@ def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[st
         )
 
 
-_OF_ANY: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = (
+_OF_ANY: tuple[Callable[[LegResult, Solution], Iterator[str]], ...] = (
     _same_serial, _overloaded, _tilted, _stiffness_unknown, _overstretched, _beyond_the_table,
     _fast_flow, _other_equilibrium,
 )  # fmt: skip
-_OF_A_MOORING: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
+_OF_A_MOORING: tuple[Callable[[LegResult, Solution], Iterator[str]], ...] = (
     _anchor_too_light, _anchor_of_unknown_material, _bight, _on_the_seabed, _slack,
     _far_too_long, _hull_unknown, _wind_ignored,
 )  # fmt: skip
-_OF_A_TOW: tuple[Callable[[TowResult, Solution], Iterator[str]], ...] = (
+_OF_A_TOW: tuple[Callable[[LegResult, Solution], Iterator[str]], ...] = (
     _below_the_sea,
     _strums_along_the_flow,
 )

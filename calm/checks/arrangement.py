@@ -8,8 +8,9 @@ from math import cos, radians, sin
 import numpy as np
 
 from calm.assemble import axial_drag_of, drag_of, net_buoyancy
-from calm.case import Mooring, Result
-from calm.case.mooring import ProfilerTravel
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
+from calm.case.profilers import ProfilerTravel
 from calm.case.result_tables import ClampRow
 from calm.case.warnings import is_synthetic
 from calm.checks.assessment import Handling
@@ -19,8 +20,8 @@ from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
 from calm.files import Cable, Clamp, Component, Flexible, Piece, Profiler
-from calm.files.mooring_file import clamps_in
-from calm.files.mooring_file import parts_of as every_part
+from calm.files.pieces import clamps_in
+from calm.files.pieces import parts_of as every_part
 from calm.physics.materials import materials_in, potential_of
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import duration, say
@@ -45,14 +46,14 @@ LEAST_BELOW_RELEASE = 1.0
 @rule("release-present", once=True)
 def release_present(handling: Handling) -> Iterator[Verdict]:
     """Return whether a line says what lets go of its anchor, and whether that frees it."""
-    mooring = handling.mooring
-    release, pieces = mooring.file.release, mooring.file.pieces
+    leg = handling.leg
+    release, pieces = leg.file.release, leg.file.pieces
     for clamp in clamps_in(pieces):
         if clamp.component.role == "release":
             message = f"{clamp.label} has the role of a release, but is clamped: it frees nothing."
             yield unknown(clamp, message, "Put it in line, or give it another role.")
     if release is None:
-        if not reaches_the_surface(mooring):
+        if not reaches_the_surface(leg):
             yield unknown(
                 None,
                 "No piece has the role of a release: how the line is freed from its anchor is not "
@@ -88,7 +89,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
             message = f"Nothing above release {one.label} floats: once released, nothing comes up."
             doubts.append((one, message, "Put it below what floats, or give it another role."))
     for one in below:
-        if net_buoyancy(one.component, mooring.water.gravity) > 0.0:
+        if net_buoyancy(one.component, leg.water.gravity) > 0.0:
             message = f"{one.label} floats, but below the release: it stays on the anchor."
             doubts.append((one, message, "Put it above the release, or use one that sinks."))
     for part, message, remedy in doubts:
@@ -105,7 +106,7 @@ def _floats(pieces: Sequence[Piece]) -> bool:
 @rule("hardware", once=True)
 def hardware(handling: Handling) -> Iterator[Verdict]:
     """Return whether the line has any shackle, link or swivel at all, with weight and strength."""
-    pieces = handling.mooring.file.pieces
+    pieces = handling.leg.file.pieces
     if not any(piece.component.role == "connector" for piece in pieces):
         message = "The line lists no shackle, link or swivel: its joints are not judged."
         yield verdict_on(None, State.WARN, message, "Add the connecting hardware to the line.")
@@ -118,7 +119,7 @@ def swivel(handling: Handling) -> Iterator[Verdict]:
     A wire rope that is not torque-balanced turns under load and back as the load goes, and a float
     in the current holds it: it kinks. Chain and synthetic rope between them bear no torque.
     """
-    pieces = handling.mooring.file.pieces
+    pieces = handling.leg.file.pieces
     for index, piece in enumerate(pieces):
         if not _bears_torque(piece.component):
             continue
@@ -167,10 +168,10 @@ _TOUCH = 0.05
 @rule("clamp-place", once=True)
 def clamp_place(handling: Handling) -> Iterator[Verdict]:
     """Clamps on a cable or chain that overlap, or stick out over its end into the next piece."""
-    mooring = handling.mooring
-    lengths = mooring.line.length.tolist()
+    leg = handling.leg
+    lengths = leg.line.length.tolist()
     remedy = "Move it to where it has room, or check its `at` and its length."
-    for piece in mooring.file.pieces:
+    for piece in leg.file.pieces:
         if not isinstance(piece.component, Flexible):
             continue
         spans = sorted(
@@ -200,7 +201,7 @@ def _span(clamp: Clamp, middle: float) -> tuple[float, float, Clamp]:
 def metals(handling: Handling) -> Iterator[Verdict]:
     """Metals far apart in the galvanic series that touch, wherever both materials are known."""
     warned: set[str] = set()
-    for base, noble, volts in unlike_metals(handling.mooring.file.pieces):
+    for base, noble, volts in unlike_metals(handling.leg.file.pieces):
         if base.label not in warned:
             warned.add(base.label)
             message = (
@@ -235,16 +236,16 @@ _HOLDS = "Take a clamp that holds more, two of them, or a stopper below it."
 
 
 @rule("clamp-grip")
-def clamp_grip(result: Result) -> Iterator[Verdict]:
+def clamp_grip(result: LegResult) -> Iterator[Verdict]:
     """Pull of what is clamped on the line: its weight in water and the drag of the current."""
-    water, depth = result.mooring.water, np.asarray(result.clamps.depth)
+    water, depth = result.leg.water, np.asarray(result.clamps.depth)
     flows, densities = water.current_at(depth), water.density_at(depth).tolist()
-    for part in _clamps(result.mooring):
+    for part in _clamps(result.leg):
         assert part.clamp is not None
         flow, density = flows[part.clamp], densities[part.clamp]
         drag = drag_of(part.component)[0] * density / REFERENCE_DENSITY
         force = drag * float(np.linalg.norm(flow)) * flow
-        force[2] += _lift(part, result.mooring, density)
+        force[2] += _lift(part, result.leg, density)
         yield _verdict(part, float(np.linalg.norm(force)), "")
 
 
@@ -256,11 +257,11 @@ def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
     in the flow along its axis.
     """
     launch, rise = handling.launch, handling.recovery
-    deep = np.array(handling.mooring.water.depth)
-    density = float(handling.mooring.water.density_at(deep))
-    for part in _clamps(handling.mooring):
+    deep = np.array(handling.leg.water.depth)
+    density = float(handling.leg.water.density_at(deep))
+    for part in _clamps(handling.leg):
         drag = axial_drag_of(part.component) * density / REFERENCE_DENSITY
-        lift = _lift(part, handling.mooring, density)
+        lift = _lift(part, handling.leg, density)
         pulls = []
         if isinstance(launch, Launch):
             pulls.append((abs(lift + drag * launch.greatest_speed**2), " in the fall"))
@@ -276,7 +277,7 @@ McLane Moored Profiler, user manual."""
 
 
 @rule("profiler")
-def profiler(result: Result) -> Iterator[Verdict]:
+def profiler(result: LegResult) -> Iterator[Verdict]:
     """Tension, wire, way and drive of a profiler where it is; it is judged at its stops, too.
 
     Along the wire it meets its own speed and, at most, the current times the sine of the tilt.
@@ -288,8 +289,8 @@ def profiler(result: Result) -> Iterator[Verdict]:
             yield from [each for each in found if each.state != State.PASS] or found[:1]
 
 
-def _of_profiler(result: Result, row: ClampRow) -> Iterator[Verdict]:
-    part, wire, water = row.part, result.file.pieces[row.index], result.mooring.water
+def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
+    part, wire, water = row.part, result.file.pieces[row.index], result.leg.water
     component = part.component
     assert isinstance(component, Profiler)
     least = component.minimum_tension
@@ -343,14 +344,14 @@ def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
         yield verdict_on(part, State.WARN, message, "Ask its maker.", diameter)
 
 
-def _clamps(mooring: Mooring) -> list[JudgedPart]:
-    parts = (part for part in parts_of(mooring) if part.clamp is not None)
+def _clamps(leg: Leg) -> list[JudgedPart]:
+    parts = (part for part in parts_of(leg) if part.clamp is not None)
     return [part for part in parts if not isinstance(part.component, Profiler)]
 
 
-def _lift(part: JudgedPart, mooring: Mooring, density: float) -> float:
+def _lift(part: JudgedPart, leg: Leg, density: float) -> float:
     """Net force in water of a density [N], + up."""
-    gravity, volume = mooring.water.gravity, part.component.displaced_volume or 0.0
+    gravity, volume = leg.water.gravity, part.component.displaced_volume or 0.0
     excess = (density - REFERENCE_DENSITY) * volume * gravity
     return net_buoyancy(part.component, gravity) + excess
 

@@ -18,8 +18,10 @@ from typing import Any
 
 import numpy as np
 
-from calm.case import Mooring, Result
+from calm.case.design import solved_alone
 from calm.case.draws import Draw, checked_samples, drawn, draws_of, normals_of
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
 from calm.case.uncertain import BLOCK, Mapped
 from calm.checks import arrangement, catalogue_rules, handling, posture, situations, strength
 from calm.checks.assessment import (
@@ -37,41 +39,35 @@ from calm.checks.inventory import inventory_of
 from calm.checks.missing import is_lacking, missing, with_missing
 from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of
-from calm.checks.situations import STRUMMING, currents, equilibrium, situations_of
+from calm.checks.situations import STRUMMING, currents, equilibrium
 from calm.checks.wave_rules import IN_WAVES, MooringInWaves
 from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium, or_why_not
 from calm.files import MooringFile, Place
-from calm.files.mooring_file import STAND_IN
+from calm.files.pieces import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
 from calm.solve import expect_many
 
 
-def stand_of(mooring: Mooring, name: str, day: date | None = None) -> MooringInEnvironment:
-    """Solve a mooring in its environment, in every situation, and judge it.
+def judged_stand(
+    situations: tuple[Situation, ...],
+    leg: Leg,
+    name: str,
+    environment: str,
+    day: date | None = None,
+) -> MooringInEnvironment:
+    """Judge a leg in all its situations.
+
+    The stand lists all findings as given, and findings of other situations with a worse state. A
+    failure only of strumming cables is a warning, since the cables may not strum.
 
     Parameters
     ----------
     name : of the mooring in its findings
     day : on which accepts count or have ended; today unless given
-
-    Findings as given are all there, of another situation those whose state is worse there. What
-    fails only as the cables strum is a warning: they may not.
     """
-    environment = mooring.file.environment.name or OWN
-    return judged_stand(situations_of(mooring), mooring, name, environment, day)
-
-
-def judged_stand(
-    situations: tuple[Situation, ...],
-    mooring: Mooring,
-    name: str,
-    environment: str,
-    day: date | None = None,
-) -> MooringInEnvironment:
-    """Judge a mooring, or a leg of a net, in the situations that it was solved in."""
     given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
-    if not mooring.file.legs:
+    if not leg.of_several:
         given += _findings_in_waves(situations[0], name, environment, day)
     states = {_of(finding): finding.state.severity for finding in given}
     others = [
@@ -91,17 +87,7 @@ def judged_stand(
     shown = {id(finding) for finding in listed}
     tighter = tuple(finding for finding in worst if id(finding) not in shown)
     accepted = tuple(one for one in (*given, *others) if one.accept is not None)
-    return MooringInEnvironment(
-        environment, mooring, situations, listed, tighter, accepted, lacking
-    )
-
-
-def failed_stand(mooring: Mooring, name: str, failure: NoEquilibrium) -> MooringInEnvironment:
-    """The stand of a mooring that could not be judged, for a reason of its own or of CALM's."""
-    environment = mooring.file.environment.name or OWN
-    situation = Situation(AS_GIVEN, None, failure)
-    findings = tuple(findings_of(situation, name, environment))
-    return MooringInEnvironment(environment, mooring, (situation,), findings)
+    return MooringInEnvironment(environment, leg, situations, listed, tighter, accepted, lacking)
 
 
 def assessment_of(
@@ -115,15 +101,15 @@ def assessment_of(
     """
     first = next((stand for stand in stands if stand.result is not None), stands[0])
     handling = _handled(first)
-    acceptance = Acceptance.of_file(first.mooring.file, day)
-    standing = [stand.mooring for stand in stands if stand.result is not None]
+    acceptance = Acceptance.of_file(first.leg.file, day)
+    standing = [stand.leg for stand in stands if stand.result is not None]
     findings = list(findings_of_currents(standing, name, acceptance)) if standing else []
     for each in ONCE:
         verdicts = each.judge(handling)
         findings += acceptance.findings(each, verdicts, name, first.environment, each.situation)
     lacking = [one for stand in stands for one in stand.lacking]
     findings = with_missing((*lacking, *findings), acceptance.parts, name, first.environment)
-    if first.result is not None and not moving(stand.mooring for stand in stands):
+    if first.result is not None and not moving(stand.leg for stand in stands):
         findings.insert(0, equilibrium.find(situations.STILL_ONLY, name, first.environment))
     return Assessment(
         name=name,
@@ -132,8 +118,8 @@ def assessment_of(
         recovery=None if isinstance(handling.recovery, NoEquilibrium) else handling.recovery,
         backup=handling.backup,
         losses=handling.losses,
-        limits=limits_used(first.mooring.file, reaches_the_surface(first.mooring)),
-        inventory=inventory_of(first.mooring),
+        limits=limits_used(first.leg.file, reaches_the_surface(first.leg)),
+        inventory=inventory_of(first.leg),
         findings=tuple(findings),
         notices=tuple(
             acceptance.notices([*(one for stand in stands for one in stand.accepted), *findings])
@@ -142,20 +128,20 @@ def assessment_of(
 
 
 def findings_of_currents(
-    moorings: Sequence[Mooring], name: str, acceptance: Acceptance
+    legs: Sequence[Leg], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
     """Return what the rule of the currents finds in the environments of a mooring of a name."""
-    for mooring, verdict in currents.judge(moorings):
-        environment = mooring.file.environment.name or OWN
+    for leg, verdict in currents.judge(legs):
+        environment = leg.file.environment.name or OWN
         yield acceptance.of(currents.find(verdict, name, environment))
 
 
-def moving(moorings: Iterable[Mooring]) -> bool:
+def moving(legs: Iterable[Leg]) -> bool:
     """Return whether current or wind moves any of them."""
     return any(
         np.hypot(each.water.u, each.water.v).max() >= situations.LEAST_CURRENT
         or each.file.environment.wind is not None
-        for each in moorings
+        for each in legs
     )
 
 
@@ -207,7 +193,7 @@ def _findings_in_waves(
     if given.result is None:
         return
     acceptance = Acceptance.of_file(given.result.file, day)
-    evidence = MooringInWaves.of(estimated_result(given.result).mooring)
+    evidence = MooringInWaves.of(estimated_result(given.result).leg)
     for each in IN_WAVES:
         yield from acceptance.findings(each, each.judge(evidence), mooring, environment)
 
@@ -216,21 +202,21 @@ def _of(finding: Finding) -> tuple[str, Place | None]:
     return finding.rule, finding.place
 
 
-def handled(mooring: Mooring, result: Result) -> Handling:
+def handled(leg: Leg, result: LegResult) -> Handling:
     """Launch, recovery and breaks of a mooring that stands, or why one of them is not known."""
-    launch = or_why_not(launch_of, mooring)
-    recovery = or_why_not(recovery_of, mooring, result)
-    return Handling(mooring, launch, recovery, breaks_of(mooring), losses_of(mooring))
+    launch = or_why_not(launch_of, leg)
+    recovery = or_why_not(recovery_of, leg, result)
+    return Handling(leg, launch, recovery, breaks_of(leg), losses_of(leg))
 
 
 def _handled(stand: MooringInEnvironment) -> Handling:
     """Return the same of a stand; of one that has no equilibrium, why not."""
-    mooring, result = stand.mooring, stand.result
+    leg, result = stand.leg, stand.result
     if result is not None:
-        return replace(handled(mooring, result), mooring=estimated(mooring))
+        return replace(handled(leg, result), leg=estimated(leg))
     failure = stand.situations[0].failure
     assert failure is not None
-    return Handling(mooring, failure, failure, breaks_of(mooring), losses_of(mooring))
+    return Handling(leg, failure, failure, breaks_of(leg), losses_of(leg))
 
 
 _MODULES = (arrangement, catalogue_rules, handling, posture, situations, strength)
@@ -252,7 +238,7 @@ def _judging(*, once: bool) -> tuple[Rule, ...]:
 
 
 STANDING = _judging(once=False)
-"""What is judged of a `Result`, in every environment and situation."""
+"""What is judged of a `LegResult`, in every environment and situation."""
 
 ONCE = _judging(once=True)
 """What is judged once of a mooring: its breaks, its launch and its recovery."""
@@ -284,12 +270,12 @@ def with_probabilities(
     """
     normals = normals_of(checked_samples(samples), seed)
     expect_many(samples * len(assessment.stands))
-    draws = draws_of(assessment.mooring.file.uncertainty, normals)
+    draws = draws_of(assessment.file.uncertainty, normals)
     stands = tuple(_stand(stand, draws, mapped) for stand in assessment.stands)
     first = next((stand for stand in assessment.stands if stand.result is not None), None)
     findings = assessment.findings
     if first is not None:
-        broken = _broken(first.mooring, draws[:HANDLED], mapped, standing=False)
+        broken = _broken(first.leg, draws[:HANDLED], mapped, standing=False)
         findings = _probable(findings, broken, min(samples, HANDLED))
     return replace(assessment, stands=stands, findings=findings, draws=(samples, seed))
 
@@ -302,8 +288,7 @@ def _stand(
     wanted = {finding.situation for each in found for finding in each}
     for situation in stand.situations:
         if situation.result is not None and situation.name in wanted:
-            mooring = situation.result.mooring
-            broken = _broken(mooring, draws, mapped)
+            broken = _broken(situation.result.leg, draws, mapped)
             found = [_probable(each, broken, len(draws), situation.name) for each in found]
     return replace(stand, findings=found[0], tighter=found[1], accepted=found[2])
 
@@ -325,22 +310,22 @@ _ALL: Key = ("", None)
 
 
 def _broken(
-    mooring: Mooring, draws: Sequence[Draw], mapped: Mapped, *, standing: bool = True
+    leg: Leg, draws: Sequence[Draw], mapped: Mapped, *, standing: bool = True
 ) -> Counter[Key]:
     """Return how many samples break each limit, of a line that stands or of its handling."""
     block = BLOCK if standing else BLOCK // 16
     blocks = [draws[first : first + block] for first in range(0, len(draws), block)]
     broken: Counter[Key] = Counter()
-    for each in mapped(partial(_counted, standing, mooring), blocks):
+    for each in mapped(partial(_counted, standing, leg), blocks):
         broken.update(each)
     return broken
 
 
-def _counted(standing: bool, mooring: Mooring, draws: Sequence[Draw]) -> Counter[Key]:
+def _counted(standing: bool, leg: Leg, draws: Sequence[Draw]) -> Counter[Key]:
     broken: Counter[Key] = Counter()
-    for one in drawn(mooring, draws):
+    for one in drawn(leg, draws):
         try:
-            result = one.solve()
+            result = solved_alone(one)
         except NoEquilibrium:
             broken[_ALL] += 1
         else:

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from datetime import date
 from typing import TypeVar
 
-from calm.case import Mooring, Result
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
 from calm.checks.finding import AS_GIVEN, Finding, Lack, Rule, State, Verdict, worst_state
 from calm.checks.inventory import InventoryItem
 from calm.checks.recovery import Break, Loss, Recovery
@@ -16,7 +17,7 @@ from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import Accept, Clamp, MooringFile, Piece
 from calm.files.check_limits import LimitKey
-from calm.files.mooring_file import parts_of
+from calm.files.pieces import parts_of
 from calm.files.rule_texts import RULES
 
 _Part = TypeVar("_Part", Piece, Clamp)
@@ -33,7 +34,7 @@ class Situation:
     """
 
     name: str
-    result: Result | None
+    result: LegResult | None
     failure: NoEquilibrium | None
 
 
@@ -44,7 +45,7 @@ class MooringInEnvironment:
     Attributes
     ----------
     environment : its name
-    mooring : in it
+    leg : of the design in it, which has as many of these as legs
     situations : what was solved, the first as given
     findings : all as given, and of the other situations those whose state is worse
     tighter : of each rule the finding of another situation that leaves less margin than all those
@@ -53,7 +54,7 @@ class MooringInEnvironment:
     """
 
     environment: str
-    mooring: Mooring
+    leg: Leg
     situations: tuple[Situation, ...]
     findings: tuple[Finding, ...]
     tighter: tuple[Finding, ...] = ()
@@ -61,7 +62,7 @@ class MooringInEnvironment:
     lacking: tuple[Finding, ...] = ()
 
     @property
-    def result(self) -> Result | None:
+    def result(self) -> LegResult | None:
         """As given; None where that has no equilibrium."""
         return self.situations[0].result
 
@@ -103,9 +104,9 @@ class Assessment:
         return f"{self.name}: {self.state} ({told})"
 
     @property
-    def mooring(self) -> Mooring:
-        """In its first environment."""
-        return self.stands[0].mooring
+    def file(self) -> MooringFile:
+        """The file, of several legs that of the first, in its first environment."""
+        return self.stands[0].leg.file
 
     def all_findings(self) -> Iterator[Finding]:
         """Return those of every environment, then those of launch, recovery and breaks."""
@@ -138,7 +139,7 @@ class Assessment:
 class Handling:
     """Hold what the rules of launch, recovery and breaks look at, or why it could not be solved."""
 
-    mooring: Mooring
+    leg: Leg
     launch: Launch | NoEquilibrium
     recovery: Recovery | NoEquilibrium
     backup: tuple[Break, ...]
@@ -223,9 +224,9 @@ class Acceptance:
                 yield f"{what} is not needed: nothing there fails or is unknown"
 
 
-def estimated(mooring: Mooring) -> Mooring:
-    """Return the mooring with the low bounds of estimates for figures that are not given."""
-    file = mooring.file
+def estimated(leg: Leg) -> Leg:
+    """Return a leg with the low bounds of estimates for figures that are not given."""
+    file = leg.file
     pieces = tuple(
         _filled(piece.with_clamps(_filled))
         if any(part.component.estimates for part in parts_of([piece]))
@@ -233,15 +234,15 @@ def estimated(mooring: Mooring) -> Mooring:
         for piece in file.pieces
     )
     if pieces == file.pieces:
-        return mooring
+        return leg
     file = replace(file, pieces=pieces)
-    return Mooring(file, mooring.for_surface, mooring.memory, mooring.line, mooring.water)
+    return Leg(file, leg.for_surface, leg.memory, leg.line, leg.water)
 
 
-def estimated_result(result: Result) -> Result:
-    """Return a result whose mooring has the low bounds of estimates, as `estimated`."""
-    judged = estimated(result.mooring)
-    return result if judged is result.mooring else replace(result, mooring=judged)
+def estimated_result(result: LegResult) -> LegResult:
+    """Return a result whose leg has the low bounds of estimates, as `estimated`."""
+    judged = estimated(result.leg)
+    return result if judged is result.leg else replace(result, leg=judged)
 
 
 def _filled(part: _Part) -> _Part:

@@ -18,7 +18,7 @@ from calm.files import Anchor, Cable, Chain, Component, Cylinder, Flexible, Sphe
 from calm.files.catalogue import Assembly, Defined
 from calm.files.components import KINDS, Outline
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
-from calm.files.mooring_file import parts_of
+from calm.files.pieces import parts_of
 from calm.files.rigid import Shaped
 from calm.physics import materials
 from calm.physics.materials import LEAD_DENSITY, MATERIAL_NAMES, STEEL_DENSITY, materials_in
@@ -307,13 +307,13 @@ def figures(handling: Handling) -> Iterator[Verdict]:
     What hangs several times on the line is named once.
     """
     named: set[tuple[str, str]] = set()
-    for key in handling.mooring.file.looser:
+    for key in handling.leg.file.looser:
         if not key.backed:
             told = f"The line gives {key.name} as {said(key, key.value)}; {key.source} has"
             message = f"{told} {said(key, key.default)}, and no source is given for the other."
             yield unknown(None, message, "Give its `source` beside it, or leave it out.")
     remedy = "Check its figures and their units."
-    for part in parts_of(handling.mooring.file.pieces):
+    for part in parts_of(handling.leg.file.pieces):
         for state, found in (
             (State.FAIL, impossible),
             (State.WARN, _late_warning),

@@ -5,15 +5,14 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Any
 
-from calm.case import Mooring, Result, Tow, TowResult
-from calm.case.net import Net
-from calm.case.result import AnyResult, NetResult
+from calm.case.design import Design, Result
+from calm.case.leg_result import LegResult
 from calm.case.result_tables import ComponentRow, rows_by_place
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
+from calm.checks.design_check import check
 from calm.checks.finding import State, worst_of_each_rule
 from calm.checks.inventory import total_of
-from calm.checks.net_check import check
 from calm.errors import NoEquilibrium, or_why_not
 from calm.files import Flexible
 from calm.files.file_differences import Change, Differences, differences
@@ -79,15 +78,13 @@ class Comparison:
         }
 
 
-_Design = tuple["AnyResult | NoEquilibrium", Assessment | None]
-"""Its result or why it has none, and the judgement on what is no tow."""
+_Solved = tuple[Result | NoEquilibrium, Assessment | None]
+"""The result of a design or why it has none, and the judgement on what is no tow."""
 _Figures = dict[str, tuple[str, str, Number | str]]
 """Title, quantity and value by name."""
 
 
-def comparison_of(
-    names: tuple[str, str], before: Mooring | Tow | Net, after: Mooring | Tow | Net
-) -> Comparison:
+def comparison_of(names: tuple[str, str], before: Design, after: Design) -> Comparison:
     """Solve and judge two moorings or nets, or two tows; one that does not stand is compared too.
 
     Parameters
@@ -114,47 +111,17 @@ def comparison_of(
 _NONE = "", "", None
 
 
-def _solved(line: Mooring | Tow | Net) -> _Design:
-    assessment = None if isinstance(line, Tow) else check(line)
-    if isinstance(line, Mooring) and assessment is not None:
-        given = assessment.stands[0].situations[0]
-        if solved := given.result or given.failure:
-            return solved, assessment
-    return or_why_not(line.solve), assessment
+def _solved(design: Design) -> _Solved:
+    return or_why_not(design.solve), None if design.towed else check(design)
 
 
-def _figures_of(design: _Design) -> _Figures:
+def _figures_of(design: _Solved) -> _Figures:
     """The figures of the whole, in the order in which they are read."""
     result, assessment = design
     stands = not isinstance(result, NoEquilibrium)
     found: _Figures = {"status": ("status", "", "stands" if stands else "does not stand")}
-    if isinstance(result, TowResult):
-        found |= {
-            "body.depth": ("depth of the body", "depth", result.body.depth),
-            "body.layback": ("layback of the body", "layback", result.body.layback),
-            "body.tension": ("pull on the body", "tension", result.body.tension),
-            "tow_point.tension": ("pull on the tow point", "tension", result.tow_point.tension),
-        }
-    elif isinstance(result, NetResult):
-        found |= _figures_of_net(result)
-    elif isinstance(result, Result):
-        top, anchor = result.top, result.anchor
-        found |= {
-            "top.depth": ("depth of the top", "depth", top.depth),
-            "top.knockdown": ("knockdown of the top", "knockdown", top.knockdown),
-            "top.excursion": ("excursion of the top", "offset", hypot(top.x, top.y)),
-            "top.reserve": ("reserve of buoyancy", "reserve", top.reserve),
-            "anchor.tension": ("pull on the anchor", "tension", anchor.tension),
-            "anchor.vertical": ("pull on the anchor, up", "vertical", anchor.vertical),
-            "anchor.horizontal": ("pull, sideways", "horizontal", anchor.horizontal),
-            "anchor.required_weight": (
-                "weight that the anchor needs", "required_weight", anchor.required_weight,
-            ),
-            "anchor.weight": ("weight of the anchor in water", "required_weight", anchor.weight),
-        }  # fmt: skip
-        if result.type != "surface":
-            del found["top.reserve"]
     if not isinstance(result, NoEquilibrium):
+        found |= _figures_of_legs(result) if result.several else _figures_of_leg(result.leg)
         greatest = max(row.tension for row in result.components)
         factors = [row.safety_factor for row in result.components]
         least = min((factor for factor in factors if factor == factor), default=None)
@@ -169,13 +136,42 @@ def _figures_of(design: _Design) -> _Figures:
     return found
 
 
-def _figures_of_net(result: NetResult) -> _Figures:
+def _figures_of_leg(result: LegResult) -> _Figures:
+    """Return where the ends of a single line are, and what they bear."""
+    point, body = result.tow_point, result.body
+    if point is not None and body is not None:
+        return {
+            "body.depth": ("depth of the body", "depth", body.depth),
+            "body.layback": ("layback of the body", "layback", body.layback),
+            "body.tension": ("pull on the body", "tension", body.tension),
+            "tow_point.tension": ("pull on the tow point", "tension", point.tension),
+        }
+    top, anchor = result.top, result.anchor
+    found: _Figures = {
+        "top.depth": ("depth of the top", "depth", top.depth),
+        "top.knockdown": ("knockdown of the top", "knockdown", top.knockdown),
+        "top.excursion": ("excursion of the top", "offset", hypot(top.x, top.y)),
+        "top.reserve": ("reserve of buoyancy", "reserve", top.reserve),
+        "anchor.tension": ("pull on the anchor", "tension", anchor.tension),
+        "anchor.vertical": ("pull on the anchor, up", "vertical", anchor.vertical),
+        "anchor.horizontal": ("pull, sideways", "horizontal", anchor.horizontal),
+        "anchor.required_weight": (
+            "weight that the anchor needs", "required_weight", anchor.required_weight,
+        ),
+        "anchor.weight": ("weight of the anchor in water", "required_weight", anchor.weight),
+    }  # fmt: skip
+    if result.type != "surface":
+        del found["top.reserve"]
+    return found
+
+
+def _figures_of_legs(result: Result) -> _Figures:
     """Return where its nodes and free ends are, and what its anchors bear."""
     found: _Figures = {}
     for node in result.nodes:
         found[f"{node.name}.depth"] = (f"depth of node {node.name}", "depth", node.depth)
     for leg in result.legs:
-        if leg.file.legs[0].top.free:
+        if leg.leg.top.free:
             found[f"{leg.name}.top.depth"] = (f"top of leg {leg.name}", "depth", leg.top.depth)
     for end in (*result.anchors, *result.held):
         what = "anchor" if end in result.anchors else "held end"
@@ -187,7 +183,7 @@ def _figures_of_net(result: NetResult) -> _Figures:
     return found
 
 
-def _parts(found: Differences, designs: tuple[_Design, _Design]) -> Iterator[Compared]:
+def _parts(found: Differences, designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
     """Of what measures or is cut: where it is, and how long it was cut."""
     first, second = (
         {} if isinstance(each, NoEquilibrium) else rows_by_place(each) for each, _ in designs
@@ -208,7 +204,7 @@ def _parts(found: Differences, designs: tuple[_Design, _Design]) -> Iterator[Com
             yield Compared(f"{label}.{name}", title, name, before_it, after_it, of_a_part=True)
 
 
-def _margins(designs: tuple[_Design, _Design]) -> Iterator[Compared]:
+def _margins(designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
     """The worst that each rule finds in each design."""
     judged = [assessment for _, assessment in designs if assessment is not None]
     if len(judged) < 2:

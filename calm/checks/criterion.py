@@ -10,12 +10,13 @@ from functools import lru_cache
 from itertools import groupby
 from math import hypot, isnan, nan
 
-from calm.case import Mooring, Result
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
 from calm.case.strumming import FACTOR
 from calm.checks.finding import Rule, State, Verdict, rule, unknown, verdict_on
 from calm.files import Component, MooringFile, Place, StrummingFactor
 from calm.files.check_limits import Checks, LimitKey, limit_keys
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.units import DIMENSIONS
 
 AT_SURFACE = 0.1
@@ -41,23 +42,22 @@ class JudgedPart:
     clamp: int | None = None
 
 
-def pieces_of(mooring: Mooring) -> list[JudgedPart]:
+def pieces_of(leg: Leg) -> list[JudgedPart]:
     """The pieces from the top to the anchor."""
     return [
-        JudgedPart(each.label, each.place, each.component, each.index)
-        for each in mooring.file.pieces
+        JudgedPart(each.label, each.place, each.component, each.index) for each in leg.file.pieces
     ]
 
 
-def parts_of(mooring: Mooring) -> list[JudgedPart]:
+def parts_of(leg: Leg) -> list[JudgedPart]:
     """The pieces above the anchor, then the clamps, those on the anchor too, each from the top."""
-    pieces = mooring.file.pieces
+    pieces = leg.file.pieces
     on = [piece.index for piece in pieces for _ in piece.clamps]
     clamps = [
         JudgedPart(each.label, each.place, each.component, index, number)
         for number, (index, each) in enumerate(zip(on, clamps_down(pieces), strict=True))
     ]
-    return pieces_of(mooring)[:-1] + clamps
+    return pieces_of(leg)[:-1] + clamps
 
 
 @dataclass(frozen=True)
@@ -81,15 +81,15 @@ class Criterion:
     part: JudgedPart
     quantity: str
     limit: float | None
-    words: Callable[[float, Result], tuple[str, str]]
+    words: Callable[[float, LegResult], tuple[str, str]]
     least: bool = False
     beyond: State = State.FAIL
     silent: bool = False
     source: str = ""
     lacks: str = ""
-    stated: Callable[[float, Result], tuple[float, float]] | None = None
+    stated: Callable[[float, LegResult], tuple[float, float]] | None = None
 
-    def verdict(self, result: Result) -> Verdict | None:
+    def verdict(self, result: LegResult) -> Verdict | None:
         """On the part in a result; None where there is nothing to judge."""
         value = READINGS[self.quantity](result, self.part)
         if isnan(value) and self.silent:
@@ -105,7 +105,7 @@ class Criterion:
         return verdict_on(self.part, state, message, said, shown, limit, margin, self.source)
 
 
-def verdicts(criteria: Iterable[Criterion], result: Result) -> Iterator[Verdict]:
+def verdicts(criteria: Iterable[Criterion], result: LegResult) -> Iterator[Verdict]:
     """The gravest verdict on each part, from criteria that follow one another part by part."""
     for _, group in groupby(criteria, key=lambda criterion: criterion.part):
         found = [verdict for each in group if (verdict := each.verdict(result)) is not None]
@@ -115,24 +115,24 @@ def verdicts(criteria: Iterable[Criterion], result: Result) -> Iterator[Verdict]
 
 def criteria(
     name: str, *, of_anchor: bool = False
-) -> Callable[[Callable[[Mooring], Iterator[Criterion]]], Rule]:
+) -> Callable[[Callable[[Leg], Iterator[Criterion]]], Rule]:
     """Make the `Rule` of that name from a function that gives the criteria of a mooring."""
 
-    def of(asked: Callable[[Mooring], Iterator[Criterion]]) -> Rule:
-        def judge(result: Result) -> Iterator[Verdict]:
-            return verdicts(asked(result.mooring), result)
+    def of(asked: Callable[[Leg], Iterator[Criterion]]) -> Rule:
+        def judge(result: LegResult) -> Iterator[Verdict]:
+            return verdicts(asked(result.leg), result)
 
         return replace(rule(name, of_anchor=of_anchor)(judge), criteria=asked)
 
     return of
 
 
-def _tilt(result: Result, part: JudgedPart) -> float:
+def _tilt(result: LegResult, part: JudgedPart) -> float:
     rows = result.components if part.clamp is None else result.clamps
     return float(rows.tilt[part.index if part.clamp is None else part.clamp])
 
 
-def _depth(result: Result, part: JudgedPart) -> float:
+def _depth(result: LegResult, part: JudgedPart) -> float:
     """The greatest of a part; NaN of a piece that is at the surface."""
     if part.clamp is not None:
         return float(result.clamps.depth[part.clamp])
@@ -143,13 +143,13 @@ def _depth(result: Result, part: JudgedPart) -> float:
     return nan if result.type == "surface" and top <= AT_SURFACE else max(top, bottom)
 
 
-def _offset(result: Result) -> float:
+def _offset(result: LegResult) -> float:
     """Of the top from the anchor, which in a net need not be at the origin."""
     anchor = result.components[-1]
     return hypot(result.top.x - anchor.x_top, result.top.y - anchor.y_top)
 
 
-READINGS: dict[str, Callable[[Result, JudgedPart], float]] = {
+READINGS: dict[str, Callable[[LegResult, JudgedPart], float]] = {
     "tension": lambda result, part: float(result.components.tension[part.index]),
     "tension_bottom": lambda result, part: float(result.components.tension_bottom[part.index]),
     "least_tension": lambda result, part: float(result.components.least_tension[part.index]),

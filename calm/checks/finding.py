@@ -216,11 +216,11 @@ class Rule:
     title : for people
     quantity : of `calm.quantities`, whose unit its values and limits have
     source : of the rule and of its default limit
-    judge : from the evidence to verdicts: a `Result`, in every environment and situation
+    judge : from the evidence to verdicts: a `LegResult`, in every environment and situation
     of_anchor : whether it judges the anchor, and nothing where a line has none
     once : whether it judges a `Handling`, once of a mooring
     situation : of what it judges once
-    criteria : from a `Mooring` to what is asked of it, where that can be counted in many profiles
+    criteria : from a `Leg` to what is asked of it, where that can be counted in many profiles
     """
 
     name: str

@@ -16,7 +16,7 @@ import numpy as np
 
 from calm import files
 from calm.assemble import drag_of, net_buoyancy
-from calm.case import Result
+from calm.case.leg_result import LegResult
 from calm.files.components import FlexibleComponent, RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.physics import drag
@@ -27,7 +27,7 @@ CHAIN_BREADTH = 1.8
 
 
 def grown(
-    pieces: Sequence[files.Piece], given: Result, fouling: files.Fouling
+    pieces: Sequence[files.Piece], given: LegResult, fouling: files.Fouling
 ) -> tuple[files.Piece, ...]:
     """The pieces with growth on all that is above a depth in still water.
 
@@ -37,7 +37,7 @@ def grown(
     ----------
     given : the line without growth
     """
-    gravity = given.mooring.water.gravity
+    gravity = given.leg.water.gravity
     return tuple(
         replace(piece, index=index)
         for index, piece in enumerate(_grown_pieces(pieces, given, fouling, gravity))
@@ -45,7 +45,7 @@ def grown(
 
 
 def _grown_pieces(
-    pieces: Sequence[files.Piece], given: Result, fouling: files.Fouling, gravity: float
+    pieces: Sequence[files.Piece], given: LegResult, fouling: files.Fouling, gravity: float
 ) -> Iterator[files.Piece]:
     sunk = np.nan_to_num(given.components.knockdown)  # none where still water has no shape
     below = np.append(sunk[1:], 0.0)

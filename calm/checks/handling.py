@@ -30,8 +30,8 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     Breaks are those above the back-up floats; lost is any one buoyant element. It should be a tenth
     of the weight it lifts, and 250 N.
     """
-    if handling.mooring.file.release is None:
-        if reaches_the_surface(handling.mooring):
+    if handling.leg.file.release is None:
+        if reaches_the_surface(handling.leg):
             message = "Without a release the line is hauled in; what is below a break stays there."
             yield verdict_on(None, State.PASS, message)
             return
@@ -53,7 +53,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         part: LinePart = worst
         after = f"After the loss of {worst.label}"
     else:
-        part = handling.mooring.file.pieces[worst.break_after]
+        part = handling.leg.file.pieces[worst.break_after]
         after = f"After a break below {worst.label}"
     alone = not breaks and len(handling.losses) == 1
     yield at_least(
@@ -64,7 +64,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         f"{say('tension', worst.margin)}; {say('tension', worst.required)} would raise it.",
         f"Add {say('tension', worst.required - worst.margin)} of buoyancy above the release.",
         State.WARN if alone else State.FAIL,
-        source=cited(handling.mooring.file, "backup_margin"),
+        source=cited(handling.leg.file, "backup_margin"),
     )
 
 
@@ -75,7 +75,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
     It may be `launch_working_factor` times the working load, and the breaking load over
     `launch_safety_factor`, whichever is less.
     """
-    launch, file = handling.launch, handling.mooring.file
+    launch, file = handling.launch, handling.leg.file
     if isinstance(launch, NoEquilibrium):
         yield _unsolved("fall", launch)
         return
@@ -115,7 +115,7 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
     if isinstance(launch, NoEquilibrium):
         yield _unsolved("fall", launch)
         return
-    anchor, speed = handling.mooring.file.pieces[-1], launch.fall_speed
+    anchor, speed = handling.leg.file.pieces[-1], launch.fall_speed
     slow, fast = (QUANTITIES["speed"].format(one) for one in launch.fall_speed_band)
     message = (
         f"The anchor lands at {say('speed', speed)} ({slow} to {fast} with the drag of line and "
@@ -139,11 +139,11 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
 @rule("recovery", once=True)
 def recovery(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the line as it rises without its anchor."""
-    rise, limit = handling.recovery, handling.mooring.file.checks.minimum_rise_speed
+    rise, limit = handling.recovery, handling.leg.file.checks.minimum_rise_speed
     if isinstance(rise, NoEquilibrium):
         yield _unsolved("rise", rise)
         return
-    lowest = handling.mooring.file.pieces[rise.released]
+    lowest = handling.leg.file.pieces[rise.released]
     if rise.time_to_surface == 0.0:
         yield _hauled_in(lowest, float(rise.arrival[rise.released]), rise)
         return
@@ -155,7 +155,7 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     if rise.in_still_water:
         message += " That is in still water: in the current no steady rise was found."
     remedy = "Add buoyancy above the release, or remove weight."
-    source = cited(handling.mooring.file, "minimum_rise_speed")
+    source = cited(handling.leg.file, "minimum_rise_speed")
     verdict = at_least(lowest, rise.rise_speed, limit, message, remedy, source=source)
     if verdict.state is State.PASS and rise.rise_speed < USUAL_RISE_SPEED:
         verdict = replace(verdict, state=State.WARN, remedy=remedy)
@@ -176,7 +176,7 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
         (handling.recovery, rise, "Put more of the buoyancy at the top."),
     ):
         if not isinstance(motion, NoEquilibrium) and motion.tangles:
-            pieces = [handling.mooring.file.pieces[piece] for piece in motion.tangles]
+            pieces = [handling.leg.file.pieces[piece] for piece in motion.tangles]
             named = ", ".join(piece.label for piece in pieces[:3])
             more = f" and {len(pieces) - 3} more" if len(pieces) > 3 else ""
             message = f"{what} {named}{more}: the line doubles back and may tangle."

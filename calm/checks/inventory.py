@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from calm.assemble import mass_in_air, net_buoyancy
-from calm.case import Mooring
+from calm.case.leg import Leg
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, Component, Flexible, Piece
 from calm.physics.materials import CONCRETE_DENSITY, STEEL_DENSITY
@@ -66,17 +66,17 @@ def total_of(items: Sequence[InventoryItem]) -> Total:
     return Total(mass, masses.count(None), weight, weights.count(None))
 
 
-def inventory_of(mooring: Mooring) -> tuple[InventoryItem, ...]:
+def inventory_of(leg: Leg) -> tuple[InventoryItem, ...]:
     """Every piece from the top to the anchor, each with its clamps after it."""
     try:
-        lengths: list[float | None] = [*mooring.line.length.tolist()]
+        lengths: list[float | None] = [*leg.line.length.tolist()]
     except NoEquilibrium:
-        lengths = [piece.length for piece in mooring.file.pieces[:-1]]
-    lengths.append(mooring.file.anchor.length)
-    gravity = mooring.water.gravity
+        lengths = [piece.length for piece in leg.file.pieces[:-1]]
+    lengths.append(leg.file.anchor.length)
+    gravity = leg.water.gravity
     return tuple(
         item
-        for piece, length in zip(mooring.file.pieces, lengths, strict=True)
+        for piece, length in zip(leg.file.pieces, lengths, strict=True)
         for item in _items(piece, length, gravity)
     )
 

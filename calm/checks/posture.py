@@ -4,12 +4,14 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from math import isnan
 
-from calm.case import Mooring, Result
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
 from calm.case.warnings import is_synthetic, unknown_stretch
 from calm.checks import criterion
 from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, parts_of, pieces_of
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.files import MooringFile
+from calm.files.mooring_file import legs_of
 from calm.quantities import say
 from calm.solve.finish import watch_circle_radius
 
@@ -27,41 +29,39 @@ AFLOAT_KEYS = ("hull", "k_surface", "wind_area", "heave")
 """What is given of a float at the surface alone."""
 
 
-def reaches_the_surface(mooring: Mooring) -> bool:
+def reaches_the_surface(leg: Leg) -> bool:
     """Return whether a line is meant to have its float at the surface, as it has in still water.
 
     A float with a figure that only one at the surface needs is meant for it, though it be too small
     to come up. A line that reaches it has no unique shape in still water where it is longer than
     that is deep.
     """
-    if mooring.for_surface is not None:
-        return mooring.for_surface
-    top = mooring.file.pieces[0].component
+    if leg.for_surface is not None:
+        return leg.for_surface
+    top = leg.file.pieces[0].component
     if any(getattr(top, key, None) is not None for key in AFLOAT_KEYS):
         return True
-    if mooring.at_rest is None:
-        return float(mooring.line.length.sum()) >= mooring.water.depth
-    return -float(mooring.at_rest.position[0, 2]) <= criterion.AT_SURFACE
+    if leg.at_rest is None:
+        return float(leg.line.length.sum()) >= leg.water.depth
+    return -float(leg.at_rest.position[0, 2]) <= criterion.AT_SURFACE
 
 
 def left_out_of_a_leg(file: MooringFile) -> tuple[str, ...]:
     """Return the rules of a whole line that say nothing of a leg with these ends."""
-    if not file.legs:
-        return ()
-    top, bottom = file.legs[0].ends
+    top, bottom = legs_of(file)[0].ends
     of_both_ends = () if top.free and bottom.anchor is not None else ("watch-circle", "scope")
     return of_both_ends if top.free else (*of_both_ends, "top-depth", "knockdown", "excursion")
 
 
 @criteria("tilt")
-def tilt(mooring: Mooring) -> Iterator[Criterion]:
+def tilt(leg: Leg) -> Iterator[Criterion]:
     """Tilt of instruments and releases against their own limits and the design's.
 
     The makers': an Aanderaa RCM deviates by 27 degrees at most (BODC), a single-point Doppler by
     30, an ADCP by 20 and is doubtful from 15, a release by 45, a sediment trap by 10.
     """
-    design = mooring.file.checks.maximum_tilt
-    for part in parts_of(mooring):
+    design = leg.file.checks.maximum_tilt
+    for part in parts_of(leg):
         own, warned = part.component.max_tilt, part.component.warn_tilt
         if own is warned is None and part.component.role not in ("instrument", "release"):
             continue
@@ -79,7 +79,7 @@ THE_DESIGNS = "The design's own `maximum_tilt`"
 
 
 def _tilt_words(
-    part: JudgedPart, limit: float | None, leaning: float, _: Result
+    part: JudgedPart, limit: float | None, leaning: float, _: LegResult
 ) -> tuple[str, str]:
     leans = f"{part.label} leans {say('tilt', leaning)}"
     if limit is None:
@@ -87,19 +87,21 @@ def _tilt_words(
     return f"{leans}; {say('tilt', limit)} is its limit.", _STRAIGHTER
 
 
-def _doubtful_words(part: JudgedPart, warned: float, leaning: float, _: Result) -> tuple[str, str]:
+def _doubtful_words(
+    part: JudgedPart, warned: float, leaning: float, _: LegResult
+) -> tuple[str, str]:
     leans = f"{part.label} leans {say('tilt', leaning)}"
     return f"{leans}; above {say('tilt', warned)} its data are doubtful.", _STRAIGHTER
 
 
 @criteria("depth-rating")
-def depth_rating(mooring: Mooring) -> Iterator[Criterion]:
+def depth_rating(leg: Leg) -> Iterator[Criterion]:
     """Depth in the current, and a margin, against the rating of floats and instruments.
 
     A float that is knocked down below its rating is crushed, and the line with it.
     """
-    margin, source = mooring.file.checks.rating_margin, cited(mooring.file, "rating_margin")
-    for part in parts_of(mooring):
+    margin, source = leg.file.checks.rating_margin, cited(leg.file, "rating_margin")
+    for part in parts_of(leg):
         rating = part.component.depth_rating
         if rating is None and part.component.role not in JUDGED_ROLES:
             continue
@@ -111,7 +113,7 @@ def depth_rating(mooring: Mooring) -> Iterator[Criterion]:
 
 
 def _rating_words(
-    part: JudgedPart, limit: float | None, depth: float, _: Result
+    part: JudgedPart, limit: float | None, depth: float, _: LegResult
 ) -> tuple[str, str]:
     stands, rating = f"{part.label} is {say('depth', depth)} deep", part.component.depth_rating
     if limit is None or rating is None:
@@ -132,9 +134,9 @@ _MEASURED = 0.2
 
 
 @rule("stretch")
-def stretch(result: Result) -> Iterator[Verdict]:
+def stretch(result: LegResult) -> Iterator[Verdict]:
     """Judge what ropes of unknown stiffness may stretch by, and under what load ropes are cut."""
-    limit, lengths = _STRETCH * result.mooring.water.depth, result.mooring.line.length.tolist()
+    limit, lengths = _STRETCH * result.leg.water.depth, result.leg.line.length.tolist()
     rows = zip(result.file.pieces, lengths, result.components.tension, strict=False)
     for piece, length, tension in rows:
         component = piece.component
@@ -165,26 +167,26 @@ def stretch(result: Result) -> Iterator[Verdict]:
 
 
 @criteria("top-depth")
-def top_depth(mooring: Mooring) -> Iterator[Criterion]:
+def top_depth(leg: Leg) -> Iterator[Criterion]:
     """Least depth of the top of a sub-surface line, clear of waves, hulls and nets.
 
     Where the design gives no `minimum_top_depth` its default is a warning.
     """
-    given, label = mooring.file.checks.minimum_top_depth, pieces_of(mooring)[0].label
-    if given is None and reaches_the_surface(mooring):
+    given, label = leg.file.checks.minimum_top_depth, pieces_of(leg)[0].label
+    if given is None and reaches_the_surface(leg):
         return
     limit = LEAST_TOP_DEPTH if given is None else given
     beyond = State.WARN if given is None else State.FAIL
-    source = cited(mooring.file, "minimum_top_depth")
+    source = cited(leg.file, "minimum_top_depth")
 
-    def words(depth: float, _: Result) -> tuple[str, str]:
+    def words(depth: float, _: LegResult) -> tuple[str, str]:
         return (
             f"{label} is {say('depth', depth)} below the surface; {say('depth', limit)} would "
             "keep it clear of waves, hulls and nets.",
             "Shorten the line, or mark it at the surface.",
         )
 
-    top = pieces_of(mooring)[0]
+    top = pieces_of(leg)[0]
     yield Criterion(top, "top_depth", limit, words, least=True, beyond=beyond, source=source)
 
 
@@ -194,10 +196,10 @@ _SHELF = 200.0
 
 
 @rule("fish-bite")
-def fish_bite(result: Result) -> Iterator[Verdict]:
+def fish_bite(result: LegResult) -> Iterator[Verdict]:
     """Judge the least depth of every synthetic rope against that down to which fish bite."""
     limit = result.file.checks.fishbite_depth
-    if result.mooring.water.depth <= _SHELF:
+    if result.leg.water.depth <= _SHELF:
         return
     for piece, row in zip(result.file.pieces, result.components, strict=True):
         if is_synthetic(piece.component):
@@ -212,7 +214,7 @@ def fish_bite(result: Result) -> Iterator[Verdict]:
 
 
 @criteria("knockdown")
-def knockdown(mooring: Mooring) -> Iterator[Criterion]:
+def knockdown(leg: Leg) -> Iterator[Criterion]:
     """Knockdown of the top against the design's limit, where it gives one."""
 
     def words(sunk: float, allowed: str) -> tuple[str, str]:
@@ -226,11 +228,11 @@ def knockdown(mooring: Mooring) -> Iterator[Criterion]:
             "Add buoyancy at the top, or reduce drag: `calm run --explain` shows where.",
         )
 
-    yield from _of_the_top(mooring, "knockdown", mooring.file.checks.maximum_knockdown, words)
+    yield from _of_the_top(leg, "knockdown", leg.file.checks.maximum_knockdown, words)
 
 
 @criteria("excursion")
-def excursion(mooring: Mooring) -> Iterator[Criterion]:
+def excursion(leg: Leg) -> Iterator[Criterion]:
     """Horizontal offset of the top against the design's limit, where it gives one."""
 
     def words(offset: float, allowed: str) -> tuple[str, str]:
@@ -239,11 +241,11 @@ def excursion(mooring: Mooring) -> Iterator[Criterion]:
             "Add buoyancy, reduce drag, or shorten the line.",
         )
 
-    yield from _of_the_top(mooring, "offset", mooring.file.checks.maximum_excursion, words)
+    yield from _of_the_top(leg, "offset", leg.file.checks.maximum_excursion, words)
 
 
 def _of_the_top(
-    mooring: Mooring,
+    leg: Leg,
     quantity: str,
     limit: float | None,
     words: Callable[[float, str], tuple[str, str]],
@@ -251,21 +253,21 @@ def _of_the_top(
     """Yield what the design itself allows the top, where it does."""
     if limit is not None:
         allowed = say(quantity, limit)
-        top = pieces_of(mooring)[0]
+        top = pieces_of(leg)[0]
         yield Criterion(top, quantity, limit, lambda value, _: words(value, allowed))
 
 
 @criteria("reserve")
-def reserve(mooring: Mooring) -> Iterator[Criterion]:
+def reserve(leg: Leg) -> Iterator[Criterion]:
     """Share of the surface float's buoyancy that is left: what it could still take on.
 
     The 0.3 that are asked for by default cover waves, which a static solution does not see.
     """
-    if not reaches_the_surface(mooring):
+    if not reaches_the_surface(leg):
         return
-    limit = mooring.file.checks.minimum_reserve
+    limit = leg.file.checks.minimum_reserve
 
-    def words(left: float, result: Result) -> tuple[str, str]:
+    def words(left: float, result: LegResult) -> tuple[str, str]:
         if result.type == "surface":
             message = f"{100 * left:.0f} % of the float's buoyancy is left"
         else:
@@ -275,15 +277,15 @@ def reserve(mooring: Mooring) -> Iterator[Criterion]:
             "Take a larger float, a lighter line, or more length.",
         )
 
-    source = cited(mooring.file, "minimum_reserve")
-    top = pieces_of(mooring)[0]
+    source = cited(leg.file, "minimum_reserve")
+    top = pieces_of(leg)[0]
     yield Criterion(top, "reserve", limit, words, least=True, source=source)
 
 
 @rule("freeboard")
-def freeboard(result: Result) -> Iterator[Verdict]:
+def freeboard(result: LegResult) -> Iterator[Verdict]:
     """A float meant for the surface stands out of the water."""
-    if not reaches_the_surface(result.mooring):
+    if not reaches_the_surface(result.leg):
         return
     top, height = result.file.pieces[0], result.top.freeboard
     if result.type != "surface":
@@ -307,7 +309,7 @@ def freeboard(result: Result) -> Iterator[Verdict]:
 
 
 @rule("watch-circle")
-def watch_circle(result: Result) -> Iterator[Verdict]:
+def watch_circle(result: LegResult) -> Iterator[Verdict]:
     """Radius √(L² - h²) within which a surface float can be found, with the line stretched.
 
     L is the line from the float to the anchor, h the height of the surface above the anchor's top.
@@ -316,11 +318,11 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
     `maximum_excursion`, where the design gives it.
     """
     limit = result.file.checks.maximum_excursion
-    if not reaches_the_surface(result.mooring):
+    if not reaches_the_surface(result.leg):
         return
-    anchor = result.mooring.line.anchor_height
+    anchor = result.leg.line.anchor_height
     length = float(result.components.length.sum()) - anchor
-    radius = watch_circle_radius(length, result.mooring.water.depth - anchor)
+    radius = watch_circle_radius(length, result.leg.water.depth - anchor)
     top = result.file.pieces[0]
     message = f"The watch circle has a radius of {say('offset', radius)}"
     if limit is None:
@@ -331,11 +333,11 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
 
 
 @rule("scope")
-def scope(result: Result) -> Iterator[Verdict]:
+def scope(result: LegResult) -> Iterator[Verdict]:
     """Cut length over water depth of a line to the surface; it is reported, and has no limit."""
-    if not reaches_the_surface(result.mooring):
+    if not reaches_the_surface(result.leg):
         return
-    depth = result.mooring.water.depth
+    depth = result.leg.water.depth
     ratio = float(result.components.cut_length.sum()) / depth
     message = f"The line is {ratio:.3f} times as long as the water is deep."
     yield verdict_on(None, State.PASS, message, value=ratio)

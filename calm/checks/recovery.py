@@ -23,7 +23,8 @@ from typing import Any
 import numpy as np
 
 from calm.assemble import net_buoyancy, with_axial_clamps
-from calm.case import Mooring, Result
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
 from calm.errors import NoEquilibrium
 from calm.files import Component, Flexible, Piece, Place
 from calm.files.definition import CATALOGUE_DENSITY
@@ -106,7 +107,7 @@ class Recovery:
         ]
 
 
-def recovery_of(mooring: Mooring, result: Result, *, first_only: bool = False) -> Recovery:
+def recovery_of(leg: Leg, result: LegResult, *, first_only: bool = False) -> Recovery:
     """The recovery of a mooring from where it stands.
 
     Parameters
@@ -119,10 +120,10 @@ def recovery_of(mooring: Mooring, result: Result, *, first_only: bool = False) -
     NoEquilibrium
         As `solve_rise`, in still water too.
     """
-    count, water = len(mooring.line.length), mooring.water
-    release = mooring.file.release
+    count, water = len(leg.line.length), leg.water
+    release = leg.file.release
     released = count - 1 if release is None else release
-    whole = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
+    whole = with_axial_clamps(leg.line, leg.file.pieces[:-1])
     line = part_of(whole, 0, released + 1)
     lifts = lifts_of(line, water, result)
     none = np.full(count, nan)
@@ -130,12 +131,12 @@ def recovery_of(mooring: Mooring, result: Result, *, first_only: bool = False) -
     if not lifts.sum() > 0.0:
         return at_rest
     top = max(result.top.depth, 0.0)
-    motion, still = _rise(line, water, top, mooring.settings)
+    motion, still = _rise(line, water, top, leg.settings)
     speed = float(motion.velocity[2])
     if not speed > 0.0:
         return at_rest
     length = result.components.length[: released + 1]
-    risen = _risers(line, water.still(), length, lifts, top, speed, mooring.settings)
+    risen = _risers(line, water.still(), length, lifts, top, speed, leg.settings)
     risers = dict(islice(risen, 1 if first_only else None))
     arrival = none.copy()
     head = head_count(line)
@@ -161,7 +162,7 @@ def recovery_of(mooring: Mooring, result: Result, *, first_only: bool = False) -
     )
 
 
-def lifts_of(line: Line, water: Water, result: Result) -> Floats:
+def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
     """(n,) net forces of the pieces with their clamps where they stand, + up [N]."""
     rows = slice(len(line.length))
     depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])
@@ -259,32 +260,32 @@ class Loss:
     place: Place
 
 
-def _lift_to_the_release(mooring: Mooring) -> Floats:
+def _lift_to_the_release(leg: Leg) -> Floats:
     """(n,) net force [N] of each piece down to the lowest release, where the line stands upright.
 
     None of a line without a release, or one that no length fits.
     """
-    release = mooring.file.release
+    release = leg.file.release
     if release is not None:
         with suppress(NoEquilibrium):
-            return standing_lift(mooring.line, mooring.water)[: release + 1]
+            return standing_lift(leg.line, leg.water)[: release + 1]
     return np.zeros(0)
 
 
-def losses_of(mooring: Mooring) -> tuple[Loss, ...]:
+def losses_of(leg: Leg) -> tuple[Loss, ...]:
     """The loss of each buoyant piece or clamp above the lowest release, from the top.
 
     What is lost lifts no more. One that fills with water, and gives its mass and a material whose
     density is known, weighs what that does in water; another is taken to be gone, and a cable is
     not lost. The others lift what they do where the line stands upright.
     """
-    lift = _lift_to_the_release(mooring)
-    return losses_among(mooring, mooring.file.pieces[: lift.size], lift)
+    lift = _lift_to_the_release(leg)
+    return losses_among(leg, leg.file.pieces[: lift.size], lift)
 
 
-def losses_among(mooring: Mooring, pieces: Sequence[Piece], lift: Floats) -> tuple[Loss, ...]:
+def losses_among(leg: Leg, pieces: Sequence[Piece], lift: Floats) -> tuple[Loss, ...]:
     """The same of the pieces of a mooring that come up together, with their net forces [N]."""
-    gravity = mooring.water.gravity
+    gravity = leg.water.gravity
     weight = float(-lift[lift < 0.0].sum())
     losses = []
     for piece in pieces:
@@ -300,7 +301,7 @@ def losses_among(mooring: Mooring, pieces: Sequence[Piece], lift: Floats) -> tup
                     label=part.label,
                     margin=float(lift.sum()) - lifted - sunk,
                     weight_lifted=weight + sunk,
-                    required=required_margin(mooring, weight + sunk),
+                    required=required_margin(leg, weight + sunk),
                     place=part.place,
                 )
             )
@@ -316,12 +317,12 @@ def _weight_when_flooded(component: Component, gravity: float) -> float:
     return component.mass * gravity * (1.0 - CATALOGUE_DENSITY / density)
 
 
-def required_margin(mooring: Mooring, weight: float) -> float:
+def required_margin(leg: Leg, weight: float) -> float:
     """Net buoyancy asked for after a break that leaves a weight in water to lift [N]."""
-    return max(mooring.file.checks.backup_margin * weight, LEAST_MARGIN)
+    return max(leg.file.checks.backup_margin * weight, LEAST_MARGIN)
 
 
-def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
+def breaks_of(leg: Leg) -> tuple[Break, ...]:
     """The breaks at every connection above the lowest release, from the top.
 
     The net force of a piece is that with its clamps, in the water where it stands upright. After a
@@ -333,17 +334,17 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
     release, leaves the release on the seabed in any design, and is not judged. Where that is the
     whole line, chain parts clusters too; one that is compact even so is judged by its losses alone.
     """
-    lift = _lift_to_the_release(mooring)
+    lift = _lift_to_the_release(leg)
     if not lift.size:
         return ()
     release = lift.size - 1
-    above = mooring.file.pieces[:release]
+    above = leg.file.pieces[:release]
     beyond_help = _beyond_help(above, lift[:release], "connector", "chain")
     if len(beyond_help) == release:
         beyond_help = _beyond_help(above, lift[:release], "connector")
     judged = set(range(release)) - set(beyond_help)
     breaks = []
-    for piece in mooring.file.pieces[:release]:
+    for piece in leg.file.pieces[:release]:
         left = lift[piece.index + 1 :]
         weight = float(-left[left < 0.0].sum())
         breaks.append(
@@ -352,7 +353,7 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
                 label=piece.label,
                 margin=float(left.sum()),
                 weight_lifted=weight,
-                required=required_margin(mooring, weight),
+                required=required_margin(leg, weight),
                 judged=piece.index in judged,
                 loose=float(lift[: piece.index + 1].sum()),
             )

@@ -12,9 +12,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from calm.case import Mooring, Result
-from calm.case.mooring import held, profilers_in
-from calm.case.parts import cut_like
+from calm.case.design import Design
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
+from calm.case.profilers import held, profilers_in
 from calm.case.strumming import FACTOR
 from calm.checks.assessment import Handling, Situation
 from calm.checks.finding import AS_GIVEN, State, Verdict, at_least, at_most, rule, verdict_on
@@ -41,8 +42,12 @@ FOULED, STRUMMING, DEPLOYED = "fouling", "strumming", "as deployed"
 _NO_CURRENT = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
-def situations_of(mooring: Mooring) -> tuple[Situation, ...]:
-    """The mooring solved as given, then in every situation that its file asks for.
+Situations = tuple[Situation, ...]
+"""One situation of a design, leg by leg; a failure of the design is a single entry."""
+
+
+def situations_of(design: Design) -> tuple[Situations, ...]:
+    """Solve a design as given, then in every situation that its file asks for.
 
     Still water, high and low water, and still low water where the environment has a `depth_range`,
     profilers at their lower stops and where the wire leans most, growth where it has `fouling`,
@@ -52,55 +57,66 @@ def situations_of(mooring: Mooring) -> tuple[Situation, ...]:
     the surface is slack, since it is longer than the water is deep, has no unique shape and is
     left out.
     """
-    given = solved(AS_GIVEN, mooring)
-    if given.result is None:
+    given = solved(AS_GIVEN, design)
+    if given[0].result is None:
         return (given,)
-    surface = reaches_the_surface(given.result.mooring)
-    changed = [solved(name, each) for name, each in _changed(mooring, given.result)]
-    return (given, *(each for each in changed if not (surface and _shapeless(each))))
+    # a single line keeps its purpose in changed situations
+    surface = None if design.several else reaches_the_surface(given[0].result.leg)
+    legs = [each.result for each in given if each.result is not None]
+    changed = [solved(name, each) for name, each in _changed(design, legs, surface)]
+    return (given, *(each for each in changed if not (surface and _shapeless(each[0]))))
 
 
-def solved(name: str, mooring: Mooring) -> Situation:
-    """The situation of that name, with the result or the failure of a mooring."""
+def solved(name: str, design: Design) -> Situations:
+    """Solve a design in the situation of a name."""
 
     # all environments of a mooring that are as deep and dense have still water in common
-    environment = replace(mooring.file.environment, name=None)
-    given = name, replace(mooring.file, environment=environment), mooring.for_surface
-    for known, situation in list(_STILL):
+    environment = replace(design.environment, name=None)
+    given = name, replace(design.file, environment=environment), design.for_surface
+    for known, before in list(_STILL):
         if known == given:
-            return situation
-    found = or_why_not(mooring.solve)
-    failed = isinstance(found, NoEquilibrium)
-    situation = Situation(name, *((None, found) if failed else (found, None)))
+            return before
+    found = or_why_not(design.solve)
+    if isinstance(found, NoEquilibrium):
+        situations: Situations = (Situation(name, None, found),)
+    else:
+        situations = tuple(Situation(name, leg, None) for leg in found.legs)
     if name in (STILL, STILL_LOW):
-        _STILL.append((given, situation))
-    return situation
+        _STILL.append((given, situations))
+    return situations
 
 
-_STILL: deque[tuple[object, Situation]] = deque(maxlen=4)
+_STILL: deque[tuple[object, Situations]] = deque(maxlen=4)
 """The latest situations in still water, and what they are of."""
 
 
-def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
-    file, surface = held(cut_like(mooring.file, mooring)), reaches_the_surface(given.mooring)
+def _changed(
+    design: Design, given: Sequence[LegResult], surface: bool | None
+) -> Iterator[tuple[str, Design]]:
+    leg, first = design.legs[0], given[0]
+    file = held(leg.cut(design.file))
 
-    def changed(other: MooringFile) -> Mooring:
-        return Mooring(other, surface, mooring.memory)
+    def changed(other: MooringFile) -> Design:
+        return Design(other, surface, design.memory)
 
-    for name, other in in_other_waters(file, mooring.water):
+    for name, other in in_other_waters(file, design.water):
         yield name, changed(other)
-    for clamp, travel in zip(profilers_in(mooring), given.profilers, strict=True):
+    for clamp, travel in zip(profilers_in(leg), first.profilers, strict=True):
         yield f"{clamp.label} at its lower stop", changed(held(file, clamp.place, travel.lower.at))
         if travel.worst not in (travel.upper, travel.lower):
             leaning = changed(held(file, clamp.place, travel.worst.at))
             yield f"{clamp.label} where its wire leans most", leaning
-    fouling = file.environment.fouling
+    fouling = design.environment.fouling
     if fouling is not None:
-        yield FOULED, changed(replace(file, pieces=grown(file.pieces, given, fouling)))
+        own = changed(file).legs
+        pieces = [
+            grown(leg.file.pieces, result, fouling) for leg, result in zip(own, given, strict=True)
+        ]
+        yield FOULED, changed(file).with_pieces(pieces)
     if (strummed := strumming_file(file)) is not None:
         yield STRUMMING, changed(strummed)
-    if file.deployed is not None and differs(mooring, deployed := as_deployed(mooring)):
-        yield DEPLOYED, Mooring(deployed.file, surface, mooring.memory)
+    if file.deployed is not None and differs(file, deployed := _deployed_file(file)):
+        yield DEPLOYED, changed(deployed)
 
 
 def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, MooringFile]]:
@@ -141,8 +157,8 @@ SOUNDING = 1.0, 0.023
 """Of a sounding's error, 95 %: the fixed part [m] and the share of the depth; IHO S-44, order 2."""
 
 
-def as_deployed(mooring: Mooring) -> Mooring:
-    """The mooring with the depth, position, serial numbers and cut lengths of its `deployed`.
+def as_deployed(design: Design) -> Design:
+    """The design with the depth, position, serial numbers and cut lengths of its `deployed`.
 
     What is cut to fit keeps the length that fits as designed, unless another was cut.
 
@@ -153,15 +169,16 @@ def as_deployed(mooring: Mooring) -> Mooring:
     NoEquilibrium
         What is cut to fit has no length that fits as designed.
     """
-    file = mooring.file if mooring.file.deployed is None else cut_like(mooring.file, mooring)
-    return Mooring(deployed_file(file))
-
-
-def deployed_file(file: MooringFile) -> MooringFile:
-    """The same of a file in which nothing is cut to fit, such as that of a net."""
-    deployed = file.deployed
-    if deployed is None:
+    file = design.file
+    if file.deployed is None:
         raise UsageError(f"{file.path} has no `deployed:` to compare its design with")
+    return Design(_deployed_file(design.legs[0].cut(file)))
+
+
+def _deployed_file(file: MooringFile) -> MooringFile:
+    """The same of a file in which nothing is left to cut to fit."""
+    deployed = file.deployed
+    assert deployed is not None
     items = {item.label: item for item in deployed.items}
     depth, position = deployed.depth, deployed.position
     environment = replace(
@@ -177,11 +194,11 @@ def deployed_file(file: MooringFile) -> MooringFile:
     )
 
 
-def differs(mooring: Mooring, deployed: Mooring) -> bool:
+def differs(designed: MooringFile, deployed: MooringFile) -> bool:
     """Return whether it stands in another depth than designed, or on other lengths."""
-    return deployed.water.depth != mooring.water.depth or any(
-        piece.length is not None and piece.length != length
-        for piece, length in zip(deployed.file.pieces, mooring.line.length.tolist(), strict=False)
+    return deployed.environment.depth != designed.environment.depth or any(
+        there.length != piece.length
+        for piece, there in zip(designed.pieces, deployed.pieces, strict=True)
     )
 
 
@@ -191,23 +208,24 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
 
     A line to the surface keeps its top there: what differs is the depth under it.
     """
-    mooring = handling.mooring
-    if mooring.file.deployed is None:
+    leg = handling.leg
+    if leg.file.deployed is None:
         return
-    if (far := _far_away(mooring)) is not None:
+    if (far := _far_away(leg)) is not None:
         yield far
     try:
-        deployed = as_deployed(mooring)
+        designed_file = leg.cut(leg.file)
     except NoEquilibrium:  # found by `equilibrium`
         return
-    if not differs(mooring, deployed):
+    deployed = Leg(_deployed_file(designed_file))
+    if not differs(designed_file, deployed.file):
         return
-    designed, depth = mooring.water.depth, deployed.water.depth
-    longer = float(deployed.line.length.sum() - mooring.line.length.sum())
+    designed, depth = leg.water.depth, deployed.water.depth
+    longer = float(deployed.line.length.sum() - leg.line.length.sum())
     fixed, share = SOUNDING
     limit = hypot(fixed, share * designed)
     moved, what = depth - designed - longer, "its top, upright,"
-    if reaches_the_surface(mooring):
+    if reaches_the_surface(leg):
         moved, what = depth - designed, "it"
     way = "deeper" if moved > 0.0 else "shallower"
     message = (
@@ -224,11 +242,11 @@ _ANOTHER_SITE = 20.0
 [km]."""
 
 
-def _far_away(mooring: Mooring) -> Verdict | None:
+def _far_away(leg: Leg) -> Verdict | None:
     """Return that it was deployed at another place than it was designed for."""
-    assert mooring.file.deployed is not None
-    planned = mooring.file.position or mooring.file.environment.position
-    there = mooring.file.deployed.position
+    assert leg.file.deployed is not None
+    planned = leg.file.position or leg.file.environment.position
+    there = leg.file.deployed.position
     if planned is None or there is None:
         return None
     place = planned.latitude, planned.longitude
@@ -288,32 +306,32 @@ WEAK_BESIDE_OTHERS = 0.02
 
 
 @rule("current")
-def currents(moorings: Sequence[Mooring]) -> Iterator[tuple[Mooring, Verdict]]:
+def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
     """Judge the strongest current of all environments, and what each leaves out.
 
-    Each verdict comes with the mooring in the environment that it is of.
+    Each verdict comes with the leg in the environment that it is of.
     """
-    speeds = [float(np.hypot(each.water.u, each.water.v).max()) for each in moorings]
-    for mooring, speed in zip(moorings, speeds, strict=True):
+    speeds = [float(np.hypot(each.water.u, each.water.v).max()) for each in legs]
+    for leg, speed in zip(legs, speeds, strict=True):
         if 0.0 < speed < WEAK_BESIDE_OTHERS * max(speeds):
             message = (
                 f"The current is {speed:.2g} m/s at its strongest, {say('speed', max(speeds))} in "
                 "another environment: was m/s read as cm/s, or cm/s as m/s?"
             )
-            yield mooring, verdict_on(None, State.WARN, message, "Check its unit.", speed)
-        if speed >= LEAST_CURRENT and (left := _left_out(mooring)):
+            yield leg, verdict_on(None, State.WARN, message, "Check its unit.", speed)
+        if speed >= LEAST_CURRENT and (left := _left_out(leg)):
             remedy = "Give the current at more levels, with one near each end."
-            yield mooring, verdict_on(None, State.WARN, left, remedy, speed)
+            yield leg, verdict_on(None, State.WARN, left, remedy, speed)
     strongest = max(range(len(speeds)), key=speeds.__getitem__)
     speed = speeds[strongest]
-    for mooring, recorded in _records(moorings):
+    for leg, recorded in _records(legs):
         if speed < SHARE_OF_ITS_RECORD * recorded:
             message = (
                 f"The record that this current is taken from reaches {say('speed', recorded)}; "
                 f"the strongest current judged is {say('speed', speed)}."
             )
             remedy = "Add an environment with that current, or solve the record with `calm batch`."
-            yield mooring, verdict_on(None, State.WARN, message, remedy, speed, recorded)
+            yield leg, verdict_on(None, State.WARN, message, remedy, speed, recorded)
     if speed < LEAST_CURRENT:
         return
     message = f"The strongest current judged is {say('speed', speed)}"
@@ -321,27 +339,27 @@ def currents(moorings: Sequence[Mooring]) -> Iterator[tuple[Mooring, Verdict]]:
         message += f"; a wind of 7 m/s alone drives {say('speed', USUAL_CURRENT)} at the surface"
     remedy = "Add an environment with the strongest current of the site."
     yield (
-        moorings[strongest],
+        legs[strongest],
         at_least(None, speed, USUAL_CURRENT, f"{message}.", remedy, State.WARN),
     )
 
 
-def _records(moorings: Sequence[Mooring]) -> Iterator[tuple[Mooring, float]]:
+def _records(legs: Sequence[Leg]) -> Iterator[tuple[Leg, float]]:
     """Return the strongest current of each record that an environment is a time of [m/s]."""
-    sources = {mooring.file.environment.current.record: mooring for mooring in moorings}
-    for source, mooring in sources.items():
+    sources = {leg.file.environment.current.record: leg for leg in legs}
+    for source, leg in sources.items():
         if source is not None:
-            yield mooring, strongest_of(*source)
+            yield leg, strongest_of(*source)
 
 
-def _left_out(mooring: Mooring) -> str:
+def _left_out(leg: Leg) -> str:
     """Return what of the depth a profile of the current says nothing of; "" of one that covers it.
 
     One speed at the surface is taken for a current that is the same everywhere.
     """
-    environment: Environment = mooring.file.environment
+    environment: Environment = leg.file.environment
     levels = environment.current.depth
     if levels == (0.0,):
         return ""
-    left = left_out(levels[0], levels[-1], mooring.water.depth)
+    left = left_out(levels[0], levels[-1], leg.water.depth)
     return left and f"{left[0].upper()}{left[1:]}."

@@ -5,13 +5,15 @@ from functools import partial
 
 import numpy as np
 
-from calm.case import Mooring, Result
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
 from calm.case.warnings import counted_working_load, is_synthetic
 from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, pieces_of
 from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
 from calm.checks.posture import reaches_the_surface
 from calm.files import Cable, Component, Flexible, MooringFile, Piece, SafetyFactors
+from calm.files.mooring_file import legs_of
 from calm.quantities import say
 
 WEAK_LINK = 0.5
@@ -59,10 +61,8 @@ def passes_load_on(file: MooringFile, index: int) -> bool:
     piece = file.pieces[index]
     if piece.length == 0.0 and abs(piece.component.net_buoyancy) < WEIGHT_OF_A_HINGE:
         return False
-    first, last = 1, len(file.pieces) - 1
-    if file.legs:
-        first, last = int(file.legs[0].top.free), last - file.legs[0].bottom.free
-    return first <= index < last
+    top, bottom = legs_of(file)[0].ends
+    return int(top.free) <= index < len(file.pieces) - 1 - bottom.free
 
 
 def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -> float:
@@ -79,7 +79,7 @@ def safety_factor_name(component: Component, surface: bool) -> str:
 
 
 @criteria("strength")
-def strength(mooring: Mooring) -> Iterator[Criterion]:
+def strength(leg: Leg) -> Iterator[Criterion]:
     """Judge the greatest tension in every piece by working load, and breaking load / factor.
 
     The top piece and the anchor are judged where they give a load: nothing pulls through them.
@@ -87,22 +87,22 @@ def strength(mooring: Mooring) -> Iterator[Criterion]:
     UFC 4-159-03 table 3-7 asks for 3 on new breaking strength of chain and wire; oceanographic
     practice for 3 to 5, synthetics and surface moorings at the upper end.
     """
-    factors, surface = mooring.file.checks.safety_factor, reaches_the_surface(mooring)
-    for part in pieces_of(mooring):
+    factors, surface = leg.file.checks.safety_factor, reaches_the_surface(leg)
+    for part in pieces_of(leg):
         component = part.component
         limit = allowable_load(component, factors, surface)
-        if limit is None and not passes_load_on(mooring.file, part.index):
+        if limit is None and not passes_load_on(leg.file, part.index):
             continue
         name = safety_factor_name(component, surface)
         of_factor = limit is not None and limit != component.working_load
-        source = cited(mooring.file, f"safety_factor.{name}") if of_factor else ""
+        source = cited(leg.file, f"safety_factor.{name}") if of_factor else ""
         words = partial(_strength_words, part, limit, getattr(factors, name))
         lacks = wanted_load(component)
         yield Criterion(part, "tension", limit, words, source=source, lacks=lacks)
 
 
 def _strength_words(
-    part: JudgedPart, limit: float | None, factor: float, tension: float, _: Result
+    part: JudgedPart, limit: float | None, factor: float, tension: float, _: LegResult
 ) -> tuple[str, str]:
     component, bears = part.component, f"{part.label} bears {say('tension', tension)}"
     if limit is None:
@@ -124,14 +124,14 @@ def _strength_words(
 
 
 @criteria("release-load")
-def release_load(mooring: Mooring) -> Iterator[Criterion]:
+def release_load(leg: Leg) -> Iterator[Criterion]:
     """Return what every release bears as long as it stands, and as it opens, against its own loads.
 
     As it opens it bears the pull below it, against its `opening_load`; where the maker gives none,
     what it may bear as long as it stands has to do, and the message says so.
     """
-    factors, surface = mooring.file.checks.safety_factor, reaches_the_surface(mooring)
-    for part in pieces_of(mooring):
+    factors, surface = leg.file.checks.safety_factor, reaches_the_surface(leg)
+    for part in pieces_of(leg):
         if part.component.role == "release":
             lacks = wanted_load(part.component)
             stands = allowable_load(part.component, factors, surface)
@@ -144,7 +144,7 @@ def release_load(mooring: Mooring) -> Iterator[Criterion]:
 
 
 def _release_words(
-    part: JudgedPart, does: str, limit: float | None, tension: float, _: Result
+    part: JudgedPart, does: str, limit: float | None, tension: float, _: LegResult
 ) -> tuple[str, str]:
     bears, given = f"{part.label} {does} {say('tension', tension)}", part.component.opening_load
     if limit is None:
@@ -165,14 +165,14 @@ def _release_words(
 
 
 @rule("strength-steps")
-def strength_steps(result: Result) -> Iterator[Verdict]:
+def strength_steps(result: LegResult) -> Iterator[Verdict]:
     """Every weak link: a piece that bears less than half of what the cables on both its sides do.
 
     A line whose strength jumps carries weight for nothing, and parts at its weak link. Where there
     is none, the piece nearest to one is reported. Chain is left out of the comparison: it is
     heavier than its load asks for, against wear.
     """
-    factors, surface = result.file.checks.safety_factor, reaches_the_surface(result.mooring)
+    factors, surface = result.file.checks.safety_factor, reaches_the_surface(result.leg)
     loads = [allowable_load(piece.component, factors, surface) for piece in result.file.pieces[:-1]]
     steps = sorted(_steps(result, loads), key=lambda step: (step[0], step[1].label))
     weak = [step for step in steps if step[0] < WEAK_LINK]
@@ -189,7 +189,7 @@ def strength_steps(result: Result) -> Iterator[Verdict]:
 
 
 def _steps(
-    result: Result, loads: Sequence[float | None]
+    result: LegResult, loads: Sequence[float | None]
 ) -> Iterator[tuple[float, Piece, float, float]]:
     """Of all between two cables: share of their strength, the piece, own load and theirs [N]."""
     cables = [
@@ -205,16 +205,16 @@ def _steps(
 
 
 @criteria("slack")
-def slack(mooring: Mooring) -> Iterator[Criterion]:
+def slack(leg: Leg) -> Iterator[Criterion]:
     """The least tension in every wire and rope above the release; of the whole line without one.
 
     A line that falls slack wears, kinks and snatches. Mooring groups ask for some 500 to 1000 N
     above the release at slack water; no rule is published, so 500 N of wire and 300 N of rope are
     the defaults. A piece with ``slack: allowed`` is not judged, nor what lies on the seabed.
     """
-    file = mooring.file
+    file = leg.file
     lowest = len(file.pieces) - 1 if file.release is None else file.release
-    for part in pieces_of(mooring)[:lowest]:
+    for part in pieces_of(leg)[:lowest]:
         if not isinstance(part.component, Cable) or part.component.slack == "allowed":
             continue
         name = "rope" if is_synthetic(part.component) else "wire"
@@ -224,7 +224,9 @@ def slack(mooring: Mooring) -> Iterator[Criterion]:
         yield Criterion(part, "least_tension", limit, words, least=True, silent=True, source=source)
 
 
-def _words(part: JudgedPart, limit: float, name: str, least: float, _: Result) -> tuple[str, str]:
+def _words(
+    part: JudgedPart, limit: float, name: str, least: float, _: LegResult
+) -> tuple[str, str]:
     return (
         f"{part.label} has a least tension of {say('tension', least)}; "
         f"{say('tension', limit)} keeps a {name} taut.",
@@ -236,92 +238,92 @@ _WHAT_IS_IT = "Give its `weight` in water, or the `density` of its material."
 
 
 @criteria("anchor-weight", of_anchor=True)
-def anchor_weight(mooring: Mooring) -> Iterator[Criterion]:
+def anchor_weight(leg: Leg) -> Iterator[Criterion]:
     """Weight in water ≥ factor (V + H / friction): Dewey's rule for deadweights, factor 1.5."""
-    weight = _weight(mooring)
+    weight = _weight(leg)
 
-    def words(required: float, result: Result) -> tuple[str, str]:
-        needs = f"{say('tension', required)} is required, {_in_air(mooring, required)}."
+    def words(required: float, result: LegResult) -> tuple[str, str]:
+        needs = f"{say('tension', required)} is required, {_in_air(leg, required)}."
         if weight is None:
             return f"The anchor's weight in water is not known; {needs}", _WHAT_IS_IT
         weighs = f"The anchor weighs {say('tension', weight)} in water; {needs}"
-        return weighs, _heavier(mooring, required)
+        return weighs, _heavier(leg, required)
 
     yield Criterion(
-        pieces_of(mooring)[-1],
+        pieces_of(leg)[-1],
         "required_weight",
         weight,
         words,
-        source=cited(mooring.file, "anchor_factor", "anchor_friction"),
+        source=cited(leg.file, "anchor_factor", "anchor_friction"),
         lacks="weight",
         stated=lambda required, result: (result.anchor.weight, required),
     )
 
 
 @criteria("anchor-uplift", of_anchor=True)
-def anchor_uplift(mooring: Mooring) -> Iterator[Criterion]:
+def anchor_uplift(leg: Leg) -> Iterator[Criterion]:
     """Upward pull V ≤ weight in water / factor."""
-    weight, factor = _weight(mooring), mooring.file.checks.anchor_factor
+    weight, factor = _weight(leg), leg.file.checks.anchor_factor
     limit = None if weight is None else weight / factor
 
-    def words(vertical: float, _: Result) -> tuple[str, str]:
+    def words(vertical: float, _: LegResult) -> tuple[str, str]:
         pulls = f"The vertical pull of the line is {say('tension', vertical)}"
         if limit is None:
             return f"{pulls}; the anchor's weight in water is not known.", _WHAT_IS_IT
         return (
             f"{pulls}; the anchor's weight in water over {factor:g} is {say('tension', limit)}.",
-            _heavier(mooring, factor * vertical),
+            _heavier(leg, factor * vertical),
         )
 
-    source = cited(mooring.file, "anchor_factor")
-    anchor = pieces_of(mooring)[-1]
+    source = cited(leg.file, "anchor_factor")
+    anchor = pieces_of(leg)[-1]
     yield Criterion(anchor, "vertical", limit, words, source=source, lacks="weight")
 
 
 @criteria("anchor-sliding", of_anchor=True)
-def anchor_sliding(mooring: Mooring) -> Iterator[Criterion]:
+def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
     """Horizontal pull H ≤ friction (weight in water / factor - V)."""
-    weight, factor = _weight(mooring), mooring.file.checks.anchor_factor
-    friction, seabed = mooring.file.anchor_friction, mooring.file.environment.seabed
+    weight, factor = _weight(leg), leg.file.checks.anchor_factor
+    friction, seabed = leg.file.anchor_friction, leg.file.environment.seabed
     down = "" if seabed is None else f" down a slope of {seabed.slope:.4g}°"
 
-    def held(result: Result) -> float:
+    def held(result: LegResult) -> float:
         assert weight is not None
         return friction * (weight / factor - result.anchor.vertical)
 
-    def words(_: float, result: Result) -> tuple[str, str]:
+    def words(_: float, result: LegResult) -> tuple[str, str]:
         pulls = f"The horizontal pull of the line is {say('tension', result.anchor.horizontal)}"
         if weight is None:
             return f"{pulls}; the anchor's weight in water is not known.", _WHAT_IS_IT
         return (
             f"{pulls}; friction of {friction:.4g}{down} holds "
             f"{say('tension', max(held(result), 0.0))}.",
-            _heavier(mooring, result.anchor.required_weight),
+            _heavier(leg, result.anchor.required_weight),
         )
 
     yield Criterion(
-        pieces_of(mooring)[-1],
+        pieces_of(leg)[-1],
         "slide",
         None if weight is None else friction * weight / factor,
         words,
-        source=cited(mooring.file, "anchor_factor", "anchor_friction"),
+        source=cited(leg.file, "anchor_factor", "anchor_friction"),
         lacks="weight",
         stated=lambda _, result: (result.anchor.horizontal, held(result)),
     )
 
 
-def _weight(mooring: Mooring) -> float | None:
+def _weight(leg: Leg) -> float | None:
     """Of the anchor in water [N]; None of a mass of a material that is not known."""
-    return mooring.anchor_weight if mooring.file.anchor.material_known else None
+    return leg.anchor_weight if leg.file.anchor.material_known else None
 
 
-def _heavier(mooring: Mooring, weight: float) -> str:
-    return f"Take one of {say('tension', weight)} in water: {_in_air(mooring, weight)}."
+def _heavier(leg: Leg, weight: float) -> str:
+    return f"Take one of {say('tension', weight)} in water: {_in_air(leg, weight)}."
 
 
-def _in_air(mooring: Mooring, weight: float) -> str:
+def _in_air(leg: Leg, weight: float) -> str:
     """Return what weighs so much in water [N]."""
-    water = mooring.water
+    water = leg.water
     density = water.density_at(np.array(water.depth))
     steel, concrete = anchor_dry_mass(weight, float(density), water.gravity)
     return f"{steel:.0f} kg of steel or {concrete:.0f} kg of concrete in air"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from calm.case import Mooring
+from calm.case.leg import Leg
 from calm.checks.criterion import cited
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
 from calm.checks.posture import reaches_the_surface
@@ -24,19 +24,19 @@ _HOW = "Give `waves:` in the environment: a design sea, and a scatter table for 
 class MooringInWaves:
     """A mooring in the waves of its environment; None where it is given none, or why unknown."""
 
-    mooring: Mooring
+    leg: Leg
     waves: WaveAnalysis | str | None
 
     @classmethod
-    def of(cls, mooring: Mooring) -> MooringInWaves:
+    def of(cls, leg: Leg) -> MooringInWaves:
         """Of a mooring that stands."""
-        around = mooring.file.environment
+        around = leg.file.environment
         if around.waves is None:
-            return cls(mooring, None)
+            return cls(leg, None)
         try:
-            return cls(mooring, analyse(mooring, around.seas, around.waves.toward))
+            return cls(leg, analyse(leg, around.seas, around.waves.toward))
         except UsageError as error:
-            return cls(mooring, str(error))
+            return cls(leg, str(error))
 
 
 @rule("wave-strength")
@@ -46,16 +46,16 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
     By its working load, and its breaking load over the factor that API RP 2SK asks of tensions
     found dynamically. A mooring that reaches the surface is not known without waves.
     """
-    mooring, waves = evidence.mooring, evidence.waves
+    leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
         if waves is not None:
             yield unknown(None, f"Not judged in waves: {waves}.", "Give what is missing.")
-        elif reaches_the_surface(mooring):
+        elif reaches_the_surface(leg):
             yield unknown(None, "Waves are not judged: no `waves:` are given.", _HOW)
         return
-    checks = mooring.file.checks
-    factor, source = checks.waves_safety_factor, cited(mooring.file, "waves_safety_factor")
-    for piece in mooring.file.pieces[:-1]:
+    checks = leg.file.checks
+    factor, source = checks.waves_safety_factor, cited(leg.file, "waves_safety_factor")
+    for piece in leg.file.pieces[:-1]:
         state = max(waves.states, key=lambda each: each.components[piece.index].greatest)
         row = state.components[piece.index]
         tension = row.greatest
@@ -63,7 +63,7 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
         sea = f"Hs {state.sea.significant_height:.1f} m"
         bears = f"{piece.label} bears {say('tension', tension)} in waves of {sea}"
         if limit is None:
-            if passes_load_on(mooring.file, piece.index):
+            if passes_load_on(leg.file, piece.index):
                 message = f"{bears}; neither its working nor its breaking load is known."
                 message += _measured(row, "greatest")
                 remedy, lacks = "Give its `breaking_load`.", wanted_load(piece.component)
@@ -77,10 +77,10 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
 @rule("wave-slack")
 def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
     """Judge the least tension of every piece in waves: a line that falls slack snatches."""
-    mooring, waves = evidence.mooring, evidence.waves
+    leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
         return
-    for piece in mooring.file.pieces[:-1]:
+    for piece in leg.file.pieces[:-1]:
         state = min(waves.states, key=lambda each: each.components[piece.index].least)
         row = state.components[piece.index]
         if row.tension_std > 0.0 and piece.component.slack != "allowed":
@@ -96,10 +96,10 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
 @rule("fatigue")
 def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
     """Judge the life of every piece whose curve is published, by the service time × the factor."""
-    mooring, waves = evidence.mooring, evidence.waves
+    leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
         return
-    given, checks = mooring.file.environment.waves, mooring.file.checks
+    given, checks = leg.file.environment.waves, leg.file.checks
     if given is None or given.scatter is None:
         message = "Its fatigue life is not known: one sea is not a wave climate."
         yield unknown(
@@ -107,9 +107,9 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
         )
         return
     limit = checks.fatigue_factor * checks.service_time
-    source = cited(mooring.file, "fatigue_factor", "service_time")
+    source = cited(leg.file, "fatigue_factor", "service_time")
     for one in waves.fatigue:
-        piece = mooring.file.pieces[one.index]
+        piece = leg.file.pieces[one.index]
         if one.unknown is not None:
             message = f"The fatigue life of {one.label} is not known: {one.unknown}."
             yield unknown(piece, message, "Give its `fatigue: {curve: NAME}` and its loads.")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from threading import Event, current_thread, main_thread
+from threading import current_thread, main_thread
 from typing import TYPE_CHECKING
 
 from calm.cli import options
@@ -16,8 +16,7 @@ from calm.cli.progress import ProgressTeller, grouped
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.batch.run import BatchOutcome
-    from calm.case import Mooring, net
+    from calm.case import Design
     from calm.records.record import Record
 
 
@@ -33,7 +32,6 @@ def batch(
     declination: options.Declination = None,
     workers: options.Threads = None,
     scheduler: str | None = None,
-    shape: bool = False,
     no_statistics: bool = False,
     environment: options.EnvironmentName = None,
     catalog: options.CatalogFiles = None,
@@ -46,15 +44,15 @@ def batch(
     equilibrium is NaN, with its status. Statistics are printed, and written as
     RESULT.summary.json and .html.
 
-    The work is kept in RESULT.part. However a run is interrupted, the same command
-    resumes it; the exit code is 75 until everything is solved.
+    The result is written whole or not at all: an interrupted run starts again
+    from the beginning.
 
     Parameters
     ----------
     currents
         The record: NetCDF, zarr or CSV.
     output
-        The result: a .nc file or a .zarr folder.
+        The result, .nc.
     time
         Only profiles from A to B, both included, as A/B, such as 2024-03/2024-05.
     every
@@ -64,8 +62,6 @@ def batch(
         LAT,LON; by default the `position` of the mooring file.
     scheduler
         Address of a dask scheduler whose workers solve the profiles.
-    shape
-        Store the shape of the line too.
     no_statistics
         Write no statistics, for a part of a longer record.
 
@@ -74,21 +70,21 @@ def batch(
       calm batch mooring.yaml --currents adcp.nc -o moved.nc
       calm batch mooring.yaml --currents glorys.nc --at 48.3,-5.2 -o hindcast.nc
       calm batch mooring.yaml --currents adcp.nc --time 2024-03/2024-05 -o spring.nc
-      calm batch mooring.yaml --currents ensemble.zarr -o moved.zarr --workers 32
+      calm batch mooring.yaml --currents ensemble.zarr -o moved.nc --workers 32
     """
     options.from_one(every=every, workers=workers)
     from calm.batch.run import run_batch
-    from calm.case import Tow
-    from calm.case.net import load
+    from calm.case import load
+    from calm.files.mooring_file import refuse_tow
     from calm.records.current_file import open_record
     from calm.records.current_terms import Terms
     from calm.records.record import RULES, parse_period, parse_place
+    from calm.report.batch_page import summary_part, write_summary
 
     period = None if time is None else parse_period(time)
     check_output(output, file, currents)
     mooring = load(file, environment, catalog or [])
-    if isinstance(mooring, Tow):
-        raise UsageError(f"{file} is a tow; calm batch is for moorings")
+    refuse_tow(mooring.file)
     options.show_units(units, [mooring.file])
     position = mooring.file.position
     own = None if position is None else (position.latitude, position.longitude)
@@ -96,92 +92,62 @@ def batch(
     seabed = float(mooring.water.depth)
     teller = ProgressTeller()
     turned = options.quantities(declination=(declination, "angle")).get("declination")
-    with stopped_by_a_signal() as stop:
+    with stopped_by_a_signal():
         terms = Terms(seabed, place, turned)
         with open_record(currents, terms, period, every) as record:
             for notice in (*mooring.file.notices, *record.notes):
                 if notice not in RULES:
                     narrate(f"{currents}: {notice}")
             try:
-                outcome = run_batch(
-                    mooring, record, output,
-                    workers=workers, shape=shape, scheduler=scheduler,
-                    progress=teller, tell=teller.note, stop=stop,
+                counts = run_batch(
+                    mooring, record, output, workers=workers, scheduler=scheduler,
+                    progress=teller, tell=teller.note,
                 )  # fmt: skip
             finally:
                 teller.clear()
-            if outcome.counts.get("implausible-current"):
-                narrate(f"{currents}: {_implausible(outcome, mooring, record)}")
-            total = record.count
-        code = ended(outcome, output, total)
-        if outcome.done and not no_statistics and not _summarized(output, mooring, stop):
-            return ExitCode.INCOMPLETE
+            if counts.get("implausible-current"):
+                narrate(f"{currents}: {_implausible(counts, mooring, record)}")
+        code = ended(counts, output)
+        if not no_statistics:
+            show_parts(summary_part(write_summary(output, mooring)))
     return code
 
 
-def _summarized(output: Path, mooring: Mooring | net.Net, stop: Event) -> bool:
-    """Show what the result says, and write it beside the result; whether that was possible.
-
-    UsageError: the result cannot be read.
-    """
-    from calm.batch.work_store import Stopped, go_on
-    from calm.report.batch_page import summary_part, write_summary
-
-    try:
-        show_parts(summary_part(write_summary(output, mooring, lambda: go_on(stop))))
-    except (Stopped, KeyboardInterrupt):
-        reason = "interrupted"
-    except MemoryError:
-        reason = "not enough memory"
-    except OSError as error:
-        reason = error.strerror or str(error)
-    else:
-        return True
-    narrate(f"{output} is done; its statistics are not: {reason}. The same command computes them")
-    return False
-
-
-def _implausible(outcome: BatchOutcome, mooring: Mooring | net.Net, record: Record) -> str:
+def _implausible(counts: Mapping[str, int], mooring: Design, record: Record) -> str:
     """Return how many profiles have a current that cannot be true, and the first of them."""
     from calm.batch.statuses import first_implausible
 
     greatest = mooring.file.environment.maximum_speed
-    count = grouped(outcome.counts["implausible-current"])
+    count = grouped(counts["implausible-current"])
     return (
         f"{count} profiles have no result because their current is implausible (above "
         f"`maximum_speed`, {greatest:g} m/s): {first_implausible(record, greatest)}"
     )
 
 
-def ended(outcome: BatchOutcome, output: Path, total: int) -> ExitCode:
-    """Tell how the batch ended."""
-    from calm.batch.statuses import Ending
+def ended(counts: Mapping[str, int], output: Path) -> ExitCode:
+    """Tell how many profiles have no result, and why."""
+    from calm.batch.statuses import Ending, endings
 
-    done = sum(outcome.counts.values())
-    if not outcome.done:
-        narrate(
-            f"{output}: {outcome.reason}; {grouped(done)} of {grouped(total)} profiles are done "
-            f"and kept in {output}.part; the same command solves the rest"
-        )
-        return ExitCode.INCOMPLETE
-    solved = outcome.endings[Ending.SOLVED]
+    done = sum(counts.values())
+    solved = endings(counts)[Ending.SOLVED]
     if solved < done:
         narrate(
             f"{output}: {grouped(done - solved)} of {grouped(done)} profiles are NaN: "
-            f"{', '.join(_kinds(outcome))}"
+            f"{', '.join(_kinds(counts))}"
         )
     return ExitCode.DONE if solved else ExitCode.NO_EQUILIBRIUM
 
 
-def _kinds(outcome: BatchOutcome) -> Iterator[str]:
+def _kinds(counts: Mapping[str, int]) -> Iterator[str]:
     """Profiles that are NaN, by what they come to, and by status where that says more."""
-    from calm.batch.statuses import Ending, ending_of
+    from calm.batch.statuses import Ending, ending_of, endings
 
-    for ending, count in outcome.endings.items():
+    for ending, count in endings(counts).items():
         if count and ending is not Ending.SOLVED:
             statuses = ", ".join(
                 f"{grouped(number)} {status}"
-                for status, number in outcome.counts.items()
+                for status, number in counts.items()
                 if ending_of(status) is ending
             )
             yield f"{grouped(count)} {ending.value} ({statuses})"
@@ -201,17 +167,20 @@ def check_output(output: Path, *inputs: Path) -> None:
     for path in inputs:
         if place == os.path.realpath(path):
             raise UsageError(f"{output} is an input; it is kept")
+    if output.suffix != ".nc":
+        raise UsageError(f"cannot write {output}: its name must end in .nc")
+    if os.path.isdir(output):
+        raise UsageError(f"cannot write {output}: it is a folder")
 
 
 @contextmanager
-def stopped_by_a_signal() -> Iterator[Event]:
-    """An event that a batch system's request to stop sets: it is heeded where nothing is lost."""
-    stop = Event()
+def stopped_by_a_signal() -> Iterator[None]:
+    """A batch system's request to stop ends the work as Ctrl-C does: with nothing left behind."""
     if current_thread() is not main_thread():
-        yield stop
+        yield
         return
-    before = signal.signal(signal.SIGTERM, lambda *_: stop.set())
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        yield stop
+        yield
     finally:
         signal.signal(signal.SIGTERM, before)

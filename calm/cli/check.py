@@ -17,8 +17,7 @@ from calm.cli.reading import DesignFile, read_designs
 from calm.errors import InputError, Problem, UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Mooring
-    from calm.case.net import Net
+    from calm.case import Design
     from calm.checks.assessment import Assessment
 
 
@@ -97,7 +96,7 @@ def check(
     designs, tows, earlier = _read(files, environment, catalog or [], workers, against, ready)
     if tows:
         narrate(f"not checked, because they are tows: {', '.join(map(str, tows))}")
-    nets = [design.path for design in designs if design.moorings[0].file.legs]
+    nets = [design.path for design in designs if design.moorings[0].several]
     if nets and uncertainty:
         from calm.files.legs import NET_SURE
 
@@ -131,16 +130,17 @@ def _read(
     workers: int | None,
     against: Path | None,
     ready: Callable[[], None],
-) -> tuple[list[DesignFile], list[Path], Mooring | Net | None]:
+) -> tuple[list[DesignFile], list[Path], Design | None]:
     """Return what is judged, the tows among the files, and the earlier design; or all their
     mistakes.
 
     `ready` is called while other processes read.
     """
-    from calm.case import Tow, net
+    from calm.case import load
+    from calm.files.mooring_file import refuse_tow
 
     problems: list[Problem] = []
-    earlier: Mooring | Tow | Net | None = None
+    earlier: Design | None = None
     designs: list[DesignFile] = []
     tows: list[Path] = []
     try:
@@ -149,13 +149,13 @@ def _read(
         problems += error.problems
     try:
         first = environments[0] if environments else None
-        earlier = None if against is None else net.load(against, first, catalogs)
+        earlier = None if against is None else load(against, first, catalogs)
     except InputError as error:
         problems += error.problems
     if problems:
         raise InputError(list(dict.fromkeys(problems)))
-    if isinstance(earlier, Tow):
-        raise UsageError(f"{against} is a tow; calm check is for moorings")
+    if earlier is not None:
+        refuse_tow(earlier.file)
     return designs, tows, earlier
 
 

@@ -128,7 +128,7 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
     from calm.report.folder import printed
 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_files.deck_csvs(deck)}
-    if deck.file.legs:
+    if deck.result.several:
         texts["net.svg"] = deck_files.net_svg(deck)
     counts = check_tables.counted_states(deck.assessment.all_findings())
     fails, unknown = counts[State.FAIL], counts[State.UNKNOWN]
@@ -147,7 +147,7 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
 def _plan(deck: Deck) -> dict[str, Any]:
     """The plan of the anchor drop, or why there is none."""
 
-    if deck.file.legs:
+    if deck.result.several:
         return {"status": "net", "message": "The drop of a net of legs is not solved."}
     if deck.plan is None:
         return {"status": str(deck.order), "message": "The anchor goes first: it is not dropped."}

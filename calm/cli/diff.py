@@ -11,8 +11,7 @@ from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Tow
-    from calm.case.net import Net
+    from calm.case import Design
     from calm.checks.comparison import Comparison
 
 
@@ -55,7 +54,7 @@ def diff(
     """
     files = (before,) if after is None else (before, after)
     outputs = Outputs(files, json)
-    from calm.case.net import load
+    from calm.case import load
 
     lines = reading.read_all(load, files, environment, catalog or [])
     for file, line in zip(files, lines, strict=True):
@@ -68,29 +67,25 @@ def diff(
     return ExitCode.DONE
 
 
-def compared(files: tuple[Path, ...], lines: list[Mooring | Tow | Net]) -> Comparison:
+def compared(files: tuple[Path, ...], lines: list[Design]) -> Comparison:
     """Two designs, or one with what was deployed of it.
 
     UsageError: a mooring and a tow; a single tow, or a file that says nothing of a deployment.
     """
-    from calm.case import Mooring, Tow, net
+    from calm.case import Design
     from calm.checks.comparison import comparison_of
-    from calm.checks.situations import as_deployed, deployed_file
+    from calm.checks.situations import as_deployed
 
     first, last = lines[0], lines[-1]
-    if isinstance(first, Tow) != isinstance(last, Tow):
+    if first.towed != last.towed:
         raise UsageError(f"{files[0]} and {files[1]}: a mooring is not compared with a tow")
     if len(lines) == 2:
         return comparison_of((str(files[0]), str(files[1])), first, last)
-    if isinstance(first, Tow):
+    if first.towed:
         raise UsageError(f"{files[0]} is a tow; give the file to compare it with")
-    if isinstance(first, net.Net):
-        laid = replace(deployed_file(first.file), deployed=None)
-        planned = replace(first.file, deployed=None)
-        return comparison_of(("design", "deployed"), net.Net(planned), net.Net(laid))
     try:
         deployed = as_deployed(first)
-        design, there = (Mooring(replace(one.file, deployed=None)) for one in (first, deployed))
+        design, there = (Design(replace(one.file, deployed=None)) for one in (first, deployed))
         return comparison_of(("design", "deployed"), design, there)
     except NoEquilibrium as failure:
         raise UsageError(f"{files[0]}: what is cut to fit has no length: {failure}") from failure

@@ -71,7 +71,8 @@ def import_(
       calm import snare.cbl -o snare.yaml -D DEPTH=1200 --strict
       calm import list.csv -o list.yaml --columns name=Item,length=Len --environment site.yaml
     """
-    from calm.exchange.importing import import_file, record_file
+    from calm.exchange.current_record import record_file
+    from calm.exchange.importing import import_file
     from calm.exchange.model import ImportOptions
     from calm.report import folder, result_files
 

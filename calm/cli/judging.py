@@ -13,17 +13,16 @@ from calm.cli import progress
 from calm.errors import internal_failure
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, uncertain
-    from calm.case.net import Net
+    from calm.case import Design, uncertain
     from calm.checks.assessment import Assessment, MooringInEnvironment
     from calm.cli.reading import DesignFile
-    from calm.report.blocks import Section
+    from calm.report.check_report import CheckedSection
 
 
 class DrawnSection(NamedTuple):
     """A mooring's section of the report: its heading for the summary, its HTML and its PDF leaf."""
 
-    section: Section
+    section: CheckedSection
     html: str
     pdf: str
 
@@ -35,7 +34,7 @@ class CheckedMooring(NamedTuple):
     drawn: DrawnSection | None
 
 
-def drawn_section(section: Section, number: int) -> DrawnSection:
+def drawn_section(section: CheckedSection, number: int) -> DrawnSection:
     """Draw the `number`th section of a report for HTML and PDF."""
     from calm.report.folder import pdf_leaf
     from calm.report.html import leaf
@@ -117,13 +116,10 @@ def _concluded(
 
     `draws` are samples and seed of the probabilities, or None; `shared` solves blocks of samples.
     """
-    from calm.checks import assess, net_check
+    from calm.checks import assess, design_check
     from calm.report.check_report import mooring_section
 
-    if stands[0].mooring.file.legs:
-        assessment = net_check.assessment_of_net(name, stands, day)
-    else:
-        assessment = assess.assessment_of(name, stands, day)
+    assessment = design_check.assessment_of(name, stands, day)
     if draws is not None:
         assessment = assess.with_probabilities(assessment, *draws, shared)
     return CheckedMooring(
@@ -131,21 +127,16 @@ def _concluded(
     )
 
 
-def _stands(task: tuple[str, Mooring | Net, date]) -> list[MooringInEnvironment]:
+def _stands(task: tuple[str, Design, date]) -> list[MooringInEnvironment]:
     """A mooring in an environment, or each leg of a net; CALM's own failure there does not stop
     the others.
     """
-    from calm.case.net import Net
-    from calm.checks.assess import failed_stand, stand_of
-    from calm.checks.net_check import stands_of_net
+    from calm.checks.design_check import failed_stand, stands_of
 
     name, mooring, day = task
     try:
-        if isinstance(mooring, Net):
-            return stands_of_net(mooring, name, day)
-        return [stand_of(mooring, name, day)]
+        return stands_of(mooring, name, day)
     except Exception as error:
         if os.environ.get("CALM_DEBUG") == "1":
             raise
-        of = mooring.lines[0] if isinstance(mooring, Net) else mooring
-        return [failed_stand(of, name, internal_failure(error))]
+        return [failed_stand(mooring, name, internal_failure(error))]

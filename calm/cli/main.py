@@ -22,10 +22,11 @@ from calm.cli.deck import deck
 from calm.cli.diff import diff
 from calm.cli.docs import docs
 from calm.cli.export import export
+from calm.cli.grid import grid
 from calm.cli.help import HelpAtWidth, examples
 from calm.cli.import_ import import_
 from calm.cli.locate import locate
-from calm.cli.motion import grid, motion
+from calm.cli.motion import motion
 from calm.cli.new import new
 from calm.cli.outputs import ExitCode, narrate, prepare, show
 from calm.cli.run import run
@@ -42,8 +43,7 @@ _EPILOGUE = """Examples:
   calm run --help
 
 Exit codes: 0 done, 1 a check found something, 2 bad input or usage,
-3 no equilibrium, 70 internal error, 75 a batch incomplete that the same command
-finishes, 130 interrupted."""
+3 no equilibrium, 70 internal error, 130 interrupted."""
 
 _SELDOM = 100_000
 """New objects after which unused circles of them are looked for. Python's own 700 cost a command a

@@ -1,4 +1,4 @@
-"""``calm motion`` and ``calm grid``: where instruments were, and what they measured on levels."""
+"""``calm motion``: where the instruments of a mooring were, at every time."""
 
 from __future__ import annotations
 
@@ -9,18 +9,15 @@ from cyclopts import Parameter
 
 from calm.cli import options
 from calm.cli.batch import check_output, ended, stopped_by_a_signal
-from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate, show_parts
-from calm.cli.progress import ProgressTeller, progress
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
+from calm.cli.progress import ProgressTeller
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
     import numpy as np
     from xarray import Dataset
 
-    from calm.grid.field import GriddedQuantity
-    from calm.grid.samples import MooringDepths
     from calm.motion.instrument_file import Instruments
-    from calm.records.instrument_series import InstrumentSeries
 
 _LONGEST_GAP = 1e8  # s
 SeveralTexts = Annotated[list[str], Parameter(consume_multiple=True)]
@@ -38,14 +35,12 @@ def motion(
     hold_out: str | None = None,
     cross_validate: bool = False,
     correct: str | None = None,
-    judge: str = "",
     prior: Path | None = None,
     sea_level: Path | None = None,
     flags: str = "1,2",
     gap: str = "2 h",
     declination: options.Declination = None,
     onto: Path | None = None,
-    replace_depth: Annotated[bool, Parameter(name="--replace")] = False,
     json: OutputPath = None,
     report: Path | None = None,
     workers: options.Threads = None,
@@ -61,16 +56,13 @@ def motion(
     label and placed where the line has it. Without currents, they are inferred
     from the pressures of two or more sensors.
 
-    However a run is interrupted, the same command resumes it; the exit code is 75
-    until everything is solved.
-
     Parameters
     ----------
     pressures
         Pressures of sensors on the line, one file or more: NetCDF or CSV with their
         labels, or one sensor each as LABEL=FILE, in RODB or Sea-Bird's .cnv too.
     output
-        The result: a .nc file or a .zarr folder.
+        The result, .nc.
     currents
         Records of the current, one or more: NetCDF, zarr or CSV; one of a single meter
         may be LABEL=FILE.
@@ -87,9 +79,6 @@ def motion(
         What to correct where a sensor is found wrong, separated by commas: clock,
         gain, offset, drift; air, where pressures are absolute. The history of the
         output says what was corrected.
-    judge
-        Label of a suspicious sensor: it is hidden as with --hold-out, and whether its
-        pressures fit the line is said, with the odds: yes, no, or cannot tell.
     prior
         A record of currents near the mooring, of any time, such as a hindcast: without
         --currents the shapes of its profiles are taken, not their strength.
@@ -105,8 +94,6 @@ def motion(
         several instruments, `DEPTH` of one), and the result itself is written
         beside it, with a name ending in .motion.nc. Found by label, serial
         number or nominal depth.
-    replace_depth
-        Replace depths that files of `--onto` already have, in the copy.
     report
         Write a page and a PDF, motion.html and motion.pdf, in this folder.
     json
@@ -120,9 +107,10 @@ def motion(
       calm motion mooring.yaml --pressures two.csv -o depths.nc
     """
 
-    from calm.batch import finished, profiles, work
-    from calm.case import Tow
-    from calm.case.net import load_line
+    from calm.batch import finished, profiles
+    from calm.batch.compiling import compile_solver
+    from calm.case import load
+    from calm.files.mooring_file import refuse_all_but_moorings
     from calm.motion.instrument_file import read_instruments
     from calm.motion.matching import places_of
     from calm.motion.motion_estimate import RecoveredMooring
@@ -138,50 +126,42 @@ def motion(
     currents = currents or []
     files = [split_label(text)[1] for text in (*currents, *pressures)]
     files += [path for path in (sea_level, onto) if path is not None]
-    check_output(output, file, *files, *filter(None, [prior]))
-    copy = output
+    inputs, copy = [file, *files, *filter(None, [prior])], output
+    if onto is not None and onto.is_dir():
+        check_folder(output)
+        if output.resolve() == onto.resolve():
+            raise UsageError(f"{output} is an input; it is kept")
+    else:
+        check_output(output, *inputs)
     if onto is not None:
-        if onto.is_dir():
-            check_folder(output)
-            if output.resolve() == onto.resolve():
-                raise UsageError(f"{output} is an input; it is kept")
-        elif output.suffix != ".nc":
-            raise UsageError(f"cannot write {output}: the name of a copy must end in .nc")
         output = output.with_suffix(".motion.nc")
-        check_output(output, file, *files)
-    elif replace_depth:
-        raise UsageError("--replace needs --onto")
-    mooring = load_line(file, environment, catalog or [])
-    if isinstance(mooring, Tow):
-        raise UsageError(f"{file} is a tow; calm motion is for moorings")
+        check_output(output, *inputs)
+    mooring = load(file, environment, catalog or [])
+    refuse_all_but_moorings(mooring.file)
     for notice in mooring.file.notices:
         narrate(f"{file}: {notice}")
     turned = options.quantities(declination=(declination, "angle")).get("declination")
     apart = options.span_of("--gap", gap, (0.0, _LONGEST_GAP), "0 and three years")
     instruments = None
     if onto is not None:
-        instruments, matched = read_instruments(onto, places_of(mooring), replacing=replace_depth)
+        instruments, matched = read_instruments(onto, places_of(mooring))
         for line in matched:
             narrate(line)
 
     recovery = RecoveredMooring(
         mooring, pressures, currents, match, _separated(fit), _separated(hold_out),
-        cross_validate, _separated(correct), judge, sea_level, flags, apart, turned, prior,
+        cross_validate, _separated(correct), sea_level, flags, apart, turned, prior,
     )  # fmt: skip
     for note in recovery.notes:
         narrate(note)
     teller = ProgressTeller()
-    with stopped_by_a_signal() as stop:
-        work.compile_solver(profiles.Batch(mooring), teller.note)
+    with stopped_by_a_signal():
+        compile_solver(profiles.Batch(mooring), teller.note)
         try:
-            outcome = recovery.estimate(
-                output, workers=workers, progress=teller, tell=teller.note, stop=stop
-            )
+            counts = recovery.estimate(output, workers=workers, progress=teller, tell=teller.note)
         finally:
             teller.clear()
-        code = ended(outcome, output, len(recovery.measured.time))
-        if not outcome.done:
-            return code
+        code = ended(counts, output)
         with finished.open_result(output) as result, finished.readable(output):
             study = recovery.study(result, narrate, workers)
             series = series_of(study, recovery.measured)
@@ -224,152 +204,3 @@ def write_copies(
 
 def _separated(text: str | None) -> list[str]:
     return [] if text is None else [name.strip() for name in text.split(",")]
-
-
-METHODS = ("depth-time", "depth")
-
-
-def grid(
-    depths: Path,
-    values: Annotated[list[str], Parameter(negative=())],
-    /,
-    *,
-    output: options.OutputFile,
-    levels: str,
-    step: str | None = None,
-    variables: str | None = None,
-    method: str = METHODS[0],
-    flags: str = "1,2",
-    report: Path | None = None,
-) -> ExitCode:
-    """Put temperature, salinity and velocity at their moving depths onto fixed levels.
-
-    A Gaussian process over depth and time, with the scales of the record
-    itself. Each value has a standard deviation, which includes the sensor, the
-    error of its depth times the local gradient, and the gap between sensors;
-    and a flag: 8 between the sensors at that time, 3 beyond them or where the
-    record says little, 9 for no value.
-
-    Parameters
-    ----------
-    depths
-        A result of calm motion.
-    values
-        NetCDF files of instruments, by label, serial number or nominal depth;
-        files of one instrument as LABEL=FILE, if they do not say which; or
-        folders of files.
-    output
-        The gridded file, .nc.
-    levels
-        FIRST:STEP:LAST in metres, such as "0:20:1500", or several with commas.
-    step
-        Values are means over this time, such as "1 h"; by default at the times
-        of DEPTHS.
-    variables
-        temperature, salinity, u, v; by default all that are in the files. As
-        TEMP, PSAL, UCUR, VCUR, all names in the file are in capitals, as in
-        OceanSITES.
-    method
-        depth-time, or depth, which treats each time separately.
-    flags
-        Quality flags of the values that count as measured; 8 never does.
-    report
-        Write a page and a PDF, grid.html and grid.pdf, in this folder.
-
-    Examples
-    --------
-      calm grid depths.nc microcats.nc -o gridded.nc --levels "0:20:1500"
-      calm grid depths.nc instruments/ -o gridded.nc --levels "100:25:700" --step "1 h"
-      calm grid depths.nc stack.nc -o OS_M1_D.nc --levels 50,100,200 --variables TEMP,PSAL
-    """
-    from calm.dataset.discovery import hashed
-    from calm.drawing.plot import require_matplotlib
-    from calm.errors import not_among
-    from calm.grid.product import grid_layout, parse_levels, write_grid
-    from calm.grid.samples import read_depths
-    from calm.motion.sensors import parse_flags
-    from calm.quantities import QUANTITIES_MEASURED, chosen_quantities
-    from calm.records.instrument_series import files_given, read_series
-    from calm.report.folder import check_folder, write_pages
-    from calm.report.grid_report import grid_part, grid_report
-
-    if method not in METHODS:
-        raise UsageError(not_among("--method", method, METHODS))
-    wanted, names = parse_levels(levels), chosen_quantities(variables)
-    good = parse_flags(flags)
-    width = (
-        None
-        if step is None
-        else options.span_of("--step", step, (1.0, 366 * 86_400.0), "a second and a year")
-    )
-    if output.suffix != ".nc":
-        raise UsageError(f"cannot write {output}: its name must end in .nc")
-    files = files_given(values)
-    check_output(output, depths, *(path for _, path in files))
-    if report is not None:
-        require_matplotlib("calm grid --report")
-        check_folder(report)
-    where = read_depths(depths)
-    series = read_series(values, names, good, where.seabed)
-    if variables is not None:
-        for name in names:
-            if not series[name]:
-                raise UsageError(f"--variables: no file holds {name}")
-    fields = fields_of(where, series, width, in_time=method == METHODS[0])
-    archived = variables is not None and variables.isupper()
-    called = {name: QUANTITIES_MEASURED[name].archive if archived else name for name in fields}
-    inputs = [hashed(depths), *(hashed(path) for _, path in files)]
-    layout = grid_layout(fields, wanted, where, inputs, called, step)
-    write_grid(
-        layout, fields, wanted, called, output, lambda each: progress(each, "blocks of times")
-    )
-    show_parts(grid_part(fields))
-    if report is not None:
-        write_pages(report, "grid", grid_report(output, fields, called, wanted))
-    return ExitCode.DONE
-
-
-def fields_of(
-    where: MooringDepths,
-    series: dict[str, list[InstrumentSeries]],
-    step: np.timedelta64 | None,
-    *,
-    in_time: bool,
-) -> dict[str, GriddedQuantity]:
-    """The field of each quantity; one that has too few instruments is left out, and said.
-
-    UsageError: none is left; no time is common; no instrument is of the line.
-    """
-    import numpy as np
-
-    from calm.grid.field import field_of
-    from calm.grid.samples import common_times, gather
-    from calm.motion.matching import points_of
-    from calm.quantities import QUANTITIES_MEASURED
-
-    matched = {name: points_of(each, where.places) for name, each in series.items() if each}
-    told = [line for _, said in matched.values() for line in said]
-    for line in dict.fromkeys(told):
-        narrate(line)
-    used = [series[name][i] for name, (points, _) in matched.items() for i in points]
-    time = common_times(where, used, step)
-    fields, reasons = {}, []
-    for name, (points, _) in matched.items():
-        samples = gather(where, series[name], points, time)
-        dropped = sum(series[name][i].dropped for i in points)
-        if dropped:
-            narrate(f"{name}: {dropped} values are left out because of their flag")
-        for i, at in points.items():
-            one, column = series[name][i], samples.label.index(where.places.label[at])
-            had = one.dropped or np.isfinite(one.value).any()
-            if had and not np.isfinite(samples.value[:, column]).any():
-                narrate(f"{name}: {where.places.label[at]} has no good value at any of the times")
-        try:
-            fields[name] = field_of(samples, QUANTITIES_MEASURED[name].noise, in_time=in_time)
-        except UsageError as error:
-            reasons.append(f"{name}: {error}")
-    if not fields:
-        raise UsageError("; ".join(reasons))
-    for reason in reasons:
-        narrate(f"{reason}: it is left out")
-    return fields

@@ -117,9 +117,6 @@ class ExitCode(IntEnum):
     INTERNAL_ERROR = 70
     """CALM itself failed: a bug, worth a report."""
 
-    INCOMPLETE = 75
-    """A batch was stopped; what is done is kept, and the same command does the rest."""
-
     INTERRUPTED = 130
     """Stopped by Ctrl-C."""
 

@@ -14,7 +14,7 @@ from calm.cli.outputs import narrate
 from calm.quantities import duration, show_in, shown_units
 
 if TYPE_CHECKING:
-    from calm.batch.work import Progress
+    from calm.batch.blocks import Progress
 
 _Task = TypeVar("_Task")
 _Done = TypeVar("_Done")
@@ -86,9 +86,8 @@ def state(progress: Progress, seconds: float) -> str:
     from calm.batch.statuses import Ending
 
     text = f"{grouped(progress.done)} of {grouped(progress.total)} profiles"
-    solved = progress.done - progress.found
-    if solved and seconds > 0.0:
-        rate = solved / seconds
+    if progress.done and seconds > 0.0:
+        rate = progress.done / seconds
         left = (progress.total - progress.done) / rate
         text += f", {grouped(round(rate))} a second, {duration(left)} left"
     for ending, count in progress.endings.items():

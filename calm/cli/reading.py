@@ -12,8 +12,7 @@ from calm.cli.progress import mapped
 from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Tow
-    from calm.case.net import Net
+    from calm.case import Design
 
 Line = TypeVar("Line")
 
@@ -44,7 +43,7 @@ class DesignFile:
 
     path: Path
     name: str
-    moorings: tuple[Mooring | Net, ...]
+    moorings: tuple[Design, ...]
 
 
 def read_designs(
@@ -70,24 +69,22 @@ def read_designs(
     UsageError
         Nothing but tows; a file given twice; two environments of one name.
     """
-    from calm.case import Tow
-
     given = Counter([*map(str, files), *(environments or ())])
     twice = [word for word, count in given.items() if count > 1]
     if twice:
         raise UsageError(f"given twice: {', '.join(twice)}")
     problems: dict[Problem, None] = {}
-    stands: dict[Path, list[Mooring | Net]] = {}
+    stands: dict[Path, list[Design]] = {}
     tows: list[Path] = []
     tasks = [(file, environments, catalogs) for file in files]
     loaded = mapped(_load, tasks, workers, "files read", meanwhile)
     for file, read in zip(files, loaded, strict=True):
         if isinstance(read, tuple):
             problems |= dict.fromkeys(read)  # what files share has its mistakes told once
-        elif any(isinstance(one, Tow) for one in read):
+        elif any(one.towed for one in read):
             tows.append(file)
         else:
-            stands[file] = [one for one in read if not isinstance(one, Tow)]
+            stands[file] = read
     if problems:
         raise InputError(list(problems))
     if not stands:
@@ -110,29 +107,28 @@ def _told_apart(names: dict[Path, str]) -> dict[Path, str]:
         }
 
 
-def _cut_alike(moorings: Sequence[Mooring | Net]) -> tuple[Mooring | Net, ...]:
+def _cut_alike(moorings: Sequence[Design]) -> tuple[Design, ...]:
     """The same mooring in every environment: what is cut to fit, is cut once, for the first.
 
     What does not depend on the environment, such as the line in still water, is solved once.
     """
-    from calm.case import Mooring, parts
+    from calm.case import Design
     from calm.case.memory import Memory
 
-    if any(not isinstance(each, Mooring) for each in moorings):
-        return tuple(moorings)  # nothing in a net is cut to fit
     memory = Memory()
-    first, *others = (Mooring(each.file, memory=memory) for each in moorings)
+    first, *others = (Design(each.file, memory=memory) for each in moorings)
     try:
-        return first, *(Mooring(parts.cut_like(each.file, first), memory=memory) for each in others)
+        leg = first.legs[0]  # nothing in one of several is cut to fit
+        return first, *(Design(leg.cut(each.file), memory=memory) for each in others)
     except NoEquilibrium:
         return first, *others  # the first is reported not to stand, and why
 
 
 def _load(
     task: tuple[Path, Sequence[str] | None, Sequence[Path]],
-) -> list[Mooring | Net | Tow] | tuple[Problem, ...]:
+) -> list[Design] | tuple[Problem, ...]:
     """Return what was read, or what is wrong with it."""
-    from calm.case.net import load_in
+    from calm.case.design import load_in
 
     try:
         return load_in(*task)
@@ -140,7 +136,7 @@ def _load(
         return error.problems
 
 
-def _refuse_one_name(moorings: Sequence[Mooring | Net]) -> None:
+def _refuse_one_name(moorings: Sequence[Design]) -> None:
     """Two environments of one name could not be told apart."""
     from calm.checks.finding import ON_THE_WAY, OWN
 

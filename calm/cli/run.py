@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from types import UnionType
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
@@ -15,8 +14,7 @@ from calm.cli.solved_file import solve_files
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Tow
-    from calm.case.net import Net
+    from calm.case import Design
 
 
 def run(
@@ -104,18 +102,18 @@ def run(
     }  # fmt: skip
     if chosen is not None and (asked := [option for option, value in single.items() if value]):
         raise UsageError(f"{', '.join(asked)} cannot be combined with --speeds")
-    from calm.case import Mooring, Tow, net
+    from calm.case import load
     from calm.files.legs import NET_SURE
 
-    lines = reading.read_all(net.load, files, environment, catalog or [])
+    lines = reading.read_all(load, files, environment, catalog or [])
     options.show_units(units, [line.file for line in lines])
     drawn = {"--uncertainty": uncertainty}
-    _refuse({"--explain": explain} | drawn, "moorings; these are tows", Tow, files, lines)
-    _refuse(drawn, NET_SURE, net.Net, files, lines)
-    _refuse({"--speeds": chosen}, "tows; these are moorings", Mooring | net.Net, files, lines)
+    towed, moored = ([line for line in lines if line.towed is moves] for moves in (True, False))
+    _refuse({"--explain": explain} | drawn, "moorings; these are tows", towed)
+    _refuse(drawn, NET_SURE, [line for line in lines if line.several])
+    _refuse({"--speeds": chosen}, "tows; these are moorings", moored)
     if chosen is not None:
-        tows = [line for line in lines if isinstance(line, Tow)]
-        return tow_speeds.tabulate(tows, outputs, chosen)
+        return tow_speeds.tabulate(lines, outputs, chosen)
     outcomes = solve_files(
         files, lines, explain=explain, schematic=schematic, draws=draws, verbose=verbose
     )
@@ -129,15 +127,8 @@ def run(
     return gravest(outcome.code for outcome in outcomes)
 
 
-def _refuse(
-    options: Mapping[str, object],
-    what: str,
-    kind: type | UnionType,
-    files: Sequence[Path],
-    lines: Sequence[Mooring | Tow | Net],
-) -> None:
-    """Reject the first of the options if a file is of a kind that it does not apply to."""
+def _refuse(options: Mapping[str, object], what: str, designs: Sequence[Design]) -> None:
+    """Reject the first of the options if there are designs that it does not apply to."""
     asked = [option for option, value in options.items() if value]
-    those = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, kind)]
-    if asked and those:
-        raise UsageError(f"{asked[0]} is for {what}: {', '.join(those)}")
+    if asked and designs:
+        raise UsageError(f"{asked[0]} is for {what}: {', '.join(one.file.path for one in designs)}")

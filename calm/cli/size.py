@@ -9,7 +9,6 @@ from cyclopts import Parameter
 
 from calm.cli import options
 from calm.cli.outputs import ExitCode, Outputs, narrate
-from calm.errors import UsageError
 
 
 def size(
@@ -60,14 +59,13 @@ def size(
     LABEL.buoyancy, LABEL.length, LABEL.count.
     """
     outputs = Outputs((file,), json)
-    from calm.case import Tow
-    from calm.case.net import load
+    from calm.case import load
     from calm.case.size import size as sized
+    from calm.files.mooring_file import refuse_tow
     from calm.report.explanation import refusal, sizing_part
 
     mooring = load(file, environment, catalog or [])
-    if isinstance(mooring, Tow):
-        raise UsageError(f"{file} is a tow; calm size is for moorings")
+    refuse_tow(mooring.file)
     options.show_units(units, [mooring.file])
     sizing = sized(mooring, target, change, between)
     if sizing.after is not None:

@@ -14,10 +14,8 @@ from calm.cli.outputs import ExitCode, narrate
 from calm.errors import NoEquilibrium
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Result, Tow
+    from calm.case import Design, Result
     from calm.case.explain import Explanation
-    from calm.case.net import Net
-    from calm.case.result import AnyResult, NetResult
     from calm.case.uncertain import Uncertain
     from calm.cli.outputs import TerminalPart
     from calm.drawing.schematic.in_terminal import TerminalSchematic
@@ -29,7 +27,7 @@ class FileOutcome:
 
     file: Path
     name: str
-    result: AnyResult | None = None
+    result: Result | None = None
     failure: NoEquilibrium | None = None
     explanation: Explanation | None = None
     schematic: tuple[TerminalSchematic, ...] = ()
@@ -104,7 +102,7 @@ class FileOutcome:
 
 def solve_files(
     files: Sequence[Path],
-    lines: Sequence[Mooring | Tow | Net],
+    lines: Sequence[Design],
     *,
     explain: bool = False,
     schematic: bool = False,
@@ -119,25 +117,20 @@ def solve_files(
     draws : samples and seed of the uncertainty of the results; None without it
     verbose : show how each solution was found
     """
-    from calm.case import Result
-    from calm.case.result import NetResult
-
     drawn_often = None if draws is None else _to_draw_often(*draws)
     outcomes = []
     for file, line in zip(files, lines, strict=True):
         result, failure = _solved(file, line)
-        mooring = result if isinstance(result, Result) else None
-        moored = result if isinstance(result, Result | NetResult) else None
         outcomes.append(FileOutcome(
             file, line.file.name, result, failure, verbose=verbose,
-            explanation=_explained(moored) if moored and explain else None,
+            explanation=_explained(result) if result and explain else None,
             schematic=_schematic(line, result) if schematic else (),
-            uncertain=drawn_often(mooring) if mooring and drawn_often else None,
+            uncertain=drawn_often(result) if result and drawn_often else None,
         ))  # fmt: skip
     return outcomes
 
 
-def _solved(file: Path, line: Mooring | Tow | Net) -> tuple[AnyResult | None, NoEquilibrium | None]:
+def _solved(file: Path, line: Design) -> tuple[Result | None, NoEquilibrium | None]:
     """Return the result, or why there is none."""
     try:
         return line.solve(), None
@@ -148,7 +141,7 @@ def _solved(file: Path, line: Mooring | Tow | Net) -> tuple[AnyResult | None, No
         return None, failure
 
 
-def _explained(result: Result | NetResult) -> Explanation:
+def _explained(result: Result) -> Explanation:
     from calm.case.explain import explain
 
     return explain(result)
@@ -168,16 +161,10 @@ def _to_draw_often(samples: int, seed: int) -> Callable[[Result], Uncertain]:
     return lambda result: uncertain(result, samples, seed, solved, normals)
 
 
-def _schematic(
-    line: Mooring | Tow | Net, result: AnyResult | None
-) -> tuple[TerminalSchematic, ...]:
+def _schematic(line: Design, result: Result | None) -> tuple[TerminalSchematic, ...]:
     """Draw a line, or its legs, in the signs that the standard output can carry."""
-    from calm.case.net import Net
-    from calm.case.result import NetResult
     from calm.drawing.schematic.in_terminal import TerminalSchematic, can_carry
 
     plain = not can_carry(getattr(sys.stdout, "encoding", None))
-    results = result.legs if isinstance(result, NetResult) else [result]
-    lines = line.lines if isinstance(line, Net) else [line]
-    pairs = zip_longest(lines, results)
+    pairs = zip_longest(line.legs, [] if result is None else result.legs)
     return tuple(TerminalSchematic(of.file, one, plain) for of, one in pairs)

@@ -14,7 +14,7 @@ from calm.cli.solved_file import FileOutcome
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Tow
+    from calm.case import Design
     from calm.cli.outputs import TerminalPart
     from calm.report.tabulation import Tabulation
 
@@ -62,7 +62,7 @@ class TabulatedTow:
         return image(sweep_drawing(self.tabulation), suffix)
 
 
-def tabulate(tows: Sequence[Tow], outputs: Outputs, speeds: Sequence[float]) -> ExitCode:
+def tabulate(tows: Sequence[Design], outputs: Outputs, speeds: Sequence[float]) -> ExitCode:
     """Solve each tow at each speed [m/s], and write the outputs."""
     shown: list[TabulatedTow | FileOutcome] = []
     for file, tow in zip(outputs.files, tows, strict=True):
@@ -81,7 +81,7 @@ def tabulate(tows: Sequence[Tow], outputs: Outputs, speeds: Sequence[float]) -> 
     return gravest(each.code for each in shown)
 
 
-def _swept(file: Path, tow: Tow, speeds: Sequence[float]) -> TabulatedTow:
+def _swept(file: Path, tow: Design, speeds: Sequence[float]) -> TabulatedTow:
     from calm.case.tow import SOLVES, sweep
     from calm.report.tabulation import by_speed
     from calm.solve import expect_many

@@ -83,7 +83,6 @@ def verify_field(outputs: Outputs) -> ExitCode:
     import numpy as np
 
     import calm
-    from calm.case import Mooring
     from calm.checks.finding import State
     from calm.motion import correction, line_response, motion_estimate, study
     from calm.report import blocks, motion_report
@@ -91,7 +90,6 @@ def verify_field(outputs: Outputs) -> ExitCode:
 
     folder = shipped_folder("docs") / "field" / "dune2"
     mooring = calm.load(folder / "mooring.yaml")
-    assert isinstance(mooring, Mooring)
     files = [str(folder / f"{name}.nc") for name in ("pressures", "currents")]
     measured = motion_estimate.RecoveredMooring(mooring, files[:1], files[1:]).measured
     task = study.prepare(mooring, measured, motion_estimate.fitted(), HIDDEN)

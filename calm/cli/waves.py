@@ -77,8 +77,7 @@ def waves(
       calm waves buoy.yaml --spectrum measured.csv
     """
     outputs = Outputs((file,), json)
-    from calm.case import Tow
-    from calm.case.net import load_line
+    from calm.case import load
     from calm.records.sea_states import OF_HEIGHT
     from calm.report import folder, sea_response
     from calm.waves.analysis import SLACK, analyse
@@ -89,9 +88,8 @@ def waves(
         {"hs": hs, "tp": tp, "swell": swell, "swell_tp": swell_tp},
         spectrum, gamma, toward, scatter, duration,
     )  # fmt: skip
-    mooring = load_line(file, environment, catalog or [])
-    if isinstance(mooring, Tow):
-        raise UsageError(f"{file} is a tow; calm waves is for moorings")
+    mooring = load(file, environment, catalog or [])
+    leg = mooring.moored
     given, seas = mooring.file.environment.waves, asked or mooring.file.environment.seas
     if not seas:
         missing = "--hs: missing" if spectrum in OF_HEIGHT else "--hs, --tp: missing"
@@ -100,7 +98,7 @@ def waves(
         way = 90.0 if given is None else given.toward
     options.show_units(units, [mooring.file])
     try:
-        analysis = analyse(mooring, seas, way, length, lambda each: progress(each, "seas"))
+        analysis = analyse(leg, seas, way, length, lambda each: progress(each, "seas"))
     except NoEquilibrium as failure:
         answer = {"name": mooring.file.name, **failure.to_dict()}
         outputs.write_answer(lambda: answer, None)

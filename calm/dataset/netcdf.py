@@ -1,12 +1,13 @@
 """Results by the CF conventions: their dimensions and variables, and the NetCDF 4 files of them.
 
 HDF5 ends the process where a write fails, as on a full disk. So it never meets one: what is small
-is made in memory, and room for the rest is taken on the disk before it is asked to write there.
+is made in memory, and room for each block is taken on the disk before it is asked to write there.
 """
 
 from __future__ import annotations
 
 import os
+import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
@@ -17,7 +18,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.errors import UsageError
 from calm.version import __version__
+from calm.whole_file import beside, flush_to_disk, sweep
 
 if TYPE_CHECKING:
     import h5netcdf
@@ -25,8 +28,8 @@ if TYPE_CHECKING:
 LEVEL = 1
 """Of the compression; more takes twice the time for 3 % less."""
 
-Chunk = tuple[str, tuple[int, ...], Path]
-"""Name of its variable, where it begins in it, and the file that has its bytes."""
+Chunks = Mapping[str, bytes]
+"""The bytes of one block, by the names of the variables that go with time."""
 
 _OF_A_CHUNK, _OF_A_VARIABLE = 512, 65_536  # bytes at most that HDF5 needs to keep account of them
 _LONG = 4096  # all attributes of a variable have 64 kB unless they are strings
@@ -34,10 +37,7 @@ _ZEROS = bytes(1 << 20)
 
 
 def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
-    """The file of a layout; what goes with time is laid out, in chunks of a block, and empty.
-
-    The chunks are shuffled and deflated, as `filters.Shuffle` and `Zlib` of `numcodecs` do it.
-    """
+    """The file of a layout; what goes with time is laid out, in chunks of a block, and empty."""
     import h5netcdf
 
     image = BytesIO()
@@ -50,33 +50,74 @@ def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
     return image.getvalue()
 
 
-def write_netcdf(
-    layout: ResultLayout, block: int, chunks: Sequence[Chunk], path: Path, check: Callable[[], None]
-) -> None:
-    """Write a file with all its chunks, which are copied as they stand; in the memory of one.
+def packed(layout: ResultLayout, block: int, arrays: Mapping[str, NDArray[Any]]) -> Chunks:
+    """Return a block as HDF5 stores it: one chunk for each variable, shuffled and deflated.
 
     Parameters
     ----------
-    check : called before each chunk; what it raises ends the writing
+    block : times in a chunk
+    arrays : (n, ...) values of each variable that goes with time; the last block may be shorter
+    """
+    chunks = {}
+    for variable in layout.in_blocks:
+        values, kind = arrays[variable.name], np.dtype(variable.dtype)
+        nothing = np.nan if kind.kind == "f" else 0
+        chunk = np.full(chunk_shape(layout, variable, block), nothing, kind)
+        chunk[: len(values)] = values
+        shuffled = chunk.reshape(-1).view(np.uint8).reshape(-1, kind.itemsize).T
+        chunks[variable.name] = zlib.compress(shuffled.tobytes(), LEVEL)
+    return chunks
+
+
+def write_netcdf(
+    layout: ResultLayout,
+    block: int,
+    blocks: Iterable[Chunks],
+    path: Path,
+    last: Callable[[], Mapping[str, str]] = dict,
+) -> None:
+    """Write a file block by block; it gets its name when it is complete.
+
+    Parameters
+    ----------
+    block : times in a block
+    blocks : the results of `packed`, in order; one is in memory at a time
+    last : returns attributes that are known after the last block; the layout has them already,
+        with values of the same length
 
     Raises
     ------
-    OSError
-        There is no room for it; the file is then in part.
+    UsageError
+        The system refuses, e.g. because the disk is full; an older file stays.
     """
     import h5py
 
+    sweep(path.parent, path.name)
     image = netcdf_of(layout, block)
-    accounts = _OF_A_CHUNK * len(chunks) + _OF_A_VARIABLE * len(layout.variables)
-    room = len(image) + accounts + sum(file.stat().st_size for _, _, file in chunks)
-    with path.open("wb") as stream:
-        stream.write(image)
-        stream.flush()
-        _take_room(stream.fileno(), room)
-    with h5py.File(path, "r+") as file:
-        for name, begin, source in chunks:
-            check()
-            file[name].id.write_direct_chunk(begin, source.read_bytes())
+    changing = layout.in_blocks
+    count = -(-layout.sizes[changing[0].dimensions[0]] // block)
+    room = len(image) + (_OF_A_CHUNK * count + _OF_A_VARIABLE) * len(changing)
+    try:
+        with beside(path) as part:
+            with part.open("r+b") as stream:
+                stream.write(image)
+                stream.flush()
+                _take_room(stream.fileno(), room)
+                with h5py.File(part, "r+") as file:
+                    for number, chunks in enumerate(blocks):
+                        room += sum(map(len, chunks.values()))
+                        _take_room(stream.fileno(), room)
+                        for name, content in chunks.items():
+                            begin = number * block, *(0 for _ in file[name].shape[1:])
+                            file[name].id.write_direct_chunk(begin, content)
+                    for name, value in last().items():
+                        file.attrs.modify(name, np.bytes_(value))
+                    file.flush()
+                    size = file.id.get_filesize()
+            os.truncate(part, size)
+            flush_to_disk([part])
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror or error}") from None
 
 
 def _take_room(handle: int, size: int) -> None:

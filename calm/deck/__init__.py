@@ -9,13 +9,12 @@ from itertools import groupby
 from math import inf, isnan
 from typing import TypeVar
 
-from calm.case import Mooring, Result
-from calm.case.net import Net
-from calm.case.result import NetResult, legs_of
+from calm.case import Design, Result
 from calm.checks.assessment import Assessment
+from calm.checks.design_check import check
 from calm.checks.finding import OWN
 from calm.checks.inventory import InventoryItem
-from calm.checks.net_check import NetGraph, check
+from calm.checks.leg_graph import LegGraph
 from calm.checks.recovery import Recovery, recovery_of
 from calm.deck import deck_items
 from calm.deck.deck_items import DeckInstrument, DeckItem, Order, deck_items_of, instruments_of
@@ -25,7 +24,7 @@ from calm.drop.launch import SHIP_SPEED
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable, MooringFile
 from calm.files.components import FLEXIBLE_KINDS
-from calm.files.legs import leg_numbers
+from calm.files.mooring_file import leg_numbers
 from calm.solve import Status
 
 HANDLED = ("float", "instrument", "release", "line")
@@ -117,7 +116,7 @@ class Deck:
     assessment : what the design check says of the mooring
     """
 
-    result: Result | NetResult
+    result: Result
     environment: str
     order: Order
     parts: tuple[DeckItem, ...]
@@ -141,7 +140,8 @@ class Deck:
 
     def leg(self, index: int) -> str:
         """Return the name of the leg that a piece is in; nothing of a single line."""
-        return self.file.legs[leg_numbers(self.file)[index]].name if self.file.legs else ""
+        number = leg_numbers(self.file)[index]
+        return self.result.legs[number].name if self.result.several else ""
 
     def by_leg(
         self, items: Iterable[_Listed], index: Callable[[_Listed], int]
@@ -152,7 +152,7 @@ class Deck:
 
 
 def deck_of(
-    moorings: Sequence[Mooring | Net],
+    moorings: Sequence[Design],
     order: Order = Order.ANCHOR_LAST,
     ship_speed: float = SHIP_SPEED,
     streamed: float | None = None,
@@ -193,20 +193,19 @@ def deck_of(
     inventory, legs = assessment.inventory, leg_numbers(first.file)
     rise: Recovery | None = None
     plan: DropPlan | NoEquilibrium | None = None
-    if isinstance(first, Net):
+    if first.several:
         notes += assessment.notices
-        rising = NetGraph(legs_of(result)).coming_up
+        rising = LegGraph(result.legs).coming_up
     else:
-        assert isinstance(result, Result)
         try:
-            rise = recovery_of(first, result)
+            rise = recovery_of(first.leg, result.leg)
         except NoEquilibrium as failure:
             notes.append(f"The rise of the line is not known: {failure}")
         released = first.file.pieces[-1].index if rise is None else rise.released + 1
         rising = set(range(released))
-    if order is Order.ANCHOR_LAST and isinstance(first, Mooring):
+    if order is Order.ANCHOR_LAST and not first.several:
         try:
-            stands = result if result.mooring is first else None
+            stands = result if result.design is first else None
             times = _deck_times(first.file, deck_time)
             plan = drop_plan(first, ship_speed, streamed, course, result=stands, deck_time=times)
         except NoEquilibrium as failure:
@@ -240,7 +239,7 @@ def _deck_times(file: MooringFile, each: float | None) -> Mapping[str, float] | 
     return None if given is None else {str(role): time for role, time in given.items()}
 
 
-def _standing(mooring: Mooring | Net, notes: list[str]) -> Result | NetResult:
+def _standing(mooring: Design, notes: list[str]) -> Result:
     """The mooring solved; one that still water leaves slack in a current that hardly moves it.
 
     Raises
@@ -251,12 +250,12 @@ def _standing(mooring: Mooring | Net, notes: list[str]) -> Result | NetResult:
     try:
         return mooring.solve()
     except NoEquilibrium as failure:
-        if failure.status != Status.SLACK.label or isinstance(mooring, Net):
+        if failure.status != Status.SLACK.label or mooring.several:
             raise
         faint = CurrentTable((0.0,), (FAINT,), (0.0,), (0.0,))
         environment = replace(mooring.file.environment, current=faint)
         try:
-            result = Mooring(replace(mooring.file, environment=environment)).solve()
+            result = Design(replace(mooring.file, environment=environment)).solve()
         except NoEquilibrium:
             raise failure from None
         notes.append(
@@ -267,7 +266,7 @@ def _standing(mooring: Mooring | Net, notes: list[str]) -> Result | NetResult:
         return result
 
 
-def _name(mooring: Mooring | Net) -> str:
+def _name(mooring: Design) -> str:
     return mooring.file.environment.name or OWN
 
 

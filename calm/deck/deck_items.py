@@ -8,11 +8,10 @@ from enum import StrEnum
 from itertools import groupby
 
 from calm.case import Result
-from calm.case.result import NetResult, legs_of
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place, rows_down
 from calm.files import Clamp, Flexible, Piece
-from calm.files.legs import leg_numbers
 from calm.files.logbook import DeployedItem
+from calm.files.mooring_file import leg_numbers
 from calm.quantities import QUANTITIES
 
 _SIZED = re.compile(r"(shackle|ring|swivel|link)(?:-[a-z]+)?-(\d+)\b.*")
@@ -211,11 +210,11 @@ def name_of_run(items: Sequence[DeckItem]) -> str:
     return ", ".join(f"{count} × {name}" for name, count in counts.items())
 
 
-def deck_items_of(result: Result | NetResult) -> tuple[DeckItem, ...]:
+def deck_items_of(result: Result) -> tuple[DeckItem, ...]:
     """Down the line to the anchor, or each leg, the clamps of a piece after it, down that piece."""
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}
-    seabeds = [leg.mooring.water.depth for leg in legs_of(result)]
+    seabeds = [leg.water.depth for leg in result.design.legs]
     own = leg_numbers(result.file)
     found: list[DeckItem] = []
     for row, clamps in rows_down(result):
@@ -276,7 +275,7 @@ class DeckInstrument:
 
 
 def instruments_of(
-    parts: Sequence[DeckItem], results: Sequence[tuple[str, Result | NetResult]]
+    parts: Sequence[DeckItem], results: Sequence[tuple[str, Result]]
 ) -> tuple[DeckInstrument, ...]:
     """The instruments and releases, down the line; the first result is that of the sheets."""
     rows = [(name, rows_by_place(result)) for name, result in results]

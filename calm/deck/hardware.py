@@ -6,17 +6,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil, pi
 
-from calm.case import Mooring, Result
-from calm.case.net import Net
-from calm.case.result import NetResult, legs_of
+from calm.case import Result
 from calm.checks.arrangement import unlike_metals
 from calm.checks.inventory import InventoryItem
 from calm.deck.deck_items import DeckItem, Order
 from calm.errors import NoEquilibrium
 from calm.files import Cable, Chain, Component, Cylinder, Flexible, MooringFile, Piece, Sphere
 from calm.files.components import FLEXIBLE_KINDS
-from calm.files.legs import leg_numbers
-from calm.files.mooring_file import parts_of
+from calm.files.mooring_file import leg_numbers
+from calm.files.pieces import parts_of
 from calm.solve import expect_many
 
 LENGTH_ERROR = 0.005
@@ -71,7 +69,7 @@ class Cut:
         return ";".join(f"{mark.label.replace(';', ',')}@{mark.at:.3f}" for mark in self.marks)
 
 
-def cuts_of(result: Result | NetResult, parts: Sequence[DeckItem], order: Order) -> tuple[Cut, ...]:
+def cuts_of(result: Result, parts: Sequence[DeckItem], order: Order) -> tuple[Cut, ...]:
     """Return all that is cut and marked, down the line.
 
     Parameters
@@ -97,7 +95,7 @@ def cuts_of(result: Result | NetResult, parts: Sequence[DeckItem], order: Order)
     )
 
 
-def _cut(result: Result | NetResult, one: DeckItem, over: int, count: int) -> Cut:
+def _cut(result: Result, one: DeckItem, over: int, count: int) -> Cut:
     piece = one.part
     assert isinstance(piece, Piece) and isinstance(piece.component, Flexible)
     assert one.cut_length is not None
@@ -121,20 +119,16 @@ def _cut(result: Result | NetResult, one: DeckItem, over: int, count: int) -> Cu
     )
 
 
-def _effect(result: Result | NetResult, index: int, length: float) -> float | None:
+def _effect(result: Result, index: int, length: float) -> float | None:
     """Return how much deeper the top is, in the same water, where a piece is cut too long [m]."""
-    longer, mooring = length * (1.0 + LENGTH_ERROR), result.mooring
+    number = leg_numbers(result.file)[index]
+    longer = result.design.with_length(index, length * (1.0 + LENGTH_ERROR))
     try:
-        if isinstance(mooring, Net):
-            number = leg_numbers(mooring.file)[index]
-            leg = mooring.with_length(index, longer).standing.legs[number]
-            upper = leg.position[-1 if leg.line.towed else 0]
-            return -float(upper[2]) - legs_of(result)[number].top.depth
-        line = mooring.line.with_length(index, longer)
-        solution = Mooring(mooring.file, line=line).equilibrium(mooring.water)
+        leg = longer.solutions[number]
     except NoEquilibrium:
         return None
-    return -float(solution.position[0, 2]) - legs_of(result)[0].top.depth
+    upper = leg.position[-1 if leg.line.towed else 0]
+    return -float(upper[2]) - result.legs[number].top.depth
 
 
 SPARE_SHARE = 0.1

@@ -5,7 +5,7 @@ from math import ceil
 
 import numpy as np
 
-from calm.case import Result
+from calm.case.leg_result import LegResult
 from calm.checks.assessment import Assessment
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break
@@ -15,7 +15,7 @@ from calm.drawing.line_drawing import SEABED_COLOUR, SIGNS, WATER_COLOUR
 from calm.drawing.line_picture import NAMED_ROLES, LineKind, along_the_line, current_between
 from calm.quantities import QUANTITIES
 
-Solved = Sequence[tuple[str, Result]]
+Solved = Sequence[tuple[str, LegResult]]
 
 
 _SIZE = 8.0  # points, of the letters
@@ -106,7 +106,7 @@ def _draw_elevation(page: graph.Graph, place: Place, solved: Solved, depths: gra
 def _draw_current(page: graph.Graph, place: Place, solved: Solved, depths: graph.Scale) -> None:
     profiles = []
     for _, result in solved:
-        water = result.mooring.water
+        water = result.water
         depth, u, v = current_between(water, 0.0, water.depth, samples=60)
         profiles.append((np.hypot(u, v), depth))
     fastest = max(float(speed.max()) for speed, _ in profiles)
@@ -122,7 +122,7 @@ def _draw_tension(page: graph.Graph, place: Place, solved: Solved) -> None:
     greatest = max(float(result.shape.tension.max()) for _, result in solved)
     _, first = solved[0]
     ends = np.concatenate([[0.0], np.cumsum(first.components.length[:-1])])
-    factors, surface = first.file.checks.safety_factor, reaches_the_surface(first.mooring)
+    factors, surface = first.file.checks.safety_factor, reaches_the_surface(first.leg)
     loads = [
         allowable_load(piece.component, factors, surface) or np.nan
         for piece in first.file.pieces[:-1]

@@ -7,8 +7,7 @@ from math import ceil
 
 import numpy as np
 
-from calm.case import TowResult
-from calm.case.result import AnyResult
+from calm.case.design import AnyResult
 from calm.case.uncertain import Uncertain
 from calm.drawing import line_picture
 from calm.drawing.graph import Axes, Graph, LegendEntry, Scale, Stroke, covering, to_one_scale
@@ -90,7 +89,7 @@ def line_drawing(result: AnyResult, uncertain: Uncertain | None = None) -> str:
     depths = Scale(side.bottom, side.top)
     draw_elevation(page, (_LEFT, top, wide, height), side, written, depths)
     place = (_LEFT + wide + 12.0, top, flow, height)
-    what = "past the line" if isinstance(result, TowResult) else "of the water"
+    what = "past the line" if result.towed else "of the water"
     draw_flow(page, place, (depth, u, v), plane, depths, what)
     if above is not None:
         draw_plan(page, (_WIDTH - _RIGHT - _PLAN, top, _PLAN, height), above)
@@ -102,7 +101,7 @@ Place = tuple[float, float, float, float]
 
 
 def _leaves_plane(result: AnyResult, behind: Floats) -> bool:
-    (shape,) = (line.shape for line in line_picture.lines_of(result))
+    (shape,) = (leg.shape for leg in result.legs)
     across = along(shape.x, shape.y, np.array([behind[1], -behind[0]]))
     distance = np.hypot(shape.x, shape.y).max()
     return bool(np.abs(across).max() > _PLANE_WITHIN * distance)

@@ -11,8 +11,7 @@ from itertools import repeat
 
 import numpy as np
 
-from calm.case import Result, TowResult
-from calm.case.result import AnyResult, NetResult, legs_of
+from calm.case.design import AnyResult
 from calm.case.result_tables import Shape, rows_down
 from calm.case.uncertain import Uncertain
 from calm.physics.line import Floats, Water
@@ -112,9 +111,9 @@ def elevation_of(
         for part in named_parts(result)
     )
     edges = levels_of(result)
-    if isinstance(result, TowResult):
-        line, environment = from_the_side(result.shape, plane), result.file.environment
-        across = f"distance behind the tow point [m], heading {result.toward:.0f}°"
+    if (tow := result.file.tow) is not None:
+        line, environment = from_the_side(result.legs[0].shape, plane), result.file.environment
+        across = f"distance behind the tow point [m], heading {tow.toward:.0f}°"
         ship, height = (float(line.x[-1]), float(line.y[-1])), float(np.ptp(line.y))
         water = environment.fluid == "water"
         return LinePicture(
@@ -122,7 +121,7 @@ def elevation_of(
         )
     lines = [*_beds(result), *([] if uncertain is None else [_band(uncertain)])]
     lines += [from_the_side(shape, plane, LineKind.BESIDE) for shape in beside]
-    legs = legs_of(result)
+    legs = result.legs
     still = [leg.still_shape for leg in legs if leg.still_shape is not None]
     for kind, shapes, label in (
         (LineKind.STILL, still, "in still water"),
@@ -135,26 +134,16 @@ def elevation_of(
     return LinePicture(tuple(lines), marks, across, depth, None, *edges, seabed, True, seabed)
 
 
-def water_of(result: AnyResult) -> Water:
-    """Return the water that a line or a net stands in, or that a tow goes through."""
-    return result.tow.water if isinstance(result, TowResult) else result.mooring.water
-
-
-def lines_of(result: AnyResult) -> Sequence[Result | TowResult]:
-    """Return the lines of a result: the legs of a net, else the result itself."""
-    return (result,) if isinstance(result, TowResult) else legs_of(result)
-
-
 def plan_of(result: AnyResult, beside: Sequence[Shape] = ()) -> LinePicture:
     """Return a line from above, its anchor, or the ship, at zero; shapes `beside` it too."""
     shapes = [(LineKind.BESIDE, shape) for shape in beside]
-    shapes += [(LineKind.LINE, line.shape) for line in lines_of(result)]
+    shapes += [(LineKind.LINE, leg.shape) for leg in result.legs]
     return LinePicture(
         lines=tuple(Polyline(kind, shape.x, shape.y) for kind, shape in shapes),
         marks=tuple(named_parts(result)),
         across=QUANTITIES["x"].label,
         up=QUANTITIES["y"].label,
-        ship=(0.0, 0.0) if isinstance(result, TowResult) else None,
+        ship=(0.0, 0.0) if result.towed else None,
     )
 
 
@@ -171,14 +160,14 @@ def from_the_side(
     return Polyline(kind, along(shape.x, shape.y, plane), shape.depth, label)
 
 
-def _beds(result: Result | NetResult) -> Iterator[Polyline]:
+def _beds(result: AnyResult) -> Iterator[Polyline]:
     """The seabed about each anchor, if it slopes there or is not as deep as at the deepest one."""
-    plane, legs = plane_of(result), legs_of(result)
+    plane, legs = plane_of(result), result.legs
     drawn = np.concatenate([along(leg.shape.x, leg.shape.y, plane) for leg in legs])
-    stand = [leg for leg in legs if not np.isnan(leg.anchor.tension)]
-    deepest = max(leg.mooring.water.depth for leg in legs)
+    stand = [leg for leg in legs if leg.leg.anchored]
+    deepest = max(leg.water.depth for leg in legs)
     for leg in stand:
-        water, rows = leg.mooring.water, leg.components
+        water, rows = leg.water, leg.components
         slope = along(water.deeper_east, water.deeper_north, plane)
         if slope or water.depth < deepest:
             at = along(rows.x_top[-1], rows.y_top[-1], plane)
@@ -203,28 +192,29 @@ def plane_of(result: AnyResult) -> Floats:
 
     It is east of a mooring that stands upright, and of a net the one in which it is widest.
     """
-    if isinstance(result, NetResult):
+    if result.several:
         x, y = (np.concatenate([getattr(leg.shape, name) for leg in result.legs]) for name in "xy")
         width, ways = np.linalg.eigh(np.cov(x, y))
-        wide = ways[:, 1] if width[1] > 1e-12 * result.mooring.water.depth**2 else (1.0, 0.0)
+        wide = ways[:, 1] if width[1] > 1e-12 * result.water.depth**2 else (1.0, 0.0)
         way = np.array(wide)
         return way if (way[0] + 1e-9 * way[1]) >= 0.0 else -way
-    if isinstance(result, TowResult):
-        heading = np.radians(result.toward)
+    if (tow := result.file.tow) is not None:
+        heading = np.radians(tow.toward)
         return -np.array([np.sin(heading), np.cos(heading)])
-    excursion = np.array([result.top.x, result.top.y])
+    top = result.legs[0].top
+    excursion = np.array([top.x, top.y])
     distance = np.linalg.norm(excursion)
     east = np.array([1.0, 0.0])
-    return excursion / distance if distance > 1e-6 * result.mooring.water.depth else east
+    return excursion / distance if distance > 1e-6 * result.water.depth else east
 
 
 def levels_of(result: AnyResult) -> tuple[float, float]:
     """Return the depths at the upper and the lower edge of a view from the side [m]."""
-    highest = min(float(line.shape.depth.min()) for line in lines_of(result))
-    if not isinstance(result, TowResult):
+    highest = min(float(line.shape.depth.min()) for line in result.legs)
+    if not result.towed:
         depth = seabed_of(result)
         return min(-_MOORED_MARGIN * depth, highest), (1.0 + _MOORED_MARGIN) * depth
-    top, bottom = min(highest, 0.0), max(float(result.shape.depth.max()), 0.0)
+    top, bottom = min(highest, 0.0), max(float(result.legs[0].shape.depth.max()), 0.0)
     seabed = result.file.environment.depth
     if seabed is not None and seabed < _SEABED_NEAR * bottom:
         bottom = seabed
@@ -232,10 +222,10 @@ def levels_of(result: AnyResult) -> tuple[float, float]:
     return top - margin, bottom + margin
 
 
-def seabed_of(result: Result | NetResult) -> float:
+def seabed_of(result: AnyResult) -> float:
     """Return the depth of the water at the deepest anchor, or of a seabed drawn deeper [m]."""
     beds = (float(bed.y.max()) for bed in _beds(result))
-    return max(*(float(line.mooring.water.depth) for line in (result, *legs_of(result))), *beds)
+    return max(*(float(one.water.depth) for one in (result, *result.legs)), *beds)
 
 
 def along(x: Floats | float, y: Floats | float, plane: Floats) -> Floats:
@@ -264,14 +254,14 @@ def water_past(result: AnyResult) -> tuple[Floats, Floats, Floats]:
 
     It is the current of a mooring and a net; a tow adds the speed of its ship.
     """
-    if not isinstance(result, TowResult):
-        water = result.mooring.water
+    water, tow = result.water, result.file.tow
+    if tow is None:
         return current_between(water, 0.0, water.depth)
     top, bottom = levels_of(result)
     behind = plane_of(result)
     above = 0.0 if result.file.environment.fluid == "water" else top
-    depth, u, v = current_between(result.tow.water, above, bottom)
-    return depth, u + result.speed * behind[0], v + result.speed * behind[1]
+    depth, u, v = current_between(water, above, bottom)
+    return depth, u + tow.speed * behind[0], v + tow.speed * behind[1]
 
 
 def along_the_line(shape: Shape) -> Floats:

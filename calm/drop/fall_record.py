@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from calm.case import Result
+from calm.case.leg_result import LegResult
 from calm.drop.chain import BarChain
 from calm.drop.fall import Motion
 from calm.drop.motion import ChainState, Mover
 from calm.files import Clamp, Piece
-from calm.files.mooring_file import clamps_in
+from calm.files.pieces import clamps_in
 from calm.physics.line import Floats, Integers
 
 REPORTED_ROLES = ("float", "instrument", "release")
@@ -225,7 +225,7 @@ def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
     return found
 
 
-def rest_difference(result: Result, rest: Motion) -> float:
+def rest_difference(result: LegResult, rest: Motion) -> float:
     """Farthest that an end of a piece comes to rest from its place in the equilibrium [m].
 
     Of a line that comes down on the seabed before its anchor, pieces that lie there are left out:
@@ -243,7 +243,5 @@ def rest_difference(result: Result, rest: Motion) -> float:
     found = np.concatenate([upper, lower]) - [*state.node[-1, :2], 0.0]
     away = np.linalg.norm(found - expected, axis=1)
     if result.anchor.grounded_length > 0.0:
-        away = away[
-            expected[:, 2] > -result.mooring.water.depth + 1e-6 * result.mooring.water.depth
-        ]
+        away = away[expected[:, 2] > -result.leg.water.depth + 1e-6 * result.leg.water.depth]
     return float(away.max())

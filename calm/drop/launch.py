@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from calm.assemble import with_axial_clamps
-from calm.case import Mooring
+from calm.case.leg import Leg
 from calm.drop.fall import Fineness, Motion, Ship, fall, nothing_limits, towed
 from calm.drop.fall_record import piece_tensions
 from calm.drop.motion import FallingAnchor, NoStep
@@ -74,12 +74,12 @@ class Launch:
         ]
 
 
-def launch_of(mooring: Mooring, fineness: Fineness = IN_SHORT) -> Launch:
+def launch_of(leg: Leg, fineness: Fineness = IN_SHORT) -> Launch:
     """Return the launch of a mooring, anchor last (NoEquilibrium: as `fall`)."""
-    line, water, anchor = falling_line(mooring), mooring.water, falling_anchor(mooring)
-    ship = ship_of(mooring, SHIP_SPEED, course_into_current(water))
-    drop = mooring.memory.of(_let_go, line, water, anchor, ship, fineness)
-    landed, known = drop.states[-1], mooring.file.anchor.kt is not None
+    line, water, anchor = falling_line(leg), leg.water, falling_anchor(leg)
+    ship = ship_of(leg, SHIP_SPEED, course_into_current(water))
+    drop = leg.memory.of(_let_go, line, water, anchor, ship, fineness)
+    landed, known = drop.states[-1], leg.file.anchor.kt is not None
     ends, greatest = (tension.max(axis=0) for tension in piece_tensions(drop))
     top, bottom = ends.T
     fastest = -float(landed.velocity[-1, 2])
@@ -119,14 +119,14 @@ def _let_go(
     return fall(line, water, anchor, towed(line, water, anchor, ship, fineness), fineness)
 
 
-def falling_line(mooring: Mooring) -> Line:
+def falling_line(leg: Leg) -> Line:
     """Return the line of a mooring with the drag that its clamps have in the fall."""
-    return with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
+    return with_axial_clamps(leg.line, leg.file.pieces[:-1])
 
 
-def falling_anchor(mooring: Mooring) -> FallingAnchor:
+def falling_anchor(leg: Leg) -> FallingAnchor:
     """Return the anchor of a mooring as it falls."""
-    return FallingAnchor(mooring.anchor_weight, mooring.anchor_drag)
+    return FallingAnchor(leg.anchor_weight, leg.anchor_drag)
 
 
 def course_into_current(water: Water) -> float:
@@ -135,7 +135,7 @@ def course_into_current(water: Water) -> float:
     return bearing_of(-east, -north) if east or north else 0.0
 
 
-def ship_of(mooring: Mooring, speed: float, course: float, streamed: float | None = None) -> Ship:
+def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None) -> Ship:
     """Return the ship that tows the line of a mooring.
 
     Parameters
@@ -149,14 +149,14 @@ def ship_of(mooring: Mooring, speed: float, course: float, streamed: float | Non
         It makes no way through the water, or the line does not span the distance.
     """
     east, north = speed * sin(radians(course)), speed * cos(radians(course))
-    u, v, _ = mooring.water.current_at(np.zeros(()))
+    u, v, _ = leg.water.current_at(np.zeros(()))
     through = hypot(u - east, v - north)
     if not (speed > 0.0 and through >= SLOWEST_SHIP):
         raise UsageError(
             f"a ship at {speed:g} m/s makes {through:.2g} m/s through the water, which is too "
             "slow to stream the line"
         )
-    length = float(mooring.line.length.sum())
+    length = float(leg.line.length.sum())
     if streamed is not None and not 0.0 < streamed < length:
         raise UsageError(
             f"a line of {length:.1f} m cannot be streamed to {streamed:g} m: give less than its "

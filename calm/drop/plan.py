@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from calm.case import Mooring, Result
+from calm.case import Design, Result
+from calm.case.leg import Leg
 from calm.drop import fall_record, launch
 from calm.drop.fall import Fineness, Motion, fall, settle, towed
 from calm.drop.fall_record import rest_difference
@@ -76,7 +77,7 @@ class DropPlan:
         where still water leaves the line slack, so that it has no single one
     """
 
-    mooring: Mooring = field(repr=False)
+    mooring: Design = field(repr=False)
     ship_speed: float
     course: float
     streamed: float
@@ -198,7 +199,7 @@ LEAST_TIME_ERROR = 5e-4
 
 
 def drop_plan(
-    mooring: Mooring,
+    mooring: Design,
     ship_speed: float = launch.SHIP_SPEED,
     streamed: float | None = None,
     course: float | None = None,
@@ -223,22 +224,19 @@ def drop_plan(
     Raises
     ------
     UsageError
-        A ship that makes no way through the water, or a distance that the line does not span.
-    TypeError
-        It is a tow or a net.
+        A ship that makes no way through the water, or a distance that the line does not span; a
+        tow, or several legs.
     NoEquilibrium
-        As `Mooring.solve`; ``anchor-lifts`` where the anchor does not draw the line down,
+        As `Design.solve`; ``anchor-lifts`` where the anchor does not draw the line down,
         ``not-converged`` where no step is found.
     """
-    if not isinstance(mooring, Mooring):
-        kind = type(mooring).__name__
-        raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
+    leg = mooring.moored
     if result is None:
         result = _equilibrium(mooring)
-    course = launch.course_into_current(mooring.water) if course is None else course % 360.0
-    ship = launch.ship_of(mooring, ship_speed, course, streamed)
-    anchor, falling = launch.falling_anchor(mooring), launch.falling_line(mooring)
-    water = mooring.water
+    course = launch.course_into_current(leg.water) if course is None else course % 360.0
+    ship = launch.ship_of(leg, ship_speed, course, streamed)
+    anchor, falling = launch.falling_anchor(leg), launch.falling_line(leg)
+    water = leg.water
 
     def let_go(start: ChainState, drag: float, fineness: Fineness) -> Motion:
         return fall(falling, water, replace(anchor, drag=drag), start, fineness)
@@ -247,8 +245,8 @@ def drop_plan(
         """The line as it is towed, its fall and its rest, and how far from its equilibrium."""
         start = towed(falling, water, anchor, ship, fine)
         drop = let_go(start, anchor.drag, fine)
-        rest = settle(mooring.line, water, anchor, drop.states[-1], fine)
-        return start, drop, rest, None if result is None else rest_difference(result, rest)
+        rest = settle(leg.line, water, anchor, drop.states[-1], fine)
+        return start, drop, rest, None if result is None else rest_difference(result.leg, rest)
 
     def is_astray(difference: float | None) -> bool:
         return difference is not None and difference > ASTRAY * water.depth
@@ -284,7 +282,7 @@ def drop_plan(
     way = np.array([sin(radians(course)), cos(radians(course))])
     released = -landed.node[-1, :2]
     past = float(released @ way)
-    pulls = fall_record.pulls_of(mooring.file.pieces, drop)
+    pulls = fall_record.pulls_of(leg.file.pieces, drop)
     return DropPlan(
         mooring=mooring,
         ship_speed=ship_speed,
@@ -303,12 +301,12 @@ def drop_plan(
         tow_past=past,
         let_go=(float(released[0]), float(released[1])),
         deck_time=deck_time,
-        start=None if deck_time is None else _run_start(mooring, way, ship_speed, past, deck_time),
+        start=None if deck_time is None else _run_start(leg, way, ship_speed, past, deck_time),
         anchor_drag=anchor.drag,
-        drag_known=mooring.file.anchor.kt is not None,
-        path=fall_record.path_of(drop, toward, mooring.line.anchor_height),
+        drag_known=leg.file.anchor.kt is not None,
+        path=fall_record.path_of(drop, toward, leg.line.anchor_height),
         moments=fall_record.moments_of(drop, None if astray else rest, toward),
-        depths=() if astray else fall_record.depths_of(mooring.file.pieces, drop, rest),
+        depths=() if astray else fall_record.depths_of(leg.file.pieces, drop, rest),
         pulls=pulls,
         rest_difference=difference,
     )
@@ -320,7 +318,7 @@ def _one_or_all(times: Mapping[str, float] | None) -> float | dict[str, float] |
     return once.pop() if len(once) == 1 else None if times is None else dict(times)
 
 
-def _equilibrium(mooring: Mooring) -> Result | None:
+def _equilibrium(mooring: Design) -> Result | None:
     """The mooring at rest; None where it has no unique shape, longer than still water is deep."""
     try:
         return mooring.solve()
@@ -337,7 +335,7 @@ def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
 
 
 def _run_start(
-    mooring: Mooring, way: Floats, speed: float, past: float, deck_time: Mapping[str, float]
+    leg: Leg, way: Floats, speed: float, past: float, deck_time: Mapping[str, float]
 ) -> RunStart:
     """Return where the run begins, at the ship's speed, with the cables paid out as fast.
 
@@ -348,11 +346,11 @@ def _run_start(
     past : how far beyond the target the anchor is let go, along the course [m]
     deck_time : see `drop_plan`
     """
-    pieces = mooring.file.pieces[:-1]
+    pieces = leg.file.pieces[:-1]
     roles = [piece.component.role for piece in pieces]
     roles += [clamp.component.role for piece in pieces for clamp in piece.clamps]
     handled = sum(deck_time.get(role, 0.0) for role in roles)
-    cables = sum(mooring.line.length[: len(pieces)][mooring.line.flexible[: len(pieces)]])
+    cables = sum(leg.line.length[: len(pieces)][leg.line.flexible[: len(pieces)]])
     time = handled + cables / speed
     distance = speed * time - past
     return RunStart(distance, time, (float(-distance * way[0]), float(-distance * way[1])))

@@ -1,25 +1,16 @@
-"""Write a design as a mooring file, with a comment for every guess in its line.
+"""Write a design as a mooring file, with a comment for every guess in its line."""
 
-Anchors have the weights that hold its line.
-"""
-
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from itertools import groupby
-from pathlib import Path
 from textwrap import wrap
 
-from calm.case import Tow
-from calm.case.net import Net, load
-from calm.case.result_tables import AnchorLoad, EndLoad
-from calm.errors import CalmError, one_line
+from calm.errors import one_line
 from calm.exchange import model
+from calm.exchange.component_ids import ids_of
 from calm.files import Catalogue
 from calm.files.components import FLEXIBLE_KINDS
-from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.files.editing.writing import written
-from calm.physics.materials import STEEL_DENSITY
-from calm.quantities import rounded
 from calm.units import KILOGRAM_FORCE
 from calm.version import __version__
 
@@ -53,7 +44,7 @@ class _Page:
         self.lines += [f"{indent}# {line}" for line in wrap(text, _WIDTH - len(indent) - 2)]
 
 
-def mooring_text(design: model.Design, source: str) -> tuple[str, list[model.Remark]]:
+def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[model.Remark]]:
     """Return the text of the mooring file of a design from a file, and what was guessed in it."""
     page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
     page.remark(f"Imported from {of}, by CALM {__version__} with its own figures.")
@@ -79,7 +70,7 @@ def mooring_text(design: model.Design, source: str) -> tuple[str, list[model.Rem
         page.add()
     elif design.water is not None:
         _write_water(page, design.water)
-    ids = model.ids_of(design.components(), Catalogue.load().ids())
+    ids = ids_of(design.components(), Catalogue.load().ids())
     if design.legs:
         page.add("legs:  # each from its upper to its lower end")
     else:
@@ -239,62 +230,3 @@ def figure_text(key: str, value: model.FigureOrWord, *, per_metre: bool, in_kilo
     if key == "diameter" and value < 0.1:
         value, unit = value * 1000.0, "mm"
     return f"{_number(value)} {unit}".rstrip()
-
-
-_HOLDS = 1e8  # N: holds whatever is tied to it
-_IN_WATER = (1.0 - CATALOGUE_DENSITY / STEEL_DENSITY) * STANDARD_GRAVITY  # N of a kilogram of steel
-_DIGITS = 2  # that a guessed weight keeps
-_LEAST = 100.0  # N of a guessed weight
-
-
-def secure_anchors(design: model.Design, output: Path) -> None:
-    """Give each anchor a weight where the file gives none, or one that the line would lift.
-
-    The shape of the line does not depend on it. The weight is what `calm check` asks for in this
-    current. A line without an equilibrium is left to `calm run`, which says so. The mooring file is
-    to stand at `output`.
-    """
-    last = design.items if design.legs else design.items[-1:]
-    anchors = [item.component for item in last if item.component.kind == "anchor"]
-    if design.tow is not None or not anchors:
-        return
-    for anchor, pull, required in _pulls(design, anchors, output):
-        mass, weight = anchor.figures.get("mass"), anchor.figures.get("weight")
-        given = weight if weight is not None or mass is None else _IN_WATER * float(mass)
-        if isinstance(given, float) and (pull is None or pull <= given):
-            continue
-        anchor.figures.pop("mass", None)
-        anchor.guesses.pop("mass", None)
-        reason = "the file gives no weight; 1.5 × (V + H/0.6) in this current"
-        anchor.figures["weight"] = rounded(max(required, _LEAST), _DIGITS, up=True)
-        if pull is None:
-            reason = "the file gives no weight; this holds anything"
-            anchor.figures["weight"] = _HOLDS
-        elif given is not None:
-            reason = (
-                f"the file's {given:.5g} N would be lifted: the line pulls up with {pull:.5g} N"
-            )
-        anchor.guesses["weight"] = reason
-
-
-def _pulls(
-    design: model.Design, anchors: list[model.ImportedComponent], output: Path
-) -> list[tuple[model.ImportedComponent, float | None, float]]:
-    """Return each anchor, the upward pull of the line on it and the weight that holds it [N]."""
-    before = [anchor.figures for anchor in anchors]
-    for anchor in anchors:
-        anchor.figures = {k: one for k, one in anchor.figures.items() if k != "mass"}
-        anchor.figures["weight"] = _HOLDS
-    try:
-        read = load(output, text=mooring_text(design, "")[0])
-        assert not isinstance(read, Tow)
-        loads: Sequence[AnchorLoad | EndLoad] = (
-            read.solve().anchors if isinstance(read, Net) else (read.solve().anchor,)
-        )
-    except CalmError:
-        return [(anchor, None, 0.0) for anchor in anchors]
-    finally:
-        for anchor, figures in zip(anchors, before, strict=True):
-            anchor.figures = figures
-    pairs = zip(anchors, loads, strict=True)
-    return [(anchor, load.vertical, load.required_weight or 0.0) for anchor, load in pairs]

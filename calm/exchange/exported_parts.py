@@ -8,7 +8,7 @@ from math import cos, pi, radians, sin
 
 import numpy as np
 
-from calm.case import Result, TowResult
+from calm.case.leg_result import LegResult
 from calm.errors import NoEquilibrium
 from calm.files import Anchor, Component, Sphere
 from calm.files.definition import STANDARD_GRAVITY
@@ -216,7 +216,7 @@ class ExportedLine:
     riding: tuple[float, float]
     windage: tuple[float, float]
     omitted: tuple[str, ...]
-    solve: Callable[[], Result | TowResult]
+    solve: Callable[[], LegResult]
     ends: tuple[EndKeys, EndKeys] | None = None
 
     @property
@@ -273,3 +273,11 @@ class ExportedLine:
             return part.net, own[1] * middle / end
         tilt, pull = radians(row.tilt), row.tension_bottom
         return pull * cos(tilt), pull * sin(tilt) / (0.5 * density * end)
+
+
+@dataclass(frozen=True)
+class ExportedDesign:
+    """A design for another program: its name, and the legs of a net or else a single line."""
+
+    name: str
+    legs: tuple[ExportedLine, ...]

@@ -1,38 +1,29 @@
-"""Export a mooring file to another program: its line as parts, written by one of the writers."""
+"""Export a mooring file to another program: its line as parts, written in one of the formats."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from calm.case import Mooring, Result, Tow, TowResult
-from calm.case.net import Net, load
+from calm.case import load
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
 from calm.errors import NoEquilibrium, UsageError, unknown
-from calm.exchange.cable_writer import cbl_file
-from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow, Levels
-from calm.exchange.mdd_file import mdd_file
-from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
+from calm.exchange.exported_parts import (
+    ExportedDesign,
+    ExportedLine,
+    ExportedPart,
+    ExportedTow,
+    Levels,
+)
+from calm.exchange.registry import Exported, FileFormat, file_format, file_formats
 from calm.physics.line import Water
 from calm.physics.seawater import REFERENCE_DENSITY
-from calm.records.delimited import table_csv
 from calm.records.profile_tables import components
 
-_HEADER = (
-    "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
-    "whole buoyancy[N]", "whole Cd x area[m^2]", "whole tangential Cd x area[m^2]", "EA[N]",
-)  # fmt: skip
 _DIGITS = 9  # of a speed in m/s
-
-
-@dataclass(frozen=True)
-class Exported:
-    """Hold the content of a file for another program, what it cannot hold, and files beside it."""
-
-    content: bytes
-    lost: tuple[str, ...]
-    beside: dict[str, bytes]
 
 
 def export_file(
@@ -42,7 +33,7 @@ def export_file(
 
     Parameters
     ----------
-    to : one of `WRITERS`
+    to : name of a format that is written, as `registry.register_format` has it
     environment : a name in the file, or an environment file
     catalogs : as `calm.load` takes them
 
@@ -52,44 +43,52 @@ def export_file(
         The file has mistakes, no length of a piece that is cut to fit is right, or `to` is no
         program.
     """
-    if to not in WRITERS:
-        raise UsageError(
-            unknown(f"--to: `{to}` is not a program that CALM writes for", to, WRITERS)
-        )
+    chosen = _format_of(to)
+    assert chosen.write is not None
     read = load(path, environment, list(catalogs))
-    if isinstance(read, Net):
-        if to != "moordyn":
-            raise UsageError(f"{path} is a net of legs; `--to moordyn` takes it, {to} single lines")
-        designs = []
-        for keys, line, leg in zip(read.file.legs, read.lines, read.solve().legs, strict=True):
-            design = _exported_line(line, partial(_known, leg))
-            designs.append(replace(design, ends=keys.ends))
-        deepest = max(designs, key=lambda design: design.depth)
-        designs[0] = replace(designs[0], name=read.file.name, depth=deepest.depth)
-        content, lost = moordyn_file(*designs)
-        design = deepest
-    else:
-        design = _exported_line(read, read.solve)
-        content, lost = WRITERS[to](design)
-    beside = {CURRENTS: current_profile(design)} if to == "moordyn" else {}
-    return Exported(content, lost, beside)
+    if not read.several:
+        line = _exported_line(read.leg, lambda: read.solve().leg)
+        return chosen.write(ExportedDesign(line.name, (line,)))
+    if not chosen.writes_nets:
+        others = ", ".join(f"`--to {one.name}`" for one in file_formats() if one.writes_nets)
+        raise UsageError(f"{path} is a net of legs; {others} takes it, {to} single lines")
+    legs = tuple(
+        replace(
+            _exported_line(found.leg, partial(_known, found)),
+            ends=(found.leg.top, found.leg.bottom),
+        )
+        for found in read.solve().legs
+    )
+    return chosen.write(ExportedDesign(read.file.name, legs))
 
 
-def _known(leg: Result) -> Result:
+def _format_of(to: str) -> FileFormat:
+    try:
+        chosen = file_format(to)
+    except KeyError:
+        chosen = None
+    if chosen is None or chosen.write is None:
+        written = [one.name for one in file_formats() if one.write is not None]
+        what = f"--to: `{to}` is not a program that CALM writes for"
+        raise UsageError(unknown(what, to, written))
+    return chosen
+
+
+def _known(leg: LegResult) -> LegResult:
     return leg
 
 
-Solve = Callable[[], Result | TowResult]
+Solve = Callable[[], LegResult]
 
 
-def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
+def _exported_line(leg: Leg, solve: Solve) -> ExportedLine:
     """Return the parts of a mooring or a tow, of which `solve` finds the equilibrium."""
-    file, water, line = mooring.file, mooring.water, mooring.line
+    file, water, line = leg.file, leg.water, leg.line
     if file.environment.fluid == "air":
         raise UsageError(f"{file.path} is towed in air; the other programs know only water")
-    secant = _secants(mooring, solve)
+    secant = _secants(leg, solve)
     depths = np.cumsum(line.length) - line.length / 2.0  # of the middles, hanging down
-    if not isinstance(mooring, Tow):  # standing upright
+    if not leg.towed:  # standing upright
         depths += float(water.depth) - line.anchor_height - float(line.length.sum())
     depths = np.maximum(depths, 0.0)
     parts = []
@@ -123,12 +122,11 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
             )
         )  # fmt: skip
     wind, anchor, tow = file.environment.wind, None, None
-    if isinstance(mooring, Tow):
-        keys = mooring.keys
+    if (keys := file.tow) is not None:
         tow = ExportedTow(*components(keys.speed, keys.toward), keys.height)
     else:
-        anchor = file.anchor, mooring.anchor_weight
-    afloat, riding, windage = _at_the_surface(mooring, solve)
+        anchor = file.anchor, leg.anchor_weight
+    afloat, riding, windage = _at_the_surface(leg, solve)
     return ExportedLine(
         name=file.name,
         parts=tuple(parts),
@@ -142,25 +140,24 @@ def _exported_line(mooring: Mooring | Tow, solve: Solve) -> ExportedLine:
         has_draft=line.floating is not None and line.floating.hull is not None,
         riding=riding,
         windage=windage,
-        omitted=_omitted(mooring),
+        omitted=_omitted(leg),
         solve=solve,
     )
 
 
 def _at_the_surface(
-    mooring: Mooring | Tow, solve: Solve
+    leg: Leg, solve: Solve
 ) -> tuple[bool, tuple[float, float], tuple[float, float]]:
     """Return `afloat`, `riding` and `windage` of `ExportedLine`; by length without equilibrium."""
-    below, line = (False, (1.0, 1.0), (0.0, 1.0)), mooring.line
-    if isinstance(mooring, Tow):
+    below, line = (False, (1.0, 1.0), (0.0, 1.0)), leg.line
+    if leg.towed:
         return below
     try:
         result = solve()
-        assert isinstance(result, Result)
         afloat, used = result.type == "surface", result.top.used_buoyancy
     except NoEquilibrium:
         whole = line.anchor_height + float(line.length.sum())
-        afloat, used = whole >= float(mooring.water.depth), 1.0
+        afloat, used = whole >= float(leg.water.depth), 1.0
     if not afloat:
         return below
     floating = line.floating
@@ -173,9 +170,9 @@ def _at_the_surface(
     return True, (used, seen), (area, floating.wind_cd)
 
 
-def _secants(mooring: Mooring | Tow, solve: Solve) -> dict[int, float]:
+def _secants(leg: Leg, solve: Solve) -> dict[int, float]:
     """Stiffness of the pieces that stretch by a table, as it is at their tension here [N]."""
-    curves = mooring.line.elongation
+    curves = leg.line.elongation
     if not any(curves):
         return {}
     rows = solve().components
@@ -201,65 +198,21 @@ def _levels(water: Water, deepest: float) -> Levels:
     return tuple(rows)
 
 
-def _omitted(mooring: Mooring | Tow) -> tuple[str, ...]:
+def _omitted(leg: Leg) -> tuple[str, ...]:
     """Return what a mooring file says that other programs do not know."""
-    file = mooring.file
+    file = leg.file
     omitted = ["limits of the design check, strengths, ratings and tilts of components"]
     if file.solver.strumming is not None:
         omitted.append("strumming: cables have their drag at rest")
-    anchor = file.legs[0].bottom.anchor if file.legs else None
+    anchor = leg.bottom.anchor
     if file.environment.seabed is not None or (anchor is not None and anchor.depth is not None):
         omitted.append("the slope of the seabed: it is level there, as deep as the deepest anchor")
     if file.solver.drag == "reynolds":
         omitted.append("`drag: reynolds`: the constant coefficients are written")
     if file.solver.friction != "berteaux":
         omitted.append(f"`friction: {file.solver.friction}`")
-    if any(mooring.line.elongation):
+    if any(leg.line.elongation):
         omitted.append("elongation tables: the stiffness at the tension found here is written")
-    if any(mooring.line.lift) or any(mooring.line.clamp_lift):
+    if any(leg.line.lift) or any(leg.line.clamp_lift):
         omitted.append("lift of towed bodies")
     return tuple(omitted)
-
-
-def _csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
-    """Return the content of the file, and what it cannot hold."""
-    lost = ["the water", "hulls and wind: floats drag in full at the surface"]
-    if design.tow is not None:
-        lost.append("the speed of the ship: a list is a mooring's")
-    losses = design.losses(lost)
-    rows = [
-        row
-        for part in design.parts
-        for row in (_row(part, None), *(_row(clamp, at) for clamp, at in part.clamps))
-    ]
-    if design.anchor is not None:
-        anchor, weight = design.anchor
-        figures = [None, anchor.length, None, anchor.mass, -weight, None, None, None]
-        rows.append([*["anchor"] * 4, *figures])
-    comments = (f"{design.name}, by CALM; lost:", *losses)
-    above = "".join(f"# {' '.join(line.split())}\n" for line in comments)
-    return (above + table_csv(_HEADER, rows)).encode(), losses
-
-
-def _row(part: ExportedPart, at: float | None) -> list[str | float | None]:
-    whole = part.length if part.flexible else 1.0
-    return [
-        part.use,
-        part.label,
-        part.component.kind,
-        part.role,
-        at,
-        part.length,
-        part.diameter or None,
-        None if part.mass is None else part.mass * whole,
-        part.buoyancy * whole,
-        part.area() * whole,
-        part.area(along=True) * whole if part.directional else None,
-        part.stiffness or None,
-    ]
-
-
-WRITERS: dict[str, Callable[[ExportedLine], tuple[bytes, tuple[str, ...]]]] = {
-    "mdd": mdd_file, "cbl": cbl_file, "csv": _csv_file, "moordyn": moordyn_file,
-}  # fmt: skip
-"""What a mooring can be written for."""

@@ -6,52 +6,22 @@ The design is completed: an anchor that holds, entries of the catalogue, an envi
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-from pydantic import ValidationError
-
-from calm.assemble.component_forces import drag_of
 from calm.errors import InputError, UsageError, one_line, refused
 from calm.exchange import model
-from calm.exchange.cable_reader import is_cbl, read_cbl
-from calm.exchange.design_writer import figure_text, mooring_text, secure_anchors
-from calm.exchange.list_cells import is_table
-from calm.exchange.list_reader import read_list
-from calm.exchange.mat_file import is_mat
-from calm.exchange.mdd_elements import is_moords, read_moords
-from calm.exchange.mdd_file import read_mdd
-from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
-from calm.exchange.oceanarray_reader import is_oceanarray, read_oceanarray
-from calm.files import Anchor, Catalogue, Rigid, read_mooring
-from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
+from calm.exchange.anchor_weights import secure_anchors
+from calm.exchange.catalogue_matching import CatalogueMatch, match_catalogue_entries
+from calm.exchange.current_record import CurrentRecord
+from calm.exchange.design_writer import mooring_text
+from calm.exchange.registry import FileFormat, file_format, file_formats
+from calm.files import read_mooring
 from calm.files.editing.writing import WritingStyle
 from calm.files.yaml_document import read_document
 
 _HEAD = 70_000  # bytes from which a format is recognised
-
-
-@dataclass(frozen=True)
-class ImportFormat:
-    """Describe a format that can be imported: its name, how it is recognised and read."""
-
-    name: str
-    program: str
-    recognises: Callable[[bytes], bool]
-    read: Callable[[Path, model.ImportOptions], model.Design]
-
-
-FORMATS = (
-    ImportFormat("mdd", "Mooring Design & Dynamics", is_mat, lambda path, _: read_mdd(path)),
-    ImportFormat("cbl", "WHOI Cable", is_cbl, read_cbl),
-    ImportFormat("moordyn", "MoorDyn or MoorPy", is_moordyn, lambda path, _: read_moordyn(path)),
-    ImportFormat("oceanarray", "oceanarray", is_oceanarray, read_oceanarray),
-    ImportFormat("moords", "moords", is_moords, lambda path, _: read_moords(path)),
-    ImportFormat("table", "a list in CSV or a spreadsheet", is_table, read_list),
-)
 
 
 @dataclass(frozen=True)
@@ -74,7 +44,7 @@ class Imported:
     guessed: tuple[model.Remark, ...]
     dropped: tuple[model.Remark, ...]
     matched: tuple[CatalogueMatch, ...]
-    record: model.CurrentRecord | None
+    record: CurrentRecord | None
 
 
 def import_file(
@@ -91,7 +61,8 @@ def import_file(
     Parameters
     ----------
     output : path of the mooring file to come; nothing is written here
-    format : one of `FORMATS`; found from the content when not given
+    format : name of a format that is read, as `registry.register_format` has it; found from the
+        content when not given
     environment : an environment file, in place of what the file has
     match_catalogue : use catalogue entries for what agrees with them
 
@@ -104,8 +75,9 @@ def import_file(
     """
     options = options or model.ImportOptions()
     chosen = _format_of(path, format, listed=options.elements is not None)
-    if options.elements is not None and chosen.name not in ("table", "oceanarray"):
+    if options.elements is not None and not chosen.takes_elements:
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
+    assert chosen.read is not None
     design = chosen.read(path, options)
     levels = 0 if design.water is None else len(design.water.current)
     for what, count in (("pieces", len(design.items)), ("levels of current", levels)):
@@ -132,32 +104,43 @@ def import_file(
     )  # fmt: skip
 
 
-def _format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
+def _format_of(path: Path, name: str | None, *, listed: bool = False) -> FileFormat:
     """Return the format of a file: as named, or by its content.
 
     One that is `listed` is a list where it is of no other format, even with a single column.
     """
     if name is not None:
-        for each in FORMATS:
-            if each.name == name:
-                return each
-        raise UsageError(f"--format: `{name}` is none of {', '.join(one.name for one in FORMATS)}")
+        return _format_named(name)
     try:
         with path.open("rb") as file:
             content = file.read(_HEAD)
     except OSError as error:
         raise refused(path, f"cannot be read: {error.strerror}") from None
-    for each in FORMATS:
-        if each.recognises(content) or (listed and each is FORMATS[-1]):
+    for each in (formats := _readable()):
+        if each.detect is not None and each.detect(content):
             return each
-    programs = ", ".join(f"{each.name} ({each.program})" for each in FORMATS)
+    if listed:
+        return file_format("table")
+    programs = ", ".join(f"{each.name} ({each.program})" for each in formats)
     raise refused(path, f"is not a file of a program that CALM reads: {programs}")
+
+
+def _format_named(name: str) -> FileFormat:
+    with suppress(KeyError):
+        if (chosen := file_format(name)).read is not None:
+            return chosen
+    names = ", ".join(each.name for each in _readable())
+    raise UsageError(f"--format: `{name}` is none of {names}")
+
+
+def _readable() -> list[FileFormat]:
+    return [each for each in file_formats() if each.read is not None]
 
 
 def _check(path: Path, output: Path, text: str) -> None:
     """Read the mooring file as `calm run` will; a mistake in it is one of its source."""
     try:
-        read_mooring(output, text=text, net=True)
+        read_mooring(output, text=text)
     except InputError as error:
         lines = ["", *text.splitlines()]
         blamed = [lines[each.line] if each.line < len(lines) else "" for each in error.problems]
@@ -168,114 +151,6 @@ def _check(path: Path, output: Path, text: str) -> None:
                 for each, line in zip(error.problems, blamed, strict=True)
             ),
         ) from None
-
-
-def record_file(record: model.CurrentRecord, source: str) -> bytes:
-    """Return a record as a classic NetCDF file by the CF conventions."""
-    import xarray as xr
-
-    speeds = {
-        name: (
-            ("time", "depth"),
-            np.ascontiguousarray(values, np.float64),
-            {"standard_name": standard_name, "units": "m s-1"},
-        )
-        for name, standard_name, values in (
-            ("u", "eastward_sea_water_velocity", record.u),
-            ("v", "northward_sea_water_velocity", record.v),
-            ("w", "upward_sea_water_velocity", record.w),
-        )
-    }
-    seconds = np.rint(record.days * 86_400e3) / 1e3  # days hold a millisecond, hardly more
-    time = {
-        "standard_name": "time",
-        "units": f"seconds since {record.epoch}",
-        "calendar": "standard",
-    }
-    depth = {"standard_name": "depth", "units": "m", "positive": "down", "axis": "Z"}
-    dataset = xr.Dataset(
-        speeds,
-        {
-            "time": ("time", seconds, {**time, "axis": "T"}),
-            "depth": ("depth", np.asarray(record.depth, np.float64), depth),
-        },
-        {"Conventions": "CF-1.11", "title": "Currents", "source": source},
-    )
-    return bytes(dataset.to_netcdf(engine="scipy"))
-
-
-_TOLERANCE = 0.05
-"""Share by which size, net force and drag may differ from those of a catalogue entry."""
-
-_COMMON_WORDS = 0.5  # share of the words of a name that an entry must have, two at least
-
-
-@dataclass(frozen=True)
-class CatalogueMatch:
-    """Name a component, as the file has it, and the catalogue entry used in its place."""
-
-    name: str
-    entry: str
-
-
-def match_catalogue_entries(design: model.Design) -> tuple[CatalogueMatch, ...]:
-    """Use catalogue entries for the components whose name and figures agree with one.
-
-    A component is of the same kind, shares half the words of its name, and is within `_TOLERANCE`
-    in diameter, length, net force, normal drag and stiffness, as far as both give them.
-    """
-    catalogue = Catalogue.load()
-    entries = {id: entry for id, entry in catalogue.all().items() if isinstance(entry, Component)}
-    matched: dict[str, CatalogueMatch] = {}
-    for component in design.components():
-        model = _model(component)
-        if model is None or component.entry:
-            continue
-        for id, entry in entries.items():
-            if _alike(component.name, f"{id} {entry.name or ''}") and _agree(
-                model, entry, sizeless="drag_area" in component.guesses
-            ):
-                component.entry = id
-                matched[id + component.name] = CatalogueMatch(component.name, id)
-                break
-    return tuple(matched.values())
-
-
-def _model(component: model.ImportedComponent) -> Component | None:
-    per_metre = component.kind in FLEXIBLE_KINDS
-    fields = {
-        key: figure_text(key, value, per_metre=per_metre, in_kilograms=False)
-        for key, value in component.figures.items()
-    }
-    try:
-        return KINDS[component.kind].model_validate({"kind": component.kind, **fields})
-    except ValidationError:
-        return None
-
-
-def _alike(name: str, other: str) -> bool:
-    words, others = (
-        set(re.findall(r"[a-z]+|\d+(?:[./]\d+)?", text.lower())) for text in (name, other)
-    )
-    shared = words & others
-    return len(shared) >= 2 and len(shared) >= _COMMON_WORDS * len(words)
-
-
-def _agree(one: Component, other: Component, *, sizeless: bool) -> bool:
-    """Return whether two agree in figures; one that is `sizeless` in the file, in net force."""
-    pairs: list[tuple[float | None, float | None]] = [(one.net_buoyancy, other.net_buoyancy)]
-    if sizeless:
-        if not isinstance(other, Rigid):
-            return False
-    elif one.kind != other.kind or isinstance(one, Anchor):
-        return False
-    else:
-        sizes = ("diameter", "length", "stiffness")
-        pairs += [(getattr(one, key, None), getattr(other, key, None)) for key in sizes]
-        # at 1 m/s across it [N], of a cable or chain per metre
-        pairs.append((drag_of(one)[0], drag_of(other)[0]))
-    given = [(a, b) for a, b in pairs if a is not None and b is not None]
-    return all(abs(a - b) <= _TOLERANCE * max(abs(a), abs(b)) for a, b in given)
 
 
 def environment_lines(path: Path, output: Path) -> list[str]:

@@ -1,21 +1,17 @@
 """Define what a file of another program says, in CALM's terms: the model that every importer fills.
 
-Figures are SI and degrees under the names of the mooring file; depths are positive down. What the
-names of pieces say about them is told in the languages of their lists, and makes their ids.
+Figures are SI and degrees under the names of the mooring file; depths are positive down.
 """
 
 from __future__ import annotations
 
-import re
-import unicodedata
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
 from calm.errors import one_line
+from calm.exchange.current_record import CurrentRecord
+from calm.exchange.part_names import is_called
 
 MOST_PIECES = 2_000
 """Most pieces of a line, and most levels of its water."""
@@ -176,21 +172,6 @@ def joined_at(node: str) -> str:
 
 
 @dataclass(eq=False)
-class CurrentRecord:
-    """Hold currents at several times: `u`, `v`, `w` [m/s] by time and level, `depth` [m].
-
-    `days` count from `epoch`, a date.
-    """
-
-    days: NDArray[np.float64]
-    epoch: str
-    depth: NDArray[np.float64]
-    u: NDArray[np.float64]
-    v: NDArray[np.float64]
-    w: NDArray[np.float64]
-
-
-@dataclass(eq=False)
 class ImportedWater:
     """Hold the environment of the line.
 
@@ -222,7 +203,7 @@ class ImportedTow:
 
 
 @dataclass(eq=False)
-class Design:
+class ImportedDesign:
     """Hold a mooring or a tow as another program's file gives it.
 
     Attributes
@@ -267,132 +248,3 @@ class Design:
             yield item.component
             for clamp in item.clamps:
                 yield clamp.component
-
-
-_CHAIN = r"chain|cha[iî]ne|\w*kette\b|\bkjetting|\bcadena"
-_NAMES = {
-    "chain": _CHAIN,
-    "release": (
-        r"\brelease|\bacoustic rel|\blargu|\blargage|\bar[ -]?\d{3}|\bcdms ar\b|\b8242\b|\b866\b"
-        r"|ausl[öo]se|utl[øo]se|\bliberador|\bsuelta"
-    ),
-    "connector": (
-        r"shackle|\bshac|swivel|sling|\blink|pear|\bring|ringlet|miller|manille|[ée]merillon|maillon"
-        r"|anneau|sch[äa]kel|wirbel|\bgrillete|giratorio|anilla|thimble|kausch|guardacabo"
-    ),
-    "anchor": (
-        r"anchor|sinker|railway|\blest|\bancre|\bcorps.mort|dead ?weight|clump|\banker|grundgewicht"
-        r"|\bancla|\bmuerto|\blastre"
-    ),
-    "rigid": (
-        r"float|buoy|sphere|syntactic|instrument|sensor|logger|release|hardware|connector|shackle|swivel"
-        r"|bou[ée]e|flotteur|capteur|auftrieb|boje|kugel|ger[äa]t|boya|flotador|esfera|sonde|terminal"
-        r"|\bbody\b|cylinder"
-    ),
-    "line": (
-        f"{_CHAIN}|"
-        r"wire|rope|\blines?\b|\bcable|c[âa]ble\b|cordage|filin|aussi[èe]re|\bbout\b|seil\b|seile\b|draht"
-        r"|leine\b|\btau\b|trosse|kabel|\bcabo\b|cuerda|estacha|tether|hawser|\bwarp\b|nilspin|jetstr"
-        r"|kevlar|aramid|twaron|technora|vectran|nylon|polyamid|dacron|polyester|polyprop|polysteel|danline"
-        r"|dyneema|spectra|uhmwpe|\bhmpe|amsteel|plasma|tenex|samson|colmega|dynex|steelite|phillystran"
-        r"|braid|strand|\b\d{1,2}x\d{1,2}\b(?!.*(?:\bgla|\bball|verre|vidrio|\bin\b|[\"\u2033]))|\bmanila\b|sisal|hemp\b|umbilical|\bcoax"
-    ),
-}
-"""Names of parts in the languages of their lists, by what these are."""
-
-_HEAVY = 20.0  # N: nothing that only joins weighs more, whatever it is called
-_LONG, _SLENDER = 3.0, 60.0
-"""Metres, and diameters, of which a piece is longer where it is a line, whatever it is called."""
-
-_LONGEST_PIECE = 20.0  # m of a rigid piece
-_LONGEST = 40
-_NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
-_SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
-
-
-def is_called(name: str, *what: str) -> bool:
-    """Return whether a name is that of a release, chain, connector, anchor, line or rigid part.
-
-    Connectors are shackles, swivels and links; lines are wires, ropes and chains; floats,
-    instruments and fittings, or their kinds and families, are rigid.
-    """
-    return any(re.search(_NAMES[each], name, re.I) for each in what)
-
-
-def is_long(name: str, length: float, across: float) -> bool:
-    """Return whether a piece is a line by its size, whatever it is called.
-
-    Parameters
-    ----------
-    length, across : of the piece [m]; 0 where it is not known how wide it is
-    """
-    if is_called(name, "release", "connector"):
-        return False
-    slender = length >= _LONG and across > 0.0 and length >= _SLENDER * across
-    return slender or length >= _LONGEST_PIECE
-
-
-def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
-    """Return the role of a rigid piece by its name and its net force in water [N, positive up].
-
-    Parameters
-    ----------
-    name : as its program calls it
-    buoyancy : net force in water, positive up [N]
-    fastener : whether its program marks it so, which may mark instruments and floats too
-    """
-    if is_called(name, "release"):
-        return "release"
-    if is_called(name, "connector") and buoyancy <= 0.0:
-        return "connector"
-    if buoyancy > 0.0:
-        return "float"
-    return "connector" if fastener and buoyancy > -_HEAVY else "instrument"
-
-
-def _kebab(name: str) -> str:
-    """Return a name as an id: ``3/8" wire rope`` becomes ``3-8in-wire-rope``."""
-    text = "".join(_SIGNS.get(sign, sign) for sign in name)
-    text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
-    text = re.sub(r"(?<=\d)\.(?=\d)", "p", text)
-    return re.sub(r"[^a-z0-9]+", "-", text)[:_LONGEST].strip("-")
-
-
-def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
-    """Return the id of every component, by its `id()`; those with the same figures share one.
-
-    None is one that is `taken` by something else.
-    """
-    components = list(components)
-    ids: dict[int, str] = {}
-    known_ids: dict[tuple[object, ...], str] = {}
-    known = {*taken, *(component.entry for component in components)}
-    for component in components:
-        if component.entry:
-            ids[id(component)] = component.entry
-            continue
-        identity = component.identity()
-        if identity not in known_ids:
-            base = _kebab(component.name)
-            if base in _NO_IDS or not any(sign.isalpha() for sign in base):
-                base = f"{component.kind}-{base}".rstrip("-")
-            chosen, number = base, 1
-            while chosen in known:
-                number += 1
-                chosen = f"{base}-v{number}"
-            known.add(chosen)
-            known_ids[identity] = chosen
-        ids[id(component)] = known_ids[identity]
-    return ids
-
-
-def size_in(name: str) -> float:
-    """Return a diameter in a name such as `8 mm wire` or `3/8" chain` [m]; 0 without one."""
-    found = re.search(r"(\d+(?:[.,]\d+)?)\s*mm\b", name, re.I)
-    if found:
-        return float(found[1].replace(",", ".")) / 1000.0
-    found = re.search(r"(?:(\d+)[ -])?(\d+)/(\d+)", name)
-    if found and int(found[3]):
-        return (int(found[1] or 0) + int(found[2]) / int(found[3])) * 0.0254
-    found = re.search(r"(\d+(?:[.,]\d+)?)\s*(?:\"|''|in\b|inch)", name, re.I)
-    return float(found[1].replace(",", ".")) * 0.0254 if found else 0.0

@@ -4,7 +4,8 @@ from calm.files.catalogue import Assembly, Catalogue
 from calm.files.check_limits import Accept, Checks, SafetyFactors
 from calm.files.components import Anchor, Cable, Chain, Component, Flexible
 from calm.files.environment import Environment, Fouling, Position
-from calm.files.mooring_file import Clamp, LinePart, MooringFile, Piece, Place, Solver, TowKeys
+from calm.files.mooring_file import MooringFile, Solver, TowKeys
+from calm.files.pieces import Clamp, LinePart, Piece, Place
 from calm.files.reader import read_mooring
 from calm.files.rigid import Body, Cylinder, Profiler, Rigid, Shaped, Sphere
 from calm.files.schema import mooring_schema

@@ -14,6 +14,7 @@ from pydantic import BeforeValidator, Discriminator, Tag
 from calm.errors import InputError, shown
 from calm.files import definition, water
 from calm.files.definition import DENSITY, Model, QuantityField, Text, described, optional
+from calm.files.wave_keys import WaveKeys, read_waves
 from calm.files.yaml_document import SourceMapping, validate
 from calm.physics.line import Floats
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
@@ -114,7 +115,7 @@ class Environment:
     depth_range: tuple[float, float] | None = None
     fouling: Fouling | None = None
     maximum_speed: float = math.inf
-    waves: water.WaveKeys | None = None
+    waves: WaveKeys | None = None
     seas: tuple[SeaState, ...] = ()
     seabed: Seabed | None = None
 
@@ -232,7 +233,7 @@ class EnvironmentKeys(TowEnvironmentKeys):
     seabed: SeabedGiven | None = optional(
         "how the seabed slopes below the anchors", {"slope": "3 deg", "toward": "120 deg"}
     )
-    waves: water.WaveKeys | None = optional(
+    waves: WaveKeys | None = optional(
         "seas that the design check judges: one, or a table of them",
         {"significant_height": "5 m", "peak_period": "8.4 s"},
     )
@@ -278,7 +279,7 @@ def read_environment(
         maximum_speed=moored.maximum_speed if moored else math.inf,
     )
     current = _current(keys.current, terms, section, notices, open_files)
-    seas = water.read_waves(moored.waves, section, open_files) if moored and moored.waves else ()
+    seas = read_waves(moored.waves, section, open_files) if moored and moored.waves else ()
     seabed = None
     if moored and open_files:
         seabed = _seabed(moored.seabed, where, moored.depth, section, notices)

@@ -21,7 +21,8 @@ from pydantic import BaseModel
 
 from calm.files.components import Flexible
 from calm.files.definition import quantity_of
-from calm.files.mooring_file import Clamp, MooringFile, Piece
+from calm.files.mooring_file import MooringFile
+from calm.files.pieces import Clamp, Piece
 from calm.quantities import bearing_of
 from calm.records.profile_tables import CurrentTable, DepthTable
 from calm.units import DIMENSIONS, with_unit

@@ -15,14 +15,14 @@ from calm.files.components import Anchor
 from calm.files.definition import Model, QuantityField, Text, described, optional
 from calm.files.environment import Position
 from calm.files.line_items import LineReader
-from calm.files.mooring_file import STAND_IN, MooringFile, Piece, Place, numbered, placed
+from calm.files.pieces import STAND_IN, Piece, Place, numbered, placed
 from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping, validate
 from calm.positions import HEMISPHERES, Frame
 from calm.units import QuantityError
 
 MOST_LEGS = 40
-NET_REFUSED = (
+ONE_LEG_ONLY = (
     "this is a net of legs, for `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`; "
     "this takes a single line: one free end, one anchor. `calm batch` gives the depths of a net's "
     "instruments in a record of currents; waves and a launch take a line of its most loaded leg"
@@ -95,7 +95,7 @@ class EndKeys(Model):
         return self.join is None and self.anchor is None and self.held is None
 
 
-_FREE = EndKeys()
+FREE, ANCHORED = EndKeys(), EndKeys(anchor=AnchoredKeys())
 
 
 def _end_given(value: object) -> object:
@@ -120,7 +120,7 @@ class LegKeys(Model):
         [{"use": "wire-jacketed-8", "length": "150 m"}],
     )
     top: _End = Field(
-        default=_FREE, description="what holds its upper end", examples=["free", {"join": "A"}]
+        default=FREE, description="what holds its upper end", examples=["free", {"join": "A"}]
     )
     bottom: _End | None = Field(
         default=None,
@@ -130,7 +130,7 @@ class LegKeys(Model):
 
 
 @dataclass(frozen=True)
-class Leg:
+class FileLeg:
     """Represent a leg: the pieces `first` to `end` (not itself) of the file, and its two ends.
 
     An end with no key is free.
@@ -142,33 +142,7 @@ class Leg:
     top: EndKeys
     bottom: EndKeys
 
-    def line_of(self, file: MooringFile) -> MooringFile:
-        """Return the leg as the file of a single line: its pieces, counted from its upper end.
-
-        One without an anchor has a stand-in for it, of the id `STAND_IN`.
-        """
-        own = file.pieces[self.first : self.end]
-        pieces = [replace(piece, index=index) for index, piece in enumerate(own)]
-        if self.bottom.anchor is None:
-            pieces.append(stand_in_anchor(len(pieces), own[-1].place.item + 1))
-        environment, anchor = file.environment, self.bottom.anchor
-        if anchor is not None and anchor.depth is not None:
-            environment = replace(environment, depth=anchor.depth)
-        elif anchor is not None and environment.seabed is not None and environment.depth:
-            deeper = float(environment.seabed.deeper(np.array([anchor.at]))[0])
-            environment = replace(environment, depth=environment.depth + deeper)
-        if anchor is not None and environment.seabed is not None:
-            environment = replace(environment, seabed=environment.seabed.at(*anchor.at))
-        return replace(
-            file,
-            name=self.name,
-            environment=environment,
-            pieces=tuple(pieces),
-            legs=(self,),
-            notices=(),
-        )
-
-    def grown(self, index: int, more: int) -> Leg:
+    def grown(self, index: int, more: int) -> FileLeg:
         """Return the leg where there are more pieces after that of an index in the file."""
         return replace(
             self,
@@ -190,7 +164,7 @@ def stand_in_anchor(index: int, item: int) -> Piece:
 
 def read_legs(
     top: SourceMapping, reader: LineReader, position: Position | None
-) -> tuple[tuple[Leg, ...], tuple[Piece, ...]]:
+) -> tuple[tuple[FileLeg, ...], tuple[Piece, ...]]:
     """Read the legs of a file, and the pieces of all of them one after another.
 
     Parameters
@@ -209,7 +183,7 @@ def read_legs(
     if len(found) > MOST_LEGS:
         top.refuse(("legs",), f"more than {MOST_LEGS} legs", key=True)
         return (), ()
-    legs: list[Leg] = []
+    legs: list[FileLeg] = []
     pieces: list[Piece] = []
     section, whole, items = top.child("legs"), True, 0
     for name in found:
@@ -229,10 +203,10 @@ def read_legs(
         if keys is None:
             whole = False
             continue
-        ends = keys.top, keys.bottom or _FREE
+        ends = keys.top, keys.bottom or FREE
         if len(top.problems) == before:
             ends = _ends(keys, own, pieces[first:])
-        legs.append(Leg(str(name), first, len(pieces), *ends))
+        legs.append(FileLeg(str(name), first, len(pieces), *ends))
     if whole:
         _check_net(legs, top)
     return tuple(legs), numbered(pieces)
@@ -246,7 +220,7 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
 
     ends = []
     for name, end in (("top", keys.top), ("bottom", keys.bottom)):
-        end = _FREE if end is None else end
+        end = FREE if end is None else end
         given = sorted(end.model_fields_set)
         if len(given) != 1 and name in own.data and own.data[name] != "free":
             each = " and ".join(f"`{one}`" for one in given) or "nothing"
@@ -272,7 +246,7 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
         refuse(("line",), "nothing stands above the anchor")
     if upper.join is not None and upper.join == lower.join:
         refuse(("bottom",), f"both ends join at `{upper.join}`")
-    if upper == lower == _FREE and (keys.bottom is not None or not stands):
+    if upper == lower == FREE and (keys.bottom is not None or not stands):
         refuse(("bottom",), "both ends are free: join one to another leg, or hold it")
     for piece in pieces:
         here = piece.line, piece.column
@@ -283,7 +257,7 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
     return upper, lower
 
 
-def check_held_depths(legs: Sequence[Leg], top: SourceMapping, depth: float | None) -> None:
+def check_held_depths(legs: Sequence[FileLeg], top: SourceMapping, depth: float | None) -> None:
     """Check that what is held is above the seabed, at a depth [m]."""
     for leg in legs:
         for name, end in zip(("top", "bottom"), leg.ends, strict=True):
@@ -292,7 +266,7 @@ def check_held_depths(legs: Sequence[Leg], top: SourceMapping, depth: float | No
                 top.refuse(("legs", leg.name, name, "held", "depth"), message)
 
 
-def _check_net(legs: Sequence[Leg], top: SourceMapping) -> None:
+def _check_net(legs: Sequence[FileLeg], top: SourceMapping) -> None:
     """Check that every node joins legs, and that something holds each of them."""
     section = top.child("legs")
     joins = [
@@ -322,7 +296,7 @@ def _check_net(legs: Sequence[Leg], top: SourceMapping) -> None:
         _check_held(legs, section)
 
 
-def _check_held(legs: Sequence[Leg], section: SourceMapping) -> None:
+def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
     """Check that no part of the net is without a hold.
 
     Nor may an anchor whose place is not written stand where another does.
@@ -354,13 +328,7 @@ def _check_held(legs: Sequence[Leg], section: SourceMapping) -> None:
             section.refuse((leg.name,), message, key=True)
 
 
-def leg_numbers(file: MooringFile) -> list[int]:
-    """Return the number of the leg that each piece of a file is in; a single line is one."""
-    numbers = [n for n, leg in enumerate(file.legs) for _ in range(leg.first, leg.end)]
-    return numbers or [0] * len(file.pieces)
-
-
-def nodes_of(legs: Sequence[Leg]) -> Mapping[str, int]:
+def nodes_of(legs: Sequence[FileLeg]) -> Mapping[str, int]:
     """Return the number of every node by its name, as they come up in the legs."""
     names = dict.fromkeys(end.join for leg in legs for end in leg.ends if end.join is not None)
     return {name: number for number, name in enumerate(names)}

@@ -5,21 +5,21 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from calm.errors import about_quantity, shown, unknown
-from calm.files import components, logbook
+from calm.files import components, item_keys
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, Defined, define
 from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Anchor, Component, Flexible, Outline
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
-from calm.files.logbook import MOST_PIECES
-from calm.files.mooring_file import Clamp, Piece, Place, placed
+from calm.files.item_keys import MOST_PIECES
+from calm.files.pieces import Clamp, Piece, Place, placed
 from calm.files.rigid import Profiler, Rigid
 from calm.files.yaml_document import SourceMapping, unknown_key, validate
 from calm.units import QuantityError
 
 _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
-_ITEM_KEYS = frozenset(logbook.ItemKeys.model_fields)
+_ITEM_KEYS = frozenset(item_keys.ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
-_CLAMP_KEYS = frozenset(logbook.ClampKeys.model_fields)
+_CLAMP_KEYS = frozenset(item_keys.ClampKeys.model_fields)
 _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
@@ -86,7 +86,7 @@ class LineReader:
 
     def _item(self, item: SourceMapping) -> tuple[Piece, ...]:
         count = self._count(item)
-        logbook.check_serials(item, count)
+        item_keys.check_serials(item, count)
         entry = self._entry(item)
         definition = self._definition(entry, item, _ITEM_KEYS) if entry else None
         if entry is None or definition is None:
@@ -164,7 +164,7 @@ class LineReader:
             column=place.column,
             place=Place(0),
             fit_body_depth=fit_depth if self._towed else None,
-            equipment=logbook.read_equipment(item),
+            equipment=item_keys.read_equipment(item),
             measured_load=load,
         )
 
@@ -174,7 +174,7 @@ class LineReader:
             example = "{load: 2 kN, length: 480 m}"
             item.refuse(("length_at",), f"`length_at` must be as `{example}`")
             return math.nan, 0.0
-        measured = validate(logbook.LengthAt, item.child("length_at"))
+        measured = validate(item_keys.LengthAt, item.child("length_at"))
         if measured is None:
             return math.nan, 0.0
         breaking = component.breaking_load
@@ -225,7 +225,7 @@ class LineReader:
             if isinstance(component, Rigid) and at is not None:
                 self._tell_of_mass(clamp.data["use"], component)
                 where = Place(0, clamp=len(clamps))
-                own = logbook.read_equipment(clamp)
+                own = item_keys.read_equipment(clamp)
                 label = self._label(clamp)
                 clamps.append(Clamp(clamp.data["use"], label, component, at, where, own))
             elif component is not None and at is not None:

@@ -1,36 +1,34 @@
-"""A mooring file as read: the expanded line, its environment and settings, in SI and degrees.
-
-Every piece and clamp has its own place in the line, and a label that no other has.
-"""
+"""A mooring file as read: the expanded line, its environment and settings, in SI and degrees."""
 
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol
+from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import AfterValidator
 
-from calm.errors import unknown
+from calm.errors import UsageError
 from calm.files.check_limits import Accept, Checks, LimitKey
-from calm.files.components import Anchor, Component
+from calm.files.components import Anchor
 from calm.files.definition import LENGTH, Model, QuantityField, described, optional
 from calm.files.environment import Environment, Position
-from calm.files.logbook import NO_EQUIPMENT, Deployed, DocumentKeys, Equipment, ReleaseKeys
-from calm.files.rigid import Profiler
+from calm.files.legs import (
+    ANCHORED,
+    FREE,
+    ONE_LEG_ONLY,
+    EndKeys,
+    FileLeg,
+    HeldKeys,
+    stand_in_anchor,
+)
+from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys
+from calm.files.pieces import Piece, parts_of
 from calm.files.strumming_keys import Strumming
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping
-
-if TYPE_CHECKING:
-    from calm.files.legs import Leg
-
-
-STAND_IN = ""
-"""Id of what holds a line whose anchor is yet to be chosen, or a leg that has none."""
 
 
 class TowKeys(Model):
@@ -77,121 +75,6 @@ class Solver(Model):
     )
 
 
-@dataclass(frozen=True, order=True)
-class Place:
-    """Hold where a piece or a clamp stands in the line as read, by which it is known from there on.
-
-    A row of the file is the place of what it gives: `Place(3)` its fourth item, whatever the count
-    of that, `Place(3, clamp=0)` the first clamp of it.
-
-    Attributes
-    ----------
-    item : of the `line:` of the file, from 0
-    repeat : which of the `count` of the item, from 0
-    part : which piece of an assembly, from 0; -1 where the item is a component
-    clamp : which clamp of the piece, from 0; -1 where the piece itself is meant
-    """
-
-    item: int
-    repeat: int = 0
-    part: int = -1
-    clamp: int = -1
-
-    @property
-    def is_clamp(self) -> bool:
-        """Return whether it is that of a clamp."""
-        return self.clamp >= 0
-
-    @property
-    def row(self) -> Place:
-        """Return the row of the file that gives it: of what stands in an assembly, its item."""
-        return Place(self.item) if self.part >= 0 else Place(self.item, clamp=self.clamp)
-
-
-class LinePart(Protocol):
-    """Represent a piece or a clamp, or what was found for one."""
-
-    @property
-    def place(self) -> Place:
-        """Return which one it is."""
-
-    @property
-    def label(self) -> str:
-        """Return what people call it."""
-
-
-@dataclass(frozen=True)
-class Clamp:
-    """Represent an instrument fixed to a piece, `at` metres (unstretched) from the piece's top.
-
-    A profiler travels over `travel`, the same distance of its upper and its lower stop; inf is the
-    end of the piece. It is taken to be `at` its upper one.
-    """
-
-    use: str
-    label: str
-    component: Component
-    at: float
-    place: Place
-    equipment: Equipment = NO_EQUIPMENT
-    travel: tuple[float, float] | None = None
-
-    @property
-    def serial(self) -> str | None:
-        """Return the serial number of this instrument, where the file gives it."""
-        return _serial(self.equipment)
-
-
-@dataclass(frozen=True)
-class Piece:
-    """Represent one piece of the expanded line.
-
-    Attributes
-    ----------
-    index : position in the line, 0 at the top (in a tow, at the ship)
-    use, label : id of the component; the label is unique in the line
-    component : its definition with the overrides of the line applied
-    length : unstretched length [m]; None where it is to be cut to fit
-    fit_top_depth : depth wanted for the top of the line in still water [m], on the piece cut to fit
-    clamps : tuple of Clamp
-    line, column : the item in the mooring file, counted from 1
-    place : Place
-    fit_body_depth : depth wanted for the lower end of the piece at the tow's speed [m], where it is
-        cut to fit
-    equipment : what the file says of this individual piece
-    measured_load : load under which its length is measured [N], `length` being without load all the
-        same
-    """
-
-    index: int
-    use: str
-    label: str
-    component: Component
-    length: float | None
-    fit_top_depth: float | None
-    clamps: tuple[Clamp, ...]
-    line: int
-    column: int
-    place: Place
-    fit_body_depth: float | None = None
-    equipment: Equipment = NO_EQUIPMENT
-    measured_load: float = 0.0
-
-    @property
-    def serial(self) -> str | None:
-        """Return the serial number of this piece, where the file gives it."""
-        return _serial(self.equipment)
-
-    def with_clamps(self, changed: Callable[[Clamp], Clamp], **own: Any) -> Piece:
-        """Return the piece with each of its clamps changed, and with other fields of its own."""
-        return replace(self, clamps=tuple(map(changed, self.clamps)), **own)
-
-
-def _serial(equipment: Equipment) -> str | None:
-    assert not isinstance(equipment.serial, tuple)  # one was chosen as the item was expanded
-    return equipment.serial
-
-
 @dataclass(frozen=True)
 class MooringFile:
     """Hold a mooring file with everything in it resolved.
@@ -224,7 +107,7 @@ class MooringFile:
     releases: tuple[ReleaseKeys, ...] = field(default=(), hash=False)
     deployed: Deployed | None = None
     units: Mapping[str, str] = field(default_factory=dict, hash=False)
-    legs: tuple[Leg, ...] = ()
+    legs: tuple[FileLeg, ...] = ()
 
     def __repr__(self) -> str:
         """Return its name, where it is, and how many pieces it has."""
@@ -256,67 +139,33 @@ class MooringFile:
             return friction
         return math.tan(math.atan(friction) - math.radians(seabed.slope))
 
+    def leg_alone(self, leg: FileLeg) -> MooringFile:
+        """Return a leg as the file of a single line: its pieces, counted from its upper end.
 
-def placed(piece: Piece, place: Place) -> Piece:
-    """Put a piece, with its clamps and the serial numbers there, at a place of the line."""
-
-    def moved(clamp: Clamp) -> Clamp:
-        own = replace(place, clamp=clamp.place.clamp)
-        return replace(clamp, place=own, equipment=clamp.equipment.of(place.repeat))
-
-    return piece.with_clamps(moved, place=place, equipment=piece.equipment.of(place.repeat))
-
-
-def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
-    """Give the pieces their index, and number labels that occur more than once down the line."""
-    pieces = tuple(pieces)
-    labels = iter(numbered_labels(labels_of(pieces)))
-
-    def relabelled(clamp: Clamp) -> Clamp:
-        return replace(clamp, label=next(labels))
-
-    return tuple(
-        piece.with_clamps(relabelled, index=index, label=next(labels))
-        for index, piece in enumerate(pieces)
-    )
-
-
-def numbered_labels(texts: Sequence[str]) -> list[str]:
-    """Number labels that occur more than once down a line, clamps below their piece."""
-    total, seen = Counter(texts), Counter[str]()
-
-    def numbered_label(text: str) -> str:
-        if total[text] == 1:
-            return text
-        seen[text] += 1
-        while f"{text} {seen[text]}" in total:
-            seen[text] += 1
-        return f"{text} {seen[text]}"
-
-    return [numbered_label(text) for text in texts]
-
-
-def parts_of(pieces: Iterable[Piece]) -> list[Piece | Clamp]:
-    """Every piece of a line, each with its clamps after it."""
-    parts: list[Piece | Clamp] = []
-    for piece in pieces:
-        parts += (piece, *piece.clamps)
-    return parts
-
-
-def clamps_in(pieces: Iterable[Piece]) -> list[Clamp]:
-    """List the clamps of a line in the order of the file, which is that of the solver."""
-    return [clamp for piece in pieces for clamp in piece.clamps]
-
-
-def clamps_down(pieces: Iterable[Piece]) -> list[Clamp]:
-    """List the clamps of a mooring's line from its top to its anchor, the order of its results."""
-    return [clamp for piece in pieces for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)]
-
-
-def labels_of(pieces: Iterable[Piece]) -> list[str]:
-    """Return the labels of pieces and clamps, down the line."""
-    return [part.label for part in parts_of(pieces)]
+        One of several without an anchor has a stand-in for it, of the id `STAND_IN`.
+        """
+        if not self.legs:
+            return self
+        own = self.pieces[leg.first : leg.end]
+        pieces = [replace(piece, index=index) for index, piece in enumerate(own)]
+        if leg.bottom.anchor is None:
+            pieces.append(stand_in_anchor(len(pieces), own[-1].place.item + 1))
+        environment, anchor = self.environment, leg.bottom.anchor
+        if anchor is not None and anchor.depth is not None:
+            environment = replace(environment, depth=anchor.depth)
+        elif anchor is not None and environment.seabed is not None and environment.depth:
+            deeper = float(environment.seabed.deeper(np.array([anchor.at]))[0])
+            environment = replace(environment, depth=environment.depth + deeper)
+        if anchor is not None and environment.seabed is not None:
+            environment = replace(environment, seabed=environment.seabed.at(*anchor.at))
+        return replace(
+            self,
+            name=leg.name,
+            environment=environment,
+            pieces=tuple(pieces),
+            legs=(leg,),
+            notices=(),
+        )
 
 
 def unknown_releases(
@@ -334,45 +183,6 @@ def unknown_releases(
     ]
 
 
-def travelling(pieces: Sequence[Piece], top: SourceMapping) -> tuple[Piece, ...]:
-    """Give each profiler the way that it travels, by the labels of its stops."""
-    return tuple(piece.with_clamps(partial(_travelling, piece, pieces, top)) for piece in pieces)
-
-
-def _travelling(piece: Piece, pieces: Sequence[Piece], top: SourceMapping, clamp: Clamp) -> Clamp:
-    if not isinstance(clamp.component, Profiler):
-        return clamp
-    stops = {each.label: 0.0 if each.index < piece.index else math.inf for each in pieces}
-    del stops[piece.label]
-    stops |= {each.label: each.at for each in piece.clamps if each.travel is None}
-    stops.pop(clamp.label, None)
-    between = clamp.component.between or ()
-    place, lacks = clamp.place, "" if between else f"no stops of {clamp.label}"
-    row = ("line", place.item, *(() if place.part >= 0 else ("clamps", place.clamp)))
-    messages = [] if between else ["a profiler needs `between: [upper stop, lower stop]`"]
-    messages += [
-        unknown(f"`{label}` is no stop on `{piece.label}`, nor a piece beside it", label, stops)
-        for label in between
-        if label not in stops
-    ]
-    if not messages and between and not stops[between[0]] < stops[between[1]]:
-        messages = [f"`{between[0]}` is not above `{between[1]}`: give the upper stop first"]
-    for message in messages:
-        top.refuse(row, message, lacks=lacks)
-    if messages or not between:
-        return clamp
-    upper, lower = (stops[label] for label in between)
-    return replace(clamp, at=upper, travel=(upper, lower))
-
-
-def check_one_fit(pieces: Sequence[Piece], top: SourceMapping) -> None:
-    """Check that one piece at most is to be cut to fit."""
-    fits = [piece for piece in pieces if piece.length is None]
-    for piece in fits[1:]:
-        message = f"only one piece can be cut to fit; line {fits[0].line} has one already"
-        top.refuse_at(piece.line, piece.column, message)
-
-
 def check_fit(
     pieces: Sequence[Piece], seabed: float | None, tow: TowKeys | None, top: SourceMapping
 ) -> None:
@@ -385,3 +195,40 @@ def check_fit(
         if tow and piece.fit_body_depth is not None and piece.fit_body_depth <= -tow.height:
             message = f"`body_depth` is not below the tow point, {tow.height:g} m above the water"
             top.refuse_at(*here, message)
+
+
+def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
+    """Legs of a file; a file without `legs` has one.
+
+    The leg of a mooring is free above and anchored below, the leg of a tow is held at the ship.
+    """
+    if file.legs:
+        return file.legs
+    ends = FREE, ANCHORED
+    if file.tow is not None:
+        ship = HeldKeys.model_construct(depth=-file.tow.height, at=(0.0, 0.0))
+        ends = EndKeys(held=ship), FREE
+    return (FileLeg(file.name, 0, len(file.pieces), *ends),)
+
+
+def leg_numbers(file: MooringFile) -> list[int]:
+    """Return the number of the leg that each piece of a file is in."""
+    return [n for n, leg in enumerate(legs_of(file)) for _ in range(leg.first, leg.end)]
+
+
+def refuse_several(file: MooringFile) -> None:
+    """Reject a file of legs for uses of a single line: UsageError."""
+    if file.legs:
+        raise UsageError(f"{file.path}: {ONE_LEG_ONLY}")
+
+
+def refuse_tow(file: MooringFile) -> None:
+    """Reject a tow for uses of a mooring: UsageError."""
+    if file.tow is not None:
+        raise UsageError(f"{file.path} is a tow; this is for moorings")
+
+
+def refuse_all_but_moorings(file: MooringFile) -> None:
+    """Reject tows and files of legs for uses of a single mooring: UsageError."""
+    refuse_several(file)
+    refuse_tow(file)

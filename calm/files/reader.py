@@ -12,16 +12,22 @@ import numpy as np
 from pydantic import BeforeValidator, Field
 
 from calm.errors import InputError, Problem, unknown
-from calm.files import mooring_file
 from calm.files.catalogue import Catalogue
 from calm.files.check_limits import Accept, Checks, LimitKey, read_accepts
 from calm.files.components import Anchor, Flexible
 from calm.files.definition import Model, Text, described, optional
 from calm.files.environment import Position, Seabed, read_environment
-from calm.files.legs import NET_REFUSED, Leg, LegKeys, check_held_depths, read_legs, stand_in_anchor
+from calm.files.legs import FileLeg, LegKeys, check_held_depths, read_legs, stand_in_anchor
 from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, OutputUnits, ReleaseKeys, check_deployed
-from calm.files.mooring_file import MooringFile, Piece, Solver, TowKeys, numbered
+from calm.files.mooring_file import (
+    MooringFile,
+    Solver,
+    TowKeys,
+    check_fit,
+    unknown_releases,
+)
+from calm.files.pieces import Piece, check_one_fit, labels_of, numbered, travelling
 from calm.files.uncertainty import Uncertainty
 from calm.files.yaml_document import SourceMapping, compose, read_document, validate
 from calm.units import QuantityError
@@ -97,13 +103,12 @@ def read_mooring(
     catalogs: Sequence[str | Path] = (),
     text: str | None = None,
     stand_in: bool = False,
-    net: bool = False,
 ) -> MooringFile:
     """Read a mooring file and all it refers to in one environment, by a `MooringReader`.
 
     InputError: with every mistake found, each at its place.
     """
-    reader = MooringReader(path, catalogs=catalogs, text=text, stand_in=stand_in, net=net)
+    reader = MooringReader(path, catalogs=catalogs, text=text, stand_in=stand_in)
     return reader.in_environment(environment)
 
 
@@ -111,7 +116,7 @@ class _ReadLine(NamedTuple):
     """The line of a file and what refers to its pieces, and the mistakes in them."""
 
     pieces: tuple[Piece, ...]
-    legs: tuple[Leg, ...]
+    legs: tuple[FileLeg, ...]
     looser: tuple[LimitKey, ...]
     accepts: tuple[Accept, ...]
     notices: tuple[str, ...]
@@ -130,7 +135,6 @@ class MooringReader:
         looked for beside it
     stand_in : let a line that has no anchor yet stand on one that holds anything, of the id
         `STAND_IN`
-    net : let the file have legs
     """
 
     def __init__(
@@ -140,7 +144,6 @@ class MooringReader:
         catalogs: Sequence[str | Path] = (),
         text: str | None = None,
         stand_in: bool = False,
-        net: bool = False,
     ) -> None:
         self._path, self._stand_in = str(path), stand_in
         self._problems: list[Problem] = []
@@ -149,8 +152,6 @@ class MooringReader:
         document = read_document(Path(path)) if text is None else compose(str(path), text)
         self._top = top = SourceMapping.of(document, self._problems)
         self._towed, self._legged = "tow" in top.data, "legs" in top.data
-        if self._legged and not net:
-            top.refuse(("legs",), NET_REFUSED, key=True)
         given = top
         if self._legged:  # one with legs has no line, and its legs are read one by one
             ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}
@@ -187,7 +188,7 @@ class MooringReader:
             if self._legged:
                 check_held_depths(line.legs, top, depth)
             else:
-                mooring_file.check_fit(line.pieces, depth, keys.tow if keys else None, top)
+                check_fit(line.pieces, depth, keys.tow if keys else None, top)
         if problems or keys is None or surroundings is None:
             raise InputError(_in_order(problems, self._path))
         return MooringFile(
@@ -220,7 +221,7 @@ class MooringReader:
         reader = LineReader(self._catalogue, top, notices, towed=towed, in_air=in_air)
         reader.check(self._definitions.data if self._definitions is not None else ())
         before = len(problems)
-        legs: tuple[Leg, ...] = ()
+        legs: tuple[FileLeg, ...] = ()
         pieces = reader.read(top, "line") if isinstance(top.data.get("line"), list) else ()
         line_is_whole = bool(pieces) and len(problems) == before
         if self._stand_in and not towed and pieces and not _anchored(pieces):
@@ -230,17 +231,17 @@ class MooringReader:
             line_is_whole = bool(pieces) and len(problems) == before
         else:
             (_check_tow if towed else _check_anchor)(pieces, top)
-            mooring_file.check_one_fit(pieces, top)
+            check_one_fit(pieces, top)
             pieces = numbered(pieces)
             if line_is_whole:
-                pieces = mooring_file.travelling(pieces, top)
-        labels = mooring_file.labels_of(pieces) if line_is_whole else None
+                pieces = travelling(pieces, top)
+        labels = labels_of(pieces) if line_is_whole else None
         accepts = read_accepts(((keys and keys.checks) or Checks()).accept, labels, top)
         if keys and keys.deployed and labels is not None:
             cut = [p.label for p in pieces if isinstance(p.component, Flexible)]
             check_deployed(keys.deployed, labels, cut, top)
         if keys and keys.releases and labels is not None:
-            notices += mooring_file.unknown_releases(keys.releases, pieces, keys.deployed)
+            notices += unknown_releases(keys.releases, pieces, keys.deployed)
         return _ReadLine(
             pieces, legs, tuple(reader.looser), accepts, tuple(notices), tuple(problems)
         )
@@ -289,7 +290,7 @@ def _anchored(pieces: Sequence[Piece]) -> bool:
 def _check_slides(
     seabed: Seabed,
     pieces: Sequence[Piece],
-    legs: Sequence[Leg],
+    legs: Sequence[FileLeg],
     checks: Checks,
     top: SourceMapping,
     depth: float | None,

@@ -14,7 +14,7 @@ from calm.files.catalogue import Assembly
 from calm.files.components import KINDS, Component
 from calm.files.definition import LENGTH, quantity_of
 from calm.files.environment import EnvironmentKeys, TowEnvironmentKeys, UniformCurrent
-from calm.files.logbook import ClampKeys, ItemKeys
+from calm.files.item_keys import ClampKeys, ItemKeys
 from calm.files.reader import MooringKeys
 
 Schema = dict[str, Any]

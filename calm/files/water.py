@@ -1,18 +1,15 @@
-"""Keys of the water and of what is on it: its density, the wind, the waves."""
+"""Keys of the water and of the wind on it: tables by depth, density."""
 
 from __future__ import annotations
 
 import math
-import os.path
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
-from pathlib import Path
-from typing import Annotated, Self
+from typing import Annotated
 
 import numpy as np
 from pydantic import Discriminator, Tag, ValidationError, model_validator
 
-from calm.errors import InputError, Problem, UsageError, about_quantity, nearest, shown
+from calm.errors import Problem, about_quantity
 from calm.files import definition
 from calm.files.definition import DENSITY, Model, QuantityField, Text, described, optional
 from calm.files.yaml_document import SourceMapping
@@ -20,15 +17,6 @@ from calm.physics import seawater
 from calm.records import profile_tables
 from calm.records.current_terms import left_out
 from calm.records.profile_tables import QuantityTable
-from calm.records.sea_states import (
-    OF_HEIGHT,
-    SPECTRA,
-    SeaState,
-    measured_spectrum,
-    scatter_states,
-    spectrum_of,
-    with_swell,
-)
 from calm.units import QuantityError, QuantityRange
 
 USUAL_DENSITY = {"water": definition.CATALOGUE_DENSITY, "air": 1.225}
@@ -242,105 +230,3 @@ class Wind(Model):
         if self.drift_depth is not None and "surface_drift" not in self.model_fields_set:
             raise ValueError("`drift_depth` needs `surface_drift`, a share of the wind's speed")
         return self
-
-
-class SwellKeys(Model):
-    """The keys of `swell:`: long waves from afar under the sea that the wind raises."""
-
-    significant_height: Annotated[float, QuantityField("length", above=0)] = described(
-        "Hs of the swell", "2 m"
-    )
-    peak_period: Annotated[float, QuantityField("time", above=0)] = described(
-        "Tp of the swell, longer than that of the sea", "14 s"
-    )
-
-
-class WaveKeys(Model):
-    """The keys of `waves:`: one sea, a table of seas with their shares of the time, or both."""
-
-    significant_height: Annotated[float | None, QuantityField("length", at_least=0.05)] = optional(
-        "Hs of the sea to be survived", "5 m"
-    )
-    peak_period: Annotated[float | None, QuantityField("time", above=0)] = optional(
-        "Tp of that sea; pierson-moskowitz and ochi-hubble have their own", "8.4 s"
-    )
-    spectrum: Text = described(
-        f"{', '.join(SPECTRA)}, or a CSV or NetCDF file of a measured one",
-        "jonswap",
-        default="bretschneider",
-    )
-    gamma: Annotated[float, QuantityField("number", at_least=1, at_most=10)] = described(
-        "peakedness of jonswap", 3.3, default=3.3
-    )
-    toward: Toward = described("where they run, clockwise from north", "90 deg", default=90.0)
-    swell: SwellKeys | None = optional(
-        "under that sea, the same way", {"significant_height": "2 m", "peak_period": "14 s"}
-    )
-    scatter: Text | None = optional(
-        "CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it", "seas.csv"
-    )
-
-    @model_validator(mode="after")
-    def _some_sea(self) -> Self:
-        height, period, named = self.significant_height, self.peak_period, self.spectrum in SPECTRA
-        if not named and (height, period) != (None, None):
-            near = nearest(self.spectrum, SPECTRA)
-            raise ValueError(
-                f"`{shown(self.spectrum)}` is none of {', '.join(SPECTRA)}; did you mean `{near}`?"
-                if near
-                else "a measured `spectrum` has its own height and period; leave them out"
-            )
-        if named and height is None and (self.scatter is None or period is not None):
-            raise ValueError("`waves` needs `significant_height`, a `scatter` table, or both")
-        if self.swell is not None and height is None:
-            raise ValueError("`swell` is under a sea: give its `significant_height`, too")
-        if height is not None and period is None and self.spectrum not in OF_HEIGHT:
-            raise ValueError(f"`significant_height` needs a `peak_period` with {self.spectrum}")
-        return self
-
-
-def read_waves(keys: WaveKeys, section: SourceMapping, open_files: bool) -> tuple[SeaState, ...]:
-    """Return the seas of `waves:`; none if it has mistakes.
-
-    Those of a scatter table have their shares of the time; one beside them has a share of 0.
-
-    Parameters
-    ----------
-    section : the environment
-    open_files : read its files, which are beside the mooring file; where not, none is returned
-    """
-    before = len(section.problems)
-    measured = keys.spectrum not in SPECTRA
-    files = {"scatter": keys.scatter, "spectrum": keys.spectrum if measured else None}
-    paths: dict[str, Path] = {}
-    for name, text in files.items():
-        if text is None:
-            continue
-        path = Path(section.home("waves").document.path).parent / text
-        if os.path.isfile(path):
-            paths[name] = path
-            continue
-        near = nearest(text, SPECTRA) if name == "spectrum" else None
-        what = "no such file" if name == "scatter" else f"neither {', '.join(SPECTRA)} nor a file"
-        meant = f"; did you mean `{near}`?" if near else ""
-        message = f"`{name}: {shown(text)}`: {what}{meant}"
-        section.refuse(("waves", name), message)
-    if len(section.problems) > before or not open_files:
-        return ()
-    form = "bretschneider" if measured else keys.spectrum
-    seas: list[SeaState] = []
-    try:
-        if "scatter" in paths:
-            seas += scatter_states(paths["scatter"], form, keys.gamma)
-        if keys.significant_height is not None:
-            sea = spectrum_of(form, keys.significant_height, keys.peak_period, keys.gamma)
-            if keys.swell is not None:
-                sea = with_swell(sea, keys.swell.significant_height, keys.swell.peak_period)
-            seas.append(replace(sea, share=0.0 if seas else 1.0))
-        if "spectrum" in paths:
-            seas.append(replace(measured_spectrum(paths["spectrum"]), share=0.0 if seas else 1.0))
-    except UsageError as error:
-        section.refuse(("waves",), str(error), key=True)
-    except InputError as error:
-        section.problems.extend(error.problems)
-    return tuple(seas)

@@ -1,7 +1,6 @@
 """The gridded file: values, deviations and flags on levels, laid out as archives want it."""
 
-import tempfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.dataset import laid_out, time_axis
-from calm.batch.work_store import open_store
 from calm.dataset import netcdf
 from calm.dataset.discovery import coverage, in_capitals, kept, with_flags, written
 from calm.errors import UsageError
@@ -19,7 +17,6 @@ from calm.quantities import QUANTITIES_MEASURED
 from calm.records import delimited
 from calm.units import QuantityError, parse_quantity
 from calm.version import __version__
-from calm.whole_file import beside
 
 MOST_LEVELS = 5000
 
@@ -171,21 +168,21 @@ def write_grid(
 
     Raises
     ------
-    OSError
-        There is no room for it.
+    UsageError
+        The system refuses, e.g. because the disk is full.
     """
     time = next(iter(fields.values())).samples.time
     capitals = all(one.isupper() for one in names.values())
     deviation, flag = ("_SD", "_QC") if capitals else ("_sd", "_qc")
-    with tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name[:40]}.") as folder:
-        store = open_store(Path(folder), layout, BLOCK, "")
-        for number in shown(range(store.count)):
-            times = np.arange(*store.span(number))
+
+    def blocks() -> Iterator[netcdf.Chunks]:
+        for start in shown(range(0, len(time), BLOCK)):
+            times = np.arange(start, min(start + BLOCK, len(time)))
             columns: dict[str, NDArray[Any]] = {}
             for name, field in fields.items():
                 found, called = estimate(field, levels, times), names[name]
                 columns |= {called: found.value, called + deviation: found.deviation}
                 columns[called + flag] = found.flag
-            store.write(number, laid_out(layout, time[times], columns))
-        with beside(output) as part:
-            netcdf.write_netcdf(layout, BLOCK, store.chunks(), part, lambda: None)
+            yield netcdf.packed(layout, BLOCK, laid_out(layout, time[times], columns))
+
+    netcdf.write_netcdf(layout, BLOCK, blocks(), output)

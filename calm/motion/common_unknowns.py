@@ -15,15 +15,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.motion.currents_law import SpeedLaw
 from calm.physics.line import Floats, Integers
-
-if TYPE_CHECKING:
-    from calm.motion.unknown_currents import SpeedLaw
 
 FURTHEST = 1.0
 """Of the logarithm of a factor, at most."""

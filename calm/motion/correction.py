@@ -1,27 +1,24 @@
-"""Correction of a mooring, in blocks that are kept and taken up where it stopped."""
+"""Estimate the depths of a mooring in blocks of times, and lay out the result."""
 
 from __future__ import annotations
 
-import hashlib
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
-from threading import Event
 
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.blocks import SolvedBlock
 from calm.batch.dataset import laid_out, layout_of
-from calm.batch.profiles import Batch, Profiles, processors
+from calm.batch.profiles import Profiles, processors
 from calm.batch.statuses import STATUSES
-from calm.batch.work import BatchWork, Progress
-from calm.batch.work_store import Store
-from calm.case import Mooring
+from calm.case import Design
 from calm.dataset.discovery import coverage, with_flags, written
-from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers
-from calm.files.mooring_file import clamps_down
+from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers, packed
+from calm.files.pieces import clamps_down
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
 from calm.motion.line_response import Forward, LineResponse, forwards_of, labels_of, points
@@ -65,28 +62,14 @@ _OF_DOCUMENT = {
 """Attributes of ACDD and OceanSITES, by the keys of `document:`."""
 
 
-class MotionWork(BatchWork):
-    """The blocks of a result that are missing."""
-
-    def __init__(
-        self,
-        task: Task,
-        record: MeasuredRecord,
-        store: Store,
-        progress: Callable[[Progress], None] | None,
-        stop: Event,
-    ) -> None:
-        super().__init__(Batch(task.mooring), record, store, None, progress, stop)
-        self._task = task
-
-    def _solve(self, number: int) -> None:
-        start, behind = self.store.span(number)
-        profiles, more = self._task.columns(start, behind)
-        time = self.record.time[start:behind]
-        flags = depth_flags(self._task.measured.at(slice(start, behind)), profiles)
-        arrays = laid_out(self.store.layout, time, {**vars(profiles), **more, **flags})
-        self.count(profiles)
-        self._keep(number, [arrays])
+def solve_times(task: Task, layout: ResultLayout, start: int) -> SolvedBlock:
+    """Estimate the times of the block that begins at `start`."""
+    stop = start + BLOCK
+    profiles, more = task.columns(start, stop)
+    flags = depth_flags(task.measured.at(slice(start, stop)), profiles)
+    columns = {**vars(profiles), **more, **flags}
+    arrays = laid_out(layout, task.measured.time[start:stop], columns)
+    return SolvedBlock(profiles.status, packed(layout, BLOCK, arrays))
 
 
 def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
@@ -95,7 +78,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     Flags of depths, serial numbers, and attributes. Its date is that of SOURCE_DATE_EPOCH, and only
     that: the same input gives the same bytes.
     """
-    layout, mooring, measured = layout_of(task.mooring, record, None), task.mooring, task.measured
+    layout, mooring, measured = layout_of(task.mooring, record), task.mooring, task.measured
     alone = task.common.inferred
     names = () if alone else level_names(measured, labels_of(mooring))
     added = {"sensor": len(measured.label), "level": len(names)}
@@ -141,7 +124,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     return ResultLayout(sizes, with_flags(variables, FLAGGED), attributes)
 
 
-def about(mooring: Mooring) -> Attributes:
+def about(mooring: Design) -> Attributes:
     """Return what `document:` and `deployed:` of a mooring file say, as archives call it."""
     file = mooring.file
     said: Attributes = {}
@@ -195,14 +178,14 @@ def estimate_in_memory(
 
 
 BLOCK = 512
-"""Times that are estimated, and kept, together."""
+"""Times that are estimated, and written, together."""
 
 
 @dataclass(frozen=True)
 class Task:
     """Hold what is to be estimated: `measured` has the sensors that are used."""
 
-    mooring: Mooring
+    mooring: Design
     measured: MooringMeasurements
     common: Common
 
@@ -292,16 +275,3 @@ class MeasuredRecord(Record):
 
     def close(self) -> None:
         """Do nothing: no file is open."""
-
-    def digest(self, check: Callable[[], None] = lambda: None) -> str:
-        """SHA-256 of all that was measured."""
-        one = self._measured
-        digest = hashlib.sha256(" ".join(one.label).encode())
-        tide = np.zeros(0) if one.tide is None else one.tide
-        arrays = (one.time.astype("M8[ns]").view("<i8"), one.point, one.depth, one.level_depth,
-                  one.level_point, one.level_sensor, one.u, one.v, one.flag, tide)  # fmt: skip
-        for array in arrays:
-            check()
-            digest.update(str(array.shape).encode())
-            digest.update(np.ascontiguousarray(array).data)
-        return digest.hexdigest()

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import DATUM, ROBUST, LinearLaw
 from calm.motion.correction import Task
-from calm.motion.estimate import measured_state, posterior
+from calm.motion.estimate import measured_state
 from calm.motion.line_response import LineResponse
 from calm.motion.measurements import chosen_times, interpolated
 from calm.motion.remarks import ALL, LIKELY, NO_TIME, Fault
@@ -73,14 +73,14 @@ Weighed = list[tuple[Suspect, float]]
 
 def diagnosed(task: Task) -> tuple[Fault, ...]:
     """Return what is wrong with the sensors, the currents and the line, the likeliest first."""
-    law, causes = law_near(task, task)
+    law, causes = law_near(task)
     if law is None or len(law.time) < FEWEST:
         return ()
     return Diagnosis(task, law, causes).faults()
 
 
-def law_near(task: Task, whole: Task) -> tuple[LinearLaw | None, list[Suspect]]:
-    """Return what the times say of the sensors of the whole, near the state of those of a task.
+def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
+    """Return what the times say of the sensors, near the state of a task.
 
     And what may be wrong with the line and its currents, with what it does to them.
     """
@@ -92,12 +92,6 @@ def law_near(task: Task, whole: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     moments = LineResponse(task.measured.at(times), *task.forwards)
     fixed = replace(common, covariance=np.zeros_like(common.covariance))
     here = unknown_state(moments, fixed) if alone else measured_state(moments, fixed)
-    if whole is not task:
-        moments = LineResponse(whole.measured.at(times), *task.forwards)
-        common = whole.common
-        fixed = replace(common, covariance=np.zeros_like(common.covariance))
-        still, spread = moments.forward.still, here.way.spread
-        here = replace(here, found=posterior(moments.measured, here.at, spread, fixed, still))
     law = linear_law(moments, common, here, task.measured.time[[0, -1]])
     return law, [] if alone else list(line_suspects(task, moments, here.way, here.at))
 
@@ -105,11 +99,9 @@ def law_near(task: Task, whole: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 class Diagnosis:
     """The pressures of a record, weighed."""
 
-    def __init__(
-        self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = (), judged: str = ""
-    ) -> None:
+    def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes
-        self.label, self.law, self.judged = task.measured.label, law, judged
+        self.label, self.law = task.measured.label, law
         self.measured = task.measured
         depth = float(task.mooring.water.depth) * (SEABED if task.common.inferred else DATUM)
         known = common_beforehand(task.common.factors, depth, task.measured, task.common.gap)
@@ -210,7 +202,7 @@ class Diagnosis:
             if fault.kind == "clock":
                 least *= max(self.step, 1.0)
                 deviation = float(np.hypot(deviation, FINEST * self.step))
-            if abs(size) < least and fault.label != self.judged:
+            if abs(size) < least:
                 continue
             fault = fault.sized(size, deviation)
             result.append((replace(suspect, fault=fault), log))
@@ -278,7 +270,7 @@ class Diagnosis:
             mine = np.arange(len(self.label)) == j
             codes = dict.fromkeys(common_unknowns.RAMPS, "drift")
             # currents that are learnt from a sensor agree with its zero
-            if not self.alone or label == self.judged:
+            if not self.alone:
                 codes[0] = "offset"
             if first[j] > 0:
                 codes[int(first[j])] = "slip"

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from calm.motion import common_unknowns, line_response
 from calm.motion.common_unknowns import Common
-from calm.motion.line_response import Linear, LineResponse, ReadCurrents
+from calm.motion.currents_law import Linear, ReadCurrents
+from calm.motion.line_response import LineResponse
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats
 

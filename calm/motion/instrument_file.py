@@ -62,9 +62,7 @@ class Instruments:
         return ONE if self.along is None else SEVERAL
 
 
-def read_instruments(
-    given: Path, line: LinePlaces, *, replacing: bool
-) -> tuple[list[Instruments], list[str]]:
+def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], list[str]]:
     """Return what a file or a folder of files holds, before anything is estimated, and what is said
     of who is who.
 
@@ -72,7 +70,6 @@ def read_instruments(
     ----------
     given : the file, or a folder of .nc files
     line : its parts
-    replacing : whether depths that a file has may be replaced
 
     Raises
     ------
@@ -83,7 +80,7 @@ def read_instruments(
         the line.
     """
     seabed = float(line.still[-1])
-    found = [_read(path, seabed, replacing) for _, path in files_given([str(given)])]
+    found = [_read(path, seabed) for _, path in files_given([str(given)])]
     everyone = [one for file in found for one in file.who]
     try:
         points, said = points_of(everyone, line)
@@ -94,7 +91,7 @@ def read_instruments(
             ], said  # fmt: skip
 
 
-def _read(path: Path, seabed: float, replacing: bool) -> Instruments:
+def _read(path: Path, seabed: float) -> Instruments:
     if path.is_dir():
         raise refused(path, "is not NetCDF, RODB, .cnv or RBR's table")
     with cf_files.opened(path) as dataset:
@@ -108,7 +105,7 @@ def _read(path: Path, seabed: float, replacing: bool) -> Instruments:
             raise cf_files.UnreadableError("has no times")
         dimension = str(dataset[clock].dims[0])
         along, who = _who(dataset, dimension, seabed, path)
-        _refuse_depths(dataset, path, dimension, along, replacing)
+        _refuse_depths(dataset, path, dimension, along)
         return Instruments(
             path, clock, dimension, along, cf_files.read_times(dataset, clock), who, ()
         )
@@ -133,9 +130,7 @@ def _who(
     return None, tuple(alone)
 
 
-def _refuse_depths(
-    dataset: Dataset, path: Path, time: str, along: str | None, replacing: bool
-) -> None:
+def _refuse_depths(dataset: Dataset, path: Path, time: str, along: str | None) -> None:
     names = ONE if along is None else SEVERAL
     counted = [name for name in names if dataset.sizes.get(name, 1) > 1]
     if along in names:
@@ -149,10 +144,8 @@ def _refuse_depths(
         name for name in names
         if name in dataset.variables and (along is not None or time in dataset[name].dims)
     ]  # fmt: skip
-    if there and not replacing:
-        raise UsageError(
-            f"--onto: {path} has `{there[0]}` already; with --replace the copy has another"
-        )
+    if there:
+        raise UsageError(f"--onto: {path} has `{there[0]}` already; rename it there")
 
 
 def write_depths(
@@ -250,9 +243,9 @@ def at_own_times(
 
 
 def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
-    """Return a file without the depths that it had; the place of its one instrument is renamed."""
+    """Return a file without the nominal depth of its one instrument, which is renamed."""
     if instruments.along is not None:
-        return copy.drop_vars([name for name in SEVERAL if name in copy.variables])
+        return copy
     nominal = None
     if "DEPTH" in copy.variables and instruments.dimension not in copy["DEPTH"].dims:
         nominal = copy["DEPTH"].squeeze(drop=True).variable

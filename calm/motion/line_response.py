@@ -8,7 +8,7 @@ covariance are given. A current that is missing at a level comes from its neighb
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import product
 
@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.profiles import Batch, Profiles
-from calm.case import Mooring
-from calm.files.mooring_file import clamps_down
+from calm.case import Design
+from calm.files.pieces import clamps_down
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
+from calm.motion.currents_law import Linear, ReadCurrents
 from calm.motion.measurements import FREE, MooringMeasurements
 from calm.physics.line import Floats, Integers, Line
 
@@ -27,50 +28,6 @@ STEP = 0.05
 """Of the logarithms by which the derivatives are found."""
 APART = 1e-6
 """Between levels of instruments that hang in one place [m]."""
-
-
-@dataclass(frozen=True)
-class ReadCurrents:
-    """One way to read the currents of some times, and where it puts the line.
-
-    Attributes
-    ----------
-    level : (n, k) depths of the levels [m]
-    u, v : (n, k) [m/s]
-    spread : (n, g, g) prior covariance of the logarithms
-    """
-
-    level: Floats
-    u: Floats
-    v: Floats
-    spread: Floats
-
-
-@dataclass(frozen=True)
-class Linear:
-    """The depths of the points near a state of the currents.
-
-    Attributes
-    ----------
-    logs : (n, g) the state
-    depth : (n, p) there [m]
-    slope : (n, p, g) with the state
-    common : (n, p, f) with the logarithms of the common factors
-    """
-
-    logs: Floats
-    depth: Floats
-    slope: Floats
-    common: Floats
-
-    def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the line at another state, with slopes that lead there from this one (Broyden)."""
-        step = logs - self.logs
-        size = (step**2).sum(axis=1)[:, None]
-        miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)
-        share = np.divide(step, size, out=np.zeros_like(step), where=size > 1e-6)
-        slope = self.slope + np.nan_to_num(miss)[:, :, None] * share[:, None, :]
-        return Linear(logs, depth, slope, self.common)
 
 
 class LineResponse:
@@ -204,9 +161,9 @@ class Forward:
     first, then the components in the order of the file.
     """
 
-    def __init__(self, mooring: Mooring, factors: Mapping[str, float]) -> None:
+    def __init__(self, mooring: Design, factors: Mapping[str, float]) -> None:
         line = with_factors(mooring.line, factors)
-        self.mooring = Mooring(mooring.file, line=line, water=mooring.water)
+        self.mooring = Design(mooring.file, lines=(line,), given_water=mooring.water)
         self._batch = Batch(self.mooring)
 
     @cached_property
@@ -236,7 +193,7 @@ class Forward:
         return points(self.solve(depth, u, v))
 
 
-def forwards_of(mooring: Mooring, common: Common) -> tuple[Forward, dict[str, Forward]]:
+def forwards_of(mooring: Design, common: Common) -> tuple[Forward, dict[str, Forward]]:
     """Return the mooring at the common factors, and a step from each."""
     shifted = {
         name: Forward(mooring, {**common.factors, name: value * float(np.exp(STEP))})
@@ -250,13 +207,13 @@ def points(profiles: Profiles) -> Floats:
     return np.hstack([profiles.clamp_depth, profiles.depth_top])
 
 
-def labels_of(mooring: Mooring) -> tuple[str, ...]:
+def labels_of(mooring: Design) -> tuple[str, ...]:
     """Return the labels of all points, see `Forward`."""
     pieces = mooring.file.pieces
     return (*(clamp.label for clamp in clamps_down(pieces)), *(piece.label for piece in pieces))
 
 
-def instruments_of(mooring: Mooring) -> list[int]:
+def instruments_of(mooring: Design) -> list[int]:
     """Return the points that may be instruments: all clamps, and the pieces whose role it is."""
     pieces = mooring.file.pieces
     clamps = len(clamps_down(pieces))

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from calm.case import Mooring
+from calm.case import Design
 from calm.errors import UsageError, nearest
-from calm.files.mooring_file import clamps_down
+from calm.files.pieces import clamps_down
 from calm.motion import line_response
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats
@@ -36,7 +36,7 @@ class LinePlaces:
     still: Floats
 
 
-def places_of(mooring: Mooring) -> LinePlaces:
+def places_of(mooring: Design) -> LinePlaces:
     """Return the points of a mooring, with the serial numbers of what was deployed."""
     return LinePlaces(
         mooring.file.path, line_response.labels_of(mooring), serials_of(mooring),
@@ -44,7 +44,7 @@ def places_of(mooring: Mooring) -> LinePlaces:
     )  # fmt: skip
 
 
-def serials_of(mooring: Mooring) -> tuple[str, ...]:
+def serials_of(mooring: Design) -> tuple[str, ...]:
     """Return the serial number of each clamp and piece, as deployed; empty where not known."""
     file = mooring.file
     deployed = () if file.deployed is None else file.deployed.items

@@ -3,32 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from threading import Event
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from calm.batch.blocks import Progress, in_threads, write_solved
 from calm.batch.finished import open_result
-from calm.batch.profiles import processors
-from calm.batch.run import BatchOutcome, run_kept
-from calm.batch.work import Progress
-from calm.batch.work_store import identity_of, open_store, to_text
-from calm.case import Mooring
+from calm.batch.resolved import InputHash, resolved_input, with_input
+from calm.case import Design
 from calm.dataset.discovery import hashed
 from calm.errors import UsageError, not_among, unknown
+from calm.files.mooring_file import refuse_all_but_moorings
 from calm.motion import matching, sensors
-from calm.motion.common_unknowns import MISPLACED, SPIKE
-from calm.motion.correction import BLOCK, MeasuredRecord, MotionWork, Task, motion_layout
-from calm.motion.diagnosis import FEWEST, Diagnosis, diagnosed, law_near
+from calm.motion.correction import BLOCK, MeasuredRecord, Task, motion_layout, solve_times
+from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import FACTORS, instruments_of
 from calm.motion.matching import without
-from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, joined, read_currents
-from calm.motion.remarks import ALL, LIKELY, NO_TIME, Fault, SensorFit
+from calm.motion.measurements import CurrentMeasurements, joined, read_currents
+from calm.motion.remarks import ALL, Fault
 from calm.motion.study import MotionEstimate, cross_validated, judged, prepare, several
-from calm.motion.suspects import Suspect, distances_of, torn
+from calm.motion.suspects import distances_of, torn
 from calm.records.instrument_series import split_label
 
 if TYPE_CHECKING:
@@ -70,7 +69,6 @@ class RecoveredMooring:
     hold_out : labels of sensors that are hidden, and at which the result is judged
     cross_validate : whether each used sensor is hidden in turn
     correct : of `CORRECTABLE`, what is taken off where nothing else is as likely
-    judge : label of a sensor that is hidden, and of which is said whether it fits; empty of none
     sea_level : the height of the sea surface, as a path
     flags : of the pressures that count as measured, separated by commas
     gap : longest time between two values that are interpolated
@@ -85,7 +83,7 @@ class RecoveredMooring:
         cannot be done.
     """
 
-    mooring: Mooring
+    mooring: Design
     pressures: Sequence[str]
     currents: Sequence[str] = ()
     match: str = "label"
@@ -93,7 +91,6 @@ class RecoveredMooring:
     hold_out: Sequence[str] = ()
     cross_validate: bool = False
     correct: Sequence[str] = ()
-    judge: str = ""
     sea_level: Path | None = None
     flags: str = "1,2"
     gap: np.timedelta64 = GAP
@@ -108,8 +105,7 @@ class RecoveredMooring:
                 what = f"--correct: `{kind}` cannot be taken off"
                 raise UsageError(unknown(what, kind, CORRECTABLE))
         self.names = fitted(self.fit, bool(self.currents))
-        judged_too = [self.judge] if self.judge and self.judge not in self.hold_out else []
-        self.hidden = [*self.hold_out, *judged_too]
+        self.hidden = [*self.hold_out]
         self._read()
         self.shapes: list[CurrentMeasurements] = []
         if self.prior is not None:
@@ -119,9 +115,6 @@ class RecoveredMooring:
             depth = float(self.mooring.water.depth)
             self.shapes = read_currents([self.prior], depth, None, self.declination, limit)
             self.notes += [f"{one.source}: {note}" for one in self.shapes for note in one.notes]
-        if self.judge and self.judge not in self.measured.label:
-            what = f"--judge: no sensor is called `{self.judge}`"
-            raise UsageError(unknown(what, self.judge, self.measured.label))
         if self.cross_validate:
             several(self.measured, self.hidden)
 
@@ -195,13 +188,12 @@ class RecoveredMooring:
         workers: int | None = None,
         progress: Callable[[Progress], None] | None = None,
         tell: Callable[[str], None] = lambda _: None,
-        stop: Event | None = None,
-    ) -> BatchOutcome:
+    ) -> dict[str, int]:
         """Estimate what is common to the record, take off what is wrong, and write every time.
 
         Parameters
         ----------
-        output, workers, progress, tell, stop : see `calm.batch.run.run_batch`
+        output, workers, progress, tell : see `calm.batch.run.run_batch`, as what is returned
         """
         task = self._prepared(tell)
         found = diagnosed(task) if self.correct else ()
@@ -210,26 +202,23 @@ class RecoveredMooring:
             self._faults = tuple(replace(one, corrected=True) for one in wrong)
             self._read()
             task = self._prepared(tell)
-        self.task, stop = task, stop or Event()
+        self.task = task
         options = {
             "fit": sorted(self.names),
             "hold_out": sorted(self.hidden),
             "correct": self.source.get("corrected", ""),
             "prior": self.source.get("prior", ""),
+            "sensors": list(self.measured.label),
         }
-        record = MeasuredRecord(self.measured, self.source, self.notes)
-
-        def identify() -> str:
-            return to_text(identity_of(self.mooring, record, options, stop))
-
-        def begin(folder: Path, identity: str) -> MotionWork:
-            store = open_store(folder, motion_layout(task, record), BLOCK, identity)
-            return MotionWork(task, record, store, progress, stop)
-
-        def solve(work: MotionWork) -> None:
-            work.here(workers or processors())
-
-        return run_kept(output, identify, begin, solve, tell)
+        text = resolved_input(self.mooring, self.measured.time, {"options": options})
+        measured, arrays = InputHash(text), vars(self.measured).items()
+        measured.add(one for name, one in arrays if name != "label")
+        layout = motion_layout(task, MeasuredRecord(self.measured, self.source, self.notes))
+        more = {**with_input(text), **measured.attributes()}
+        layout = replace(layout, attributes={**layout.attributes, **more})
+        starts = range(0, len(self.measured.time), BLOCK)
+        with closing(in_threads(partial(solve_times, task, layout), starts, workers)) as solved:
+            return write_solved(layout, BLOCK, solved, output, progress)
 
     def study(
         self,
@@ -247,8 +236,6 @@ class RecoveredMooring:
         """
         faults = (*self._faults, *diagnosed(self.task))
         study = replace(judged(self.task, self.measured, result, faults), notes=tuple(self.notes))
-        if self.judge:
-            study = replace(study, judged=fit_of(self.task, self.measured, self.judge))
         if self.cross_validate:
             each = cross_validated(
                 self.mooring, self.measured, self.names, self.hidden, tell, workers, self.shapes
@@ -258,76 +245,8 @@ class RecoveredMooring:
         return study
 
 
-FITS = 5.0
-"""Odds from which it does. A zero known to a metre speaks 20 to 1 at most against one off by 20."""
-
-
-def fit_of(task: Task, measured: MooringMeasurements, label: str) -> SensorFit:
-    """Return whether the pressures of a sensor that was hidden fit the line.
-
-    That they do is weighed, at even odds, against a place or a zero that is wrong, and against
-    readings that say nothing of the line; other faults of it are as rare as those of any sensor.
-    The others may have faults as well.
-
-    Parameters
-    ----------
-    task : in which it is hidden
-    measured : with it
-    label : its name
-    """
-    kept = without(
-        measured, [one for one in measured.label if one not in (*task.measured.label, label)]
-    )
-    at, one, common = kept.label.index(label), task.measured, task.common
-    with_it = replace(one, label=kept.label, point=kept.point, depth=kept.depth)
-    common = replace(
-        common,
-        offset=np.insert(common.offset, at, 0.0),
-        moved=np.insert(common.moved, at, 0.0),
-        since=np.insert(common.since, at, NO_TIME),
-        until=None if common.until is None else np.insert(common.until, at, NO_TIME),
-        covariance=np.eye(len(common.value) + 2),
-    )
-    whole = Task(task.mooring, with_it, common)
-    law, _ = law_near(task, whole)
-    if law is None or law.known[:, at].sum() < FEWEST:
-        return SensorFit(label, None, 1.0, "")
-    diagnosis = Diagnosis(whole, law, judged=label)
-    if diagnosis.alone:  # what the line is wrong by where no pressure was is for all times alike
-        own = with_it.depth[:, at]
-        zero = len(common.factors) + 1 + at
-        wrong = common.worst * float(np.nanmean(own) - np.nanpercentile(own, 5.0))
-        diagnosis.spread[zero, zero] += wrong**2
-    taken: list[Suspect] = []
-    while True:
-        both = diagnosis.weighed(taken)
-        mine = [one for one in both if label in (one[0].fault.label, one[0].fault.other)]
-        others = [one for one in both if label not in (one[0].fault.label, one[0].fault.other)]
-        best = max(others, key=lambda one: one[1], default=None)
-        if best is None or best[1] < max(np.log(LIKELY), *(log for _, log in mine)):
-            break
-        taken.append(best[0])
-    against = [log - np.log(MISPLACED) * (one.fault.kind == "offset") for one, log in mine]
-    wide = law.expected.copy()  # as of readings that say nothing of the line
-    wide[:, at, at] += np.where(law.known[:, at], SPIKE**2, 0.0)
-    other = Diagnosis(whole, replace(law, expected=wide))
-    other.spread = diagnosis.spread
-    nothing = other.fitted(taken, None, 1.0).log
-    nothing -= diagnosis.fitted(taken, None, 1.0).log
-    size = np.linalg.slogdet(wide)[1] - np.linalg.slogdet(law.expected)[1]
-    nothing -= 0.5 * float(size.sum())
-    for_it = np.logaddexp.reduce([0.0, *(log for _, log in others)])
-    against_it = np.logaddexp.reduce([*against, nothing])
-    odds = float(np.exp(np.clip(for_it - against_it, -50.0, 50.0)))
-    fits = None if 1.0 / LIKELY < odds < FITS else odds > 1.0
-    reason = ""
-    if fits is False and max(against) > nothing:
-        reason = mine[int(np.argmax(against))][0].fault.sentence()
-    return SensorFit(label, fits, odds, reason)
-
-
 def estimate_motion(
-    mooring: Mooring,
+    mooring: Design,
     pressures: Sequence[str | Path],
     currents: Sequence[str | Path] = (),
     *,
@@ -340,7 +259,6 @@ def estimate_motion(
     gap: float | None = None,
     declination: float | None = None,
     correct: Sequence[str] = (),
-    judge: str = "",
     prior: str | Path | None = None,
     workers: int | None = None,
 ) -> MotionEstimate:
@@ -362,7 +280,6 @@ def estimate_motion(
     declination : added to the directions of the currents [degrees]
     correct : what is taken off where a sensor is wrong: `clock`, `gain`, `offset`, `drift`; `air`
         of absolute pressures
-    judge : label of a sensor that is hidden, and of which is said whether it fits the line
     prior : a record of currents whose shapes are taken, without `currents`
     workers : threads; one for each processor that may be used where not given
 
@@ -371,9 +288,7 @@ def estimate_motion(
     InputError, UsageError
         A file cannot be read or does not belong to the mooring; too few sensors are left.
     """
-    if not isinstance(mooring, Mooring):
-        kind = type(mooring).__name__
-        raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
+    refuse_all_but_moorings(mooring.file)
     recovery = RecoveredMooring(
         mooring,
         [str(path) for path in pressures],
@@ -383,7 +298,6 @@ def estimate_motion(
         hold_out,
         cross_validate,
         correct,
-        judge,
         None if sea_level is None else Path(sea_level),
         ",".join(map(str, flags)),
         GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"),

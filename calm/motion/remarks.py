@@ -141,40 +141,6 @@ class Fault:
         return f"{self.label}: {text}{also}"
 
 
-@dataclass(frozen=True)
-class SensorFit:
-    """Tell whether the pressures of a sensor fit the line.
-
-    Attributes
-    ----------
-    fits : None where it cannot be told
-    odds : that they fit, against that they do not
-    reason : what is wrong with it instead, in a sentence; empty where that is not clear
-    """
-
-    label: str
-    fits: bool | None
-    odds: float
-    reason: str
-
-    def sentence(self) -> str:
-        """Return what is said of it."""
-        if self.fits is None:
-            return f"{self.label}: whether its pressures fit the line cannot be told ({self._odds})"
-        return (
-            f"{self.label}: its pressures {'fit' if self.fits else 'do not fit'} the line "
-            f"({self._odds}){f'; {self.reason}' if self.reason else ''}"
-        )
-
-    @property
-    def _odds(self) -> str:
-        for_it = self.odds >= 1.0
-        times = min(self.odds if for_it else 1.0 / self.odds, 1e6)
-        more = "more than " if times == 1e6 else ""
-        figure = f"{more}{times:.0f}" if times >= 10.0 else f"{times:.1f}"
-        return f"odds {figure} to 1 that they do{'' if for_it else ' not'}"
-
-
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
     """Return the times at which the current of a level is more likely false than not, by its name.
 

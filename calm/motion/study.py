@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.case import Mooring
+from calm.case import Design
 from calm.errors import UsageError, unknown
 from calm.motion.correction import Task, estimate_in_memory
 from calm.motion.line_response import Forward, instruments_of, labels_of
@@ -21,7 +21,6 @@ from calm.motion.remarks import (
     OF_LINE,
     Agreement,
     Fault,
-    SensorFit,
     agreement,
     alone_remarks,
     calm_times,
@@ -80,7 +79,6 @@ class MotionEstimate:
     fits : whether the line fits its pressures in these currents
     remarks : doubts about the data, in sentences
     false : times at which the current of a level looks false, by its name
-    judged : whether the sensor of `judge` fits the line, with the odds; None of none
     notes : what was said of the input, in sentences
     """
 
@@ -94,7 +92,6 @@ class MotionEstimate:
     fits: bool
     remarks: tuple[str, ...]
     false: Mapping[str, NDArray[np.datetime64]]
-    judged: SensorFit | None = None
     notes: tuple[str, ...] = ()
 
     def faults(self, *, of_line: bool) -> list[Fault]:
@@ -126,7 +123,7 @@ class MotionEstimate:
 
 
 def prepare(
-    mooring: Mooring,
+    mooring: Design,
     measured: MooringMeasurements,
     names: Sequence[str],
     hidden: Sequence[str],
@@ -280,7 +277,7 @@ def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
 
 
 def cross_validated(
-    mooring: Mooring,
+    mooring: Design,
     measured: MooringMeasurements,
     names: Sequence[str],
     hidden: Sequence[str],

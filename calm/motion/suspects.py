@@ -14,11 +14,12 @@ from itertools import combinations
 
 import numpy as np
 
-from calm.case import Mooring
-from calm.files.mooring_file import clamps_down
+from calm.case import Design
+from calm.files.pieces import clamps_down
 from calm.motion import line_response
 from calm.motion.correction import Task
-from calm.motion.line_response import FACTORS, STEP, Forward, Linear, LineResponse, ReadCurrents
+from calm.motion.currents_law import Linear, ReadCurrents
+from calm.motion.line_response import FACTORS, STEP, Forward, LineResponse
 from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
@@ -196,7 +197,7 @@ STRETCHED, AMISS = 1.25, 20.0
 """How many times as long as it was cut a line is at most; how far off pressures may be [m]."""
 
 
-def distances_of(mooring: Mooring) -> Floats:
+def distances_of(mooring: Design) -> Floats:
     """Return how far each clamp and piece is from the top along the line as cut (p,) [m]."""
     pieces = mooring.file.pieces
     tops = np.cumsum([0.0, *mooring.line.length.tolist()])[: len(pieces)]

@@ -19,12 +19,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.case import Mooring
+from calm.case import Design
 from calm.errors import UsageError
 from calm.motion import line_response
 from calm.motion.common_unknowns import Common
+from calm.motion.currents_law import Linear, ReadCurrents, SpeedLaw
 from calm.motion.estimate import CurrentsState, Posterior, posterior
-from calm.motion.line_response import Forward, Linear, LineResponse, ReadCurrents
+from calm.motion.line_response import Forward, LineResponse
 from calm.motion.measurements import FREE, CurrentMeasurements, MooringMeasurements
 from calm.motion.whole_record import common_beforehand, fixed_slopes, repeated
 from calm.physics.line import Floats, Integers
@@ -65,27 +66,7 @@ AGAIN = 3
 """Steps from a fit that is kept to that of another time."""
 
 
-@dataclass(frozen=True)
-class SpeedLaw:
-    """Hold what is known of the speeds before a time is looked at, and the times it came from.
-
-    Attributes
-    ----------
-    mean, covariance : (k,), (k, k) of the logarithms of the speeds [m/s]
-    kept : fits of the times that were learnt from, the first at the mean; states are relative to it
-    """
-
-    mean: Floats
-    covariance: Floats
-    kept: Linear | None = None
-
-    def read(self, level: Floats) -> ReadCurrents:
-        """Return the currents at levels (n, k), whose direction is the same at all of them [m]."""
-        u = np.tile(np.exp(self.mean), (len(level), 1))
-        return ReadCurrents(level, u, np.zeros_like(u), np.tile(self.covariance, (len(u), 1, 1)))
-
-
-def with_knots(measured: MooringMeasurements, mooring: Mooring) -> MooringMeasurements:
+def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasurements:
     """Return what was measured with the knots as its levels, whose currents are not known.
 
     The uppermost is where the top of the line is in strong currents, by the uppermost sensor: above
@@ -160,7 +141,7 @@ def shaped_law(
 
 
 def learn_currents(
-    mooring: Mooring,
+    mooring: Design,
     measured: MooringMeasurements,
     names: Sequence[str],
     tell: Callable[[str], None] = lambda _: None,

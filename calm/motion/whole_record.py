@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.case import Mooring
+from calm.case import Design
 from calm.motion import common_unknowns, line_response
 from calm.motion.common_unknowns import RAMPS, ROBUST, Common, LinearLaw
 from calm.motion.estimate import CurrentsState, measured_state
@@ -35,7 +35,7 @@ LONGEST_MEMORY = 25
 """Times over which errors that repeat are looked for."""
 
 
-def assumed(mooring: Mooring, measured: MooringMeasurements, names: Sequence[str]) -> Common:
+def assumed(mooring: Design, measured: MooringMeasurements, names: Sequence[str]) -> Common:
     """Return what is common before any pressure is looked at.
 
     Parameters
@@ -70,9 +70,7 @@ def common_beforehand(
     return Common(factors, 0.0, none, none, never, np.diag(np.square(spread)), 1.0, gap)
 
 
-def estimate_common(
-    mooring: Mooring, measured: MooringMeasurements, names: Sequence[str]
-) -> Common:
+def estimate_common(mooring: Design, measured: MooringMeasurements, names: Sequence[str]) -> Common:
     """Maximum a posteriori by Gauss-Newton; the covariance by Laplace.
 
     The currents of each time are integrated over, by the slopes at what was measured; the mean of

@@ -5,9 +5,9 @@ where a march stands, and the record it may leave.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
-from functools import partial
+from functools import partial, wraps
 from math import inf
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from calm.physics.compiled import within
 from calm.physics.drag import Friction
 from calm.physics.hull import Floating
-from calm.physics.seawater import REFERENCE_VISCOSITY as REFERENCE_VISCOSITY
+from calm.physics.seawater import REFERENCE_VISCOSITY
 from calm.physics.strumming import BourgetMarichal
 
 if TYPE_CHECKING:
@@ -156,23 +156,12 @@ Booleans = NDArray[np.bool_]
 
 
 class _Arrays:
-    """Freezes every array field as float64, int64 or bool and asserts that it is finite.
+    """A frozen dataclass of arrays, whose arguments `_of_arrays` converts."""
 
-    What is frozen already, as of the line that another differs from, is taken as it is.
-    """
-
-    def __post_init__(self) -> None:
-        for column in fields(self):  # type: ignore[arg-type]
-            if column.type not in _DTYPES:
-                continue
-            value, kind = getattr(self, column.name), _DTYPES[str(column.type)]
-            if type(value) is np.ndarray and not value.flags.writeable and value.dtype == kind:
-                continue
-            value = np.array(value, dtype=kind, ndmin=1)
-            if not np.isfinite(value).all():
-                raise ValueError(f"{type(self).__name__}.{column.name} must be finite")
-            value.setflags(write=False)
-            object.__setattr__(self, column.name, value)
+    @classmethod
+    def completed(cls, given: dict[str, Any]) -> dict[str, Any]:
+        """Return the arguments with those that depend on others, before they are converted."""
+        return given
 
     def _same_length(self, *names: str) -> None:
         lengths = {name: len(getattr(self, name)) for name in names}
@@ -182,18 +171,63 @@ class _Arrays:
 
 _DTYPES: dict[str, Any] = {"Floats": np.float64, "Integers": np.int64, "Booleans": np.bool_}
 
+_OfArrays = TypeVar("_OfArrays", bound=_Arrays)
+
+
+def _of_arrays(made: type[_OfArrays]) -> type[_OfArrays]:
+    """Have a dataclass take whatever numpy makes arrays of, each by the type of its field.
+
+    ValueError: an array has a value that is not finite.
+    """
+    plain = made.__init__
+    names = [column.name for column in fields(made)]  # type: ignore[arg-type]
+    kinds = {
+        column.name: _DTYPES[str(column.type)]
+        for column in fields(made)  # type: ignore[arg-type]
+        if column.type in _DTYPES
+    }
+
+    @wraps(plain)
+    def converting(self: _OfArrays, *given: Any, **named: Any) -> None:
+        arguments = made.completed(dict(zip(names, given, strict=False)) | named)
+        for name, kind in kinds.items():
+            if name in arguments:
+                arguments[name] = _frozen(arguments[name], kind, f"{made.__name__}.{name}")
+        plain(self, **arguments)
+
+    made.__init__ = converting  # type: ignore[method-assign,assignment]
+    return made
+
+
+def _frozen(value: Any, kind: Any, name: str) -> NDArray[Any]:
+    """Return a value as an array of a type; one that is frozen already, as it is."""
+    if type(value) is np.ndarray and not value.flags.writeable and value.dtype == kind:
+        return value
+    array = np.array(value, dtype=kind, ndmin=1)
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite")
+    array.setflags(write=False)
+    return array
+
 
 def _none() -> Floats:
-    return np.zeros(0)
+    return _frozen((), np.float64, "")
 
 
 def _one(value: float) -> Floats:
-    return np.array([value])
+    return _frozen(value, np.float64, "")
 
+
+_ZERO_BY_DEFAULT = {
+    "length": ("lift", "diameter", "push_east", "push_north"),
+    "clamp_at": ("clamp_lift",),
+}
+"""Columns that are zeros if not given, by the column that is as long."""
 
 _CURVES = ("elongation", "drag_curve", "clamp_drag_curve")
 
 
+@_of_arrays
 @dataclass(frozen=True)
 class Line(_Arrays):
     """The n pieces of a line and the m instruments clamped on them.
@@ -260,12 +294,18 @@ class Line(_Arrays):
     drag_curve: tuple[DragCurve | None, ...] = ()
     clamp_drag_curve: tuple[DragCurve | None, ...] = ()
 
+    @classmethod
+    def completed(cls, given: dict[str, Any]) -> dict[str, Any]:
+        """Return the arguments with zeros for forces and diameters that are not given."""
+        absent = {
+            name: np.zeros(np.size(given.get(like, ())))
+            for like, names in _ZERO_BY_DEFAULT.items()
+            for name in names
+            if not np.size(given.get(name, ()))
+        }
+        return given | absent
+
     def __post_init__(self) -> None:
-        for name in ("lift", "diameter", "push_east", "push_north", "clamp_lift"):
-            if not np.size(getattr(self, name)):
-                like = self.clamp_at if name.startswith("clamp_") else self.length
-                object.__setattr__(self, name, np.zeros(np.size(like)))
-        super().__post_init__()
         self._same_length(
             "length", "flexible", "buoyancy", "volume", "normal_drag", "tangential_drag",
             "directional", "compliance", "thinning", "lift", "diameter",
@@ -343,6 +383,7 @@ class Line(_Arrays):
         )
 
 
+@_of_arrays
 @dataclass(frozen=True)
 class Water(_Arrays):
     """The sea: depth, and current and density by level.
@@ -374,7 +415,6 @@ class Water(_Arrays):
     deeper_north: float = 0.0
 
     def __post_init__(self) -> None:
-        super().__post_init__()
         self._same_length("level", "u", "v", "w", "density")
         self._same_length("viscosity_level", "viscosity")
         if not (self.depth > 0.0 and 0.0 < self.gravity < inf):

@@ -6,13 +6,9 @@ Positions are geographic, in degrees north and east, as TEOS-10 takes them.
 from __future__ import annotations
 
 from math import radians, sin
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
-
-if TYPE_CHECKING:
-    from calm.physics.line import Floats
+from numpy.typing import ArrayLike, NDArray
 
 REFERENCE_DENSITY = 1025.0
 """Density of the sea water [kg/m³] for which buoyancies and drags are given."""
@@ -28,7 +24,7 @@ SOUTHERNMOST = -86.0
 """No sea, and no entry in the atlas of its composition, lies beyond this latitude [degrees]."""
 
 
-def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> Floats:
+def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> NDArray[np.float64]:
     """Dynamic viscosity of sea water [Pa s].
 
     Parameters
@@ -47,13 +43,17 @@ def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> Floats:
     pure = 4.2844e-5 + 1.0 / (0.157 * (t + 64.993) ** 2 - 91.296)
     a = 1.541 + (1.998e-2 - 9.52e-5 * t) * t
     b = 7.974 + (-7.561e-2 + 4.724e-4 * t) * t
-    viscosity: Floats = pure * (1.0 + (a + b * s) * s)
+    viscosity: NDArray[np.float64] = pure * (1.0 + (a + b * s) * s)
     return viscosity
 
 
-def kinematic_viscosity(temperature: ArrayLike, salinity: ArrayLike, density: ArrayLike) -> Floats:
+def kinematic_viscosity(
+    temperature: ArrayLike, salinity: ArrayLike, density: ArrayLike
+) -> NDArray[np.float64]:
     """Kinematic viscosity of sea water [m²/s] of a temperature [°C], salinity, density [kg/m³]."""
-    viscosity: Floats = dynamic_viscosity(temperature, salinity) / np.asarray(density, dtype=float)
+    viscosity: NDArray[np.float64] = dynamic_viscosity(temperature, salinity) / np.asarray(
+        density, dtype=float
+    )
     return viscosity
 
 
@@ -74,7 +74,7 @@ def density(
     depth: ArrayLike,
     latitude: float = MID_LATITUDE,
     longitude: float | None = None,
-) -> Floats:
+) -> NDArray[np.float64]:
     """Density in situ [kg/m³] from what a probe measures.
 
     Parameters
@@ -103,7 +103,9 @@ def density(
     return absolute_density(absolute, conservative, depth, latitude)
 
 
-def potential_density(temperature: ArrayLike, salinity: ArrayLike, depth: ArrayLike) -> Floats:
+def potential_density(
+    temperature: ArrayLike, salinity: ArrayLike, depth: ArrayLike
+) -> NDArray[np.float64]:
     """Density [kg/m³] of water raised to the surface without heat: what lies below is not less.
 
     Parameters
@@ -119,7 +121,7 @@ def potential_density(temperature: ArrayLike, salinity: ArrayLike, depth: ArrayL
     return absolute_density(absolute, gsw.CT_from_t(absolute, temperature, pressure), 0.0)
 
 
-def pressure_at(depth: ArrayLike, latitude: float) -> Floats:
+def pressure_at(depth: ArrayLike, latitude: float) -> NDArray[np.float64]:
     """Return the pressure of the sea [dbar] at depths [m] at a latitude [degrees], by TEOS-10."""
     import gsw
 
@@ -131,7 +133,7 @@ def absolute_density(
     conservative_temperature: ArrayLike,
     depth: ArrayLike,
     latitude: float = MID_LATITUDE,
-) -> Floats:
+) -> NDArray[np.float64]:
     """Density in situ [kg/m³] from TEOS-10's own variables.
 
     Parameters

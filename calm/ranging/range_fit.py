@@ -16,6 +16,7 @@ import numpy as np
 from calm.errors import UsageError
 from calm.files import MooringFile, read_mooring
 from calm.files.editing import Draft, EditError, WorkingFile
+from calm.files.mooring_file import refuse_all_but_moorings
 from calm.physics.line import Booleans, Floats
 from calm.positions import Frame, read_as_minutes
 from calm.quantities import bearing_of, bearing_text
@@ -306,11 +307,10 @@ DEEPER = 0.05
 def located_mooring(path: Path) -> MooringFile:
     """Return the mooring file that a place is for.
 
-    InputError: the file has mistakes. UsageError: it is a tow.
+    InputError: the file has mistakes. UsageError: it is a tow, or has several legs.
     """
     file = read_mooring(path)
-    if file.tow is not None:
-        raise UsageError(f"{path} is a tow; what is deployed is a mooring")
+    refuse_all_but_moorings(file)
     return file
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -124,6 +125,8 @@ def open_current(path: Path) -> xr.Dataset:
     import xarray as xr
 
     if path.is_dir():
+        if find_spec("zarr") is None:
+            raise UnreadableError("is zarr; to read it: pip install 'calm-mooring[cluster]'")
         return xr.open_dataset(
             path, engine="zarr", decode_times=False, cache=False, consolidated=False
         )

@@ -5,10 +5,8 @@ A made record to begin with has thirty days of a tide, a mean flow and a storm s
 
 from __future__ import annotations
 
-import hashlib
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -42,9 +40,6 @@ RULES = (
     "between levels the current is linear in depth, beyond the first and the last it is constant",
 )
 """What holds in every record."""
-
-DIGEST_BLOCK = 8192
-"""Profiles that are read at a time for a digest, which depends on it."""
 
 
 class Record(ABC):
@@ -85,21 +80,6 @@ class Record(ABC):
     @abstractmethod
     def close(self) -> None:
         """Leave the file."""
-
-    def digest(self, check: Callable[[], None] = lambda: None) -> str:
-        """SHA-256 of the times, depths and currents as they are read; the name does not count.
-
-        `check` is called before each part is read.
-        """
-        digest = hashlib.sha256()
-        digest.update(np.ascontiguousarray(self.time, "<M8[ns]").view("<i8").data)
-        for start in range(0, self.count, DIGEST_BLOCK):
-            check()
-            for values in self.profiles(start, min(start + DIGEST_BLOCK, self.count)):
-                if values is not None:
-                    digest.update(str(values.shape).encode())
-                    digest.update(np.ascontiguousarray(values, "<f8").data)
-        return digest.hexdigest()
 
     def __enter__(self) -> Record:
         return self

@@ -14,8 +14,7 @@ from calm.batch.statistics import summary as statistics
 from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
 from calm.batch.statistics.limits import Exceedance
 from calm.batch.statistics.summary import PERCENTILES, Distribution, Response, Summary
-from calm.case import Mooring
-from calm.case.net import Net
+from calm.case import Design
 from calm.checks.finding import State
 from calm.drawing import graph
 from calm.drawing.graph import COLOURS, Graph, LegendEntry, Scale, Stroke, covering, seconds
@@ -23,10 +22,10 @@ from calm.quantities import QUANTITIES, Quantity
 from calm.report import batch_summary, blocks, check_tables
 from calm.report.batch_summary import QUANTITY, TITLES, percent, when
 from calm.report.blocks import Cell, Figure, Prose, ReportPart, Table, number, table_of, words
+from calm.report.folder import write_file
 from calm.report.html import page
 from calm.report.provenance import NOT_JUDGED, made_by, report_of
 from calm.report.result_files import to_json
-from calm.whole_file import put
 
 
 def summary_html(summary: Summary) -> str:
@@ -184,33 +183,27 @@ def _fitted(fit: Fit) -> str:
     return f"{METHODS[fit.method]}: {fitted}; {fit.rules}."
 
 
-def write_summary(
-    result: Path, mooring: Mooring | Net, check: Callable[[], None] = lambda: None
-) -> Summary:
+def write_summary(result: Path, mooring: Design) -> Summary:
     """Gather what a finished result says, and write it beside it, as JSON and as a page.
 
     The result is only read: this can be done, and done again, at any time after it is finished.
 
     Parameters
     ----------
-    result : the .nc file or .zarr folder; RESULT.nc has RESULT.summary.json, RESULT.summary.html,
-        which would be those of a RESULT.zarr beside it too: the later summary takes their place
+    result : RESULT.nc, which then has RESULT.summary.json and RESULT.summary.html
     mooring : that it was solved for
-    check : called now and then while the result is read; what it raises ends that
 
     Raises
     ------
-    OSError
-        A file cannot be written, or there is no room for a temporary one as large as the result
-        is without compression.
     UsageError
-        The result cannot be read.
+        The result cannot be read, a file cannot be written, or there is no room for a temporary
+        one as large as the result is without compression.
     """
     with open_result(result) as stored:
-        summary = statistics.summarize(stored, mooring, result.parent, check, result)
+        summary = statistics.summarize(stored, mooring, result.parent, result)
     document, page = summary_paths(result)
-    put(document, to_json([batch_summary.summary_document(summary)]).encode())
-    put(page, summary_html(summary).encode())
+    write_file(document, to_json([batch_summary.summary_document(summary)]).encode())
+    write_file(page, summary_html(summary).encode())
     return summary
 
 

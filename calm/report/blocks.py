@@ -8,13 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter, itemgetter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES, Quantity
-
-if TYPE_CHECKING:
-    from calm.report.check_facts import CheckFacts
 
 
 @dataclass(frozen=True)
@@ -59,8 +56,7 @@ class Table:
 
     A row of a single cell heads those below it. The rows of a table that is `sortable` may be put
     in another order and chosen from; a `dense` one has more columns than fit with room to spare.
-    One that is to be filled in `by_hand` has rules and room to write; of any other, columns without
-    a word in them are left out.
+    One that is to be filled in `by_hand` has rules and room to write.
     """
 
     title: str
@@ -72,23 +68,22 @@ class Table:
     dense: bool = False
     by_hand: bool = False
 
-    def __post_init__(self) -> None:
-        """Leave out the columns in which no row has a word."""
+    def without_empty_columns(self) -> Table:
+        """Return the table without the columns in which no row has a word, unless `by_hand`."""
         count = len(self.columns)
         full = [row for row in self.rows if len(row) == count]
         kept = [at for at in range(count) if any(row[at] != _EMPTY for row in full)]
-        if full and len(kept) < count and not self.by_hand:
-            for name, value in self._of(kept).items():
-                object.__setattr__(self, name, value)
+        return self._of(kept) if full and len(kept) < count and not self.by_hand else self
 
     def narrow(self) -> Table:
         """Return the table without the columns for which there is no room."""
-        return replace(self, **self._of([n for n, one in enumerate(self.columns) if one.narrow]))
+        return self._of([n for n, one in enumerate(self.columns) if one.narrow])
 
-    def _of(self, kept: Sequence[int]) -> dict[str, Any]:
+    def _of(self, kept: Sequence[int]) -> Table:
         """Columns by their numbers, and their rows; a single cell heads the rows below it."""
         rows = (row if len(row) == 1 else tuple(row[at] for at in kept) for row in self.rows)
-        return {"columns": tuple(self.columns[at] for at in kept), "rows": tuple(rows)}
+        columns = tuple(self.columns[at] for at in kept)
+        return replace(self, columns=columns, rows=tuple(rows))
 
 
 _EMPTY = Cell()
@@ -182,18 +177,13 @@ class ReportPart:
 
 @dataclass(frozen=True)
 class Section:
-    """All that a report says of one mooring or tow; it may be made in a process of its own.
+    """All that a report says of one mooring or tow: its name, and the parts that are printed.
 
-    Attributes
-    ----------
-    name : of the mooring or tow
-    parts : what is printed
-    facts : what is concluded, of a design check
+    A section may be made in a process of its own.
     """
 
     name: str
     parts: tuple[ReportPart, ...]
-    facts: CheckFacts | None = None
 
 
 @dataclass(frozen=True)
@@ -317,6 +307,8 @@ def table_of(
 ) -> Table:
     """Return a table with a row for each item and a column for each field.
 
+    Columns without a word in them are left out, unless the table is filled in by hand.
+
     Parameters
     ----------
     items : a cell among them heads the rows below it
@@ -331,7 +323,8 @@ def table_of(
         for item in (*items, *totals)
     )
     columns = tuple(column for column, _ in fields)
-    return Table(title, columns, tuple(rows), note, len(totals), **more)
+    table = Table(title, columns, tuple(rows), note, len(totals), **more)
+    return table.without_empty_columns()
 
 
 def _cell(shown: Any) -> Cell:

@@ -116,7 +116,7 @@ class CheckFacts:
 
 def facts_of(assessment: Assessment) -> CheckFacts:
     """Return what is signed of a mooring that is judged."""
-    file = replace(assessment.mooring.file, name=assessment.name)
+    file = replace(assessment.file, name=assessment.name)
     every = (*assessment.all_findings(), *assessment.tighter_findings())
     anchors = [one for one in every if one.rule == "anchor-weight" and one.value is not None]
     columns = {
@@ -126,7 +126,7 @@ def facts_of(assessment: Assessment) -> CheckFacts:
     on_the_way = [one for one in assessment.findings if _is_of_the_way(one)]
     return CheckFacts(
         assessment.name,
-        frozenset(one.mooring.file.environment.name or OWN for one in assessment.stands),
+        frozenset(one.leg.file.environment.name or OWN for one in assessment.stands),
         columns | {ON_THE_WAY: by_rule(on_the_way)},
         tuple(title_pairs(file)),
         _file_hash(Path(file.path)),
@@ -165,7 +165,7 @@ def _file_hash(path: Path) -> str | None:
 def _strongest_current(assessment: Assessment) -> StrongestCurrent:
     found = []
     for stand in assessment.stands:
-        water = stand.mooring.water
+        water = stand.leg.water
         level = int(np.hypot(water.u, water.v).argmax())
         speed = hypot(water.u[level], water.v[level])
         found.append((speed, float(water.level[level]), stand.environment))
@@ -260,8 +260,10 @@ def _cut(table: Table, lines: float) -> Table:
     total = accumulate(_lines_of(row, table.columns, signs) for row in table.rows)
     kept = max(sum(each <= lines for each in total), 1)
     left = len(table.rows) - kept
-    rows = table.rows[:kept]
-    return replace(table, rows=rows, note=f"{left} more under Checks.") if left else table
+    if not left:
+        return table
+    shown = replace(table, rows=table.rows[:kept], note=f"{left} more under Checks.")
+    return shown.without_empty_columns()
 
 
 def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> float:

@@ -1,7 +1,7 @@
 """A design check as a report, on a terminal, as JSON and as CSV."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from itertools import groupby
 from math import inf
 from typing import Any
@@ -28,13 +28,20 @@ from calm.report.sheet import quality_of, summary_of, table_of_line
 from calm.version import __version__
 
 
-def mooring_section(assessment: Assessment, against: Comparison | None = None) -> Section:
+@dataclass(frozen=True)
+class CheckedSection(Section):
+    """The section of a mooring in the report of a design check, with what is concluded of it."""
+
+    facts: CheckFacts
+
+
+def mooring_section(assessment: Assessment, against: Comparison | None = None) -> CheckedSection:
     """All that the report says of one mooring; it draws, so it takes some tenths of a second.
 
     `against` is the mooring compared with the design that it came from.
     """
     facts, items = facts_of(assessment), assessment.inventory
-    stood = [one.mooring for one in assessment.stands]
+    stood = [one.leg for one in assessment.stands]
     inputs = [(one.file.environment.name or OWN, one.file, one.water) for one in stood]
     checks = (
         *check_tables.checks_table(assessment.all_findings()),
@@ -42,7 +49,7 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
         check_tables.limits_table(assessment.limits),
     )
     parts = (
-        *provenance.history_part(assessment.mooring.file),
+        *provenance.history_part(assessment.file),
         *([] if against is None else [comparison_part(against)]),
         ReportPart("Judgement", tuple(_judgement(assessment, facts))),
         ReportPart("The line", tuple(_line(assessment))),
@@ -54,16 +61,16 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
         ),
         provenance.inputs_part(inputs),
     )
-    return Section(assessment.name, parts, facts)
+    return CheckedSection(assessment.name, parts, facts)
 
 
-def check_report(sections: Sequence[Section]) -> blocks.Report:
+def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
     """The report of a design check: what is signed, then all that it rests on.
 
     Page one is all that an engineer signs, of one mooring; of several, a summary follows it.
     """
     count = len(sections)
-    facts = [each.facts for each in sections if each.facts is not None]
+    facts = [each.facts for each in sections]
     environments = {name for each in facts for name in each.environments}
     moorings = sections[0].name if count == 1 else f"{count} moorings"
     in_all = f"{len(environments)} environment{'s' if len(environments) != 1 else ''}"
@@ -92,7 +99,7 @@ def _summary(facts: Sequence[CheckFacts]) -> Iterator[Block]:
 
 
 def _judgement(assessment: Assessment, facts: CheckFacts) -> Iterator[Block]:
-    if description := assessment.mooring.file.description:
+    if description := assessment.file.description:
         yield Prose((description,))
     yield from check_facts.rules_tables(facts)
     yield from likelihood_tables([(assessment.name, [*assessment.all_findings()])])
@@ -103,10 +110,10 @@ def _line(assessment: Assessment) -> Iterator[Block]:
     """The schematic and the table, of each leg of a net, in the first environment it stands in."""
     solved = [(one, one.result) for one in assessment.stands if one.result is not None]
     if not solved:
-        yield Figure("Schematic", schematic_svg(assessment.mooring.file, None), tall=True)
-    for (one, result), *_ in check_tables.grouped(solved, lambda pair: pair[0].mooring.file.name):
+        yield Figure("Schematic", schematic_svg(assessment.file, None), tall=True)
+    for (one, result), *_ in check_tables.grouped(solved, lambda pair: pair[0].leg.name):
         where = f", environment: {one.environment}"
-        yield Figure(f"Schematic{where}", schematic_svg(one.mooring.file, result), tall=True)
+        yield Figure(f"Schematic{where}", schematic_svg(one.leg.file, result), tall=True)
         yield table_of_line(result, f"Table of the line{where}", places=True)
         yield from (*summary_of(result), quality_of(result))
 
@@ -128,7 +135,7 @@ def _on_the_way(assessment: Assessment) -> Iterator[Block]:
     else:
         of_net = "The launch and the recovery of a net of legs are not judged."
         of_line = "Neither the launch nor the recovery could be solved."
-        yield Prose((of_net if assessment.mooring.file.legs else of_line,), State.UNKNOWN)
+        yield Prose((of_net if assessment.file.legs else of_line,), State.UNKNOWN)
     if assessment.backup:
         yield check_tables.breaks_table(assessment.backup)
 
@@ -274,8 +281,8 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
         return [one for each in assessments for one in told(each)]
 
     stands = [stand for each in assessments for stand in each.stands]
-    seen = provenance.BY_WAVES if all(one.mooring.file.environment.waves for one in stands) else ()
-    given = by_name(lambda each: each.mooring.file.document)
+    seen = provenance.BY_WAVES if all(one.leg.file.environment.waves for one in stands) else ()
+    given = by_name(lambda each: each.file.document)
     documents = {name: one.to_dict() for name, one in given.items() if one is not None}
     return {
         "calm": __version__,

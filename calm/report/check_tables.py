@@ -9,7 +9,7 @@ from math import hypot, isnan
 from operator import attrgetter
 from typing import Any, TypeVar
 
-from calm.case import Result
+from calm.case.leg_result import LegResult
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment, MooringInEnvironment
 from calm.checks.criterion import said
@@ -186,7 +186,7 @@ def _counted(count: int, word: str) -> str:
     return f"{count} {word}{'s' * (count != 1)}"
 
 
-_RESULTS: dict[str, Callable[[Result], float | None]] = {
+_RESULTS: dict[str, Callable[[LegResult], float | None]] = {
     "depth": lambda result: result.top.depth,
     "knockdown": lambda result: result.top.knockdown,
     "offset": lambda result: hypot(result.top.x, result.top.y),
@@ -313,7 +313,7 @@ def handling_table(assessment: Assessment) -> Table:
             number("at the surface after", minutes, "min"),
             figures("depth", "hangs at depth", recovery.hangs_at),
         ]
-    pieces = assessment.mooring.file.pieces[:-1]
+    pieces = assessment.file.pieces[:-1]
     heads = number("no.", "index"), words("piece", "label")
     return table_of("Tensions in the launch and the rise", pieces, *heads, *fields)
 

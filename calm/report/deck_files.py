@@ -7,7 +7,6 @@ from io import BytesIO
 from operator import attrgetter
 from typing import Any
 
-from calm.case.result import NetResult
 from calm.deck import Deck
 from calm.drawing.line_drawing import line_drawing
 from calm.drop import DropPlan
@@ -75,7 +74,7 @@ def deck_sheets(deck: Deck) -> dict[str, tuple[Sequence[str], Rows]]:
         "recovery": [*enumerate(deck.recovery, 1)],
     }
     sheets = {name: _sheet(_COLUMNS[name], items) for name, items in rows.items()}
-    if deck.file.legs:
+    if deck.result.several:
         for name, index in _INDEX.items():
             heads, listed = sheets[name]
             legs = [deck.leg(index(one)) for one in rows[name]]
@@ -158,7 +157,7 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     parts: list[ReportPart] = [*provenance.document_part(deck.file)]
     if told := warned((*deck.notes, *notes)):
         parts.append(ReportPart("Warnings", told))
-    if isinstance(deck.result, NetResult):
+    if deck.result.several:
         shape = Figure("The net from the side, the current, and from above", net_svg(deck))
         parts.append(ReportPart("The net", (shape, *net_part(deck.result).blocks[1:-1])))
     parts += [

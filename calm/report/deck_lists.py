@@ -44,7 +44,7 @@ def cutting_part(deck: Deck) -> ReportPart:
     note = (
         "Lengths are without load unless one is given; marks are measured from the upper end, "
         f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: by how much "
-        f"{'that of its leg is ' if deck.file.legs else ''}if this "
+        f"{'that of its leg is ' if deck.result.several else ''}if this "
         f"piece alone is {_SHARE} longer, in the environment {deck.environment}. Over side, onto "
         "drum: the order; the piece that goes over last is spooled first."
     )
@@ -192,9 +192,9 @@ def _stages(deck: Deck) -> blocks.Table:
     joints = {one.label for one in deck.parts if one.is_joint}
     recovery = {one.label: one.hanging for one in deck.lifts.recovery}
     return table_of(
-        f"In the order over the side{', leg by leg' * bool(deck.file.legs)}",
+        f"In the order over the side{', leg by leg' * deck.result.several}",
         [one for one in deck.lifts.deployment if one.label not in joints],
-        *([words("leg", lambda one: deck.leg(one.index))] if deck.file.legs else []),
+        *([words("leg", lambda one: deck.leg(one.index))] if deck.result.several else []),
         number("no.", "index"),
         words("at the rail", "label", 2.0),
         quantity("lift_mass", "mass", "lift in\nair"),

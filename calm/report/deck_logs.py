@@ -25,8 +25,8 @@ def deployment_part(deck: Deck) -> ReportPart:
     last = deck.order is Order.ANCHOR_LAST
     said = (
         ("Anchor last: the top" if last else "Anchor first: the lower end")
-        + f"{' of each leg' if deck.file.legs else ''} goes over the side first. "
-        + (_LEGS if deck.file.legs else "")
+        + f"{' of each leg' if deck.result.several else ''} goes over the side first. "
+        + (_LEGS if deck.result.several else "")
         + "Lengths are as cut; clamps are placed from the upper end of their piece, unstretched."
     )
     unit = QUANTITIES["depth"].display_unit
@@ -54,7 +54,7 @@ def recovery_part(deck: Deck) -> ReportPart:
     """Return what is done at the release, and the order in which the line comes up."""
     rise = deck.rise
     said = []
-    if deck.file.legs:
+    if deck.result.several:
         said.append("The rise of a net is not solved: the lists go down each leg.")
     elif rise is None:
         said.append("The rise is not known: the list goes down the line.")

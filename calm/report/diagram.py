@@ -7,8 +7,7 @@ from enum import StrEnum
 from itertools import accumulate, count
 from string import ascii_uppercase
 
-from calm.case import Result
-from calm.case.result import legs_of
+from calm.case.leg_result import LegResult
 from calm.deck import Deck
 from calm.drawing import schematic
 from calm.drawing.schematic import FONT, HEAD, LEADING, PlacedPart, placed
@@ -93,7 +92,7 @@ class _Diagram:
     """
 
     def __init__(self, deck: Deck, paper: Paper) -> None:
-        lines = legs_of(deck.result)
+        lines = deck.result.legs
         listed = [items for _, items in deck.by_leg(deck.parts, lambda one: one.index)]
         legs = [
             parts_of(deck, items, surface=line.type == "surface")
@@ -116,7 +115,7 @@ class _Diagram:
         self.columns = min(map(self._even, sets), key=len)
         self.count = -(-len(self.columns) // paper.columns)
 
-    def _even(self, legs: Sequence[tuple[Result, Sequence[PlacedPart]]]) -> _Stacks:
+    def _even(self, legs: Sequence[tuple[LegResult, Sequence[PlacedPart]]]) -> _Stacks:
         """The columns of all legs; the last takes over parts until it is as long as the first.
 
         Below its last part there is room for the seabed and the legend, above the title block.
@@ -256,7 +255,7 @@ _TOP = _MARGIN + _TITLE_ROOM + HEAD
 
 
 def _columns(
-    line: Result, parts: Sequence[PlacedPart], lowest: float, marks: Iterator[str]
+    line: LegResult, parts: Sequence[PlacedPart], lowest: float, marks: Iterator[str]
 ) -> Iterator[_PageColumn]:
     """The columns of a line or a leg in reading order.
 
@@ -274,7 +273,7 @@ def _columns(
         else:
             there = placed(group, _TOP + sea, _TOP + sea + group[0].height / 2)
         below = f"continues at {mark}" if mark else bottom
-        leg = leg_title(line) if line.file.legs else ""
+        leg = leg_title(line) if line.leg.of_several else ""
         yield _PageColumn(there, above, below, afloat and above is None, leg)
         above = f"from {mark}"
 
@@ -324,7 +323,7 @@ def _fields(deck: Deck, paper: Paper) -> list[_Fields]:
 def _known(deck: Deck) -> dict[str, str]:
     """The anchor's weights, what floats the release after the worst break, and the verdict."""
     anchors = [one for one in deck.assessment.inventory if one.role == "anchor"]
-    if not deck.file.legs:
+    if not deck.result.several:
         anchors = anchors[-1:] or [deck.assessment.inventory[-1]]
     texts = [
         ", ".join(

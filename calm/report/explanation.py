@@ -12,12 +12,12 @@ from math import floor, hypot, log10
 from typing import TYPE_CHECKING, NamedTuple
 
 from calm.case import Result
-from calm.case.result import AnyResult, NetResult
+from calm.case.leg_result import LegResult
 from calm.checks.finding import State
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
 from calm.errors import NoEquilibrium
-from calm.files.mooring_file import parts_of
+from calm.files.pieces import parts_of
 from calm.quantities import QUANTITIES, Quantity, duration, say
 from calm.report import blocks
 from calm.report.blocks import Block, Cell, Prose, ReportPart, Span, Table, number, table_of, words
@@ -39,11 +39,11 @@ _SHARES = (
 _CHANGES = "Buoyancy is changed for everything buoyant, drag for everything; lengths are not."
 
 
-def line_facts(result: AnyResult) -> tuple[str, ...]:
+def line_facts(result: Result) -> tuple[str, ...]:
     """The weights of a mooring, its length and watch circle, and how it rises when freed."""
-    if not isinstance(result, Result):
+    if result.several or result.towed:
         return ()
-    items = inventory_of(result.mooring)
+    items = inventory_of(result.leg.leg)
     masses = [one.dry_mass for one in items if one.role != "anchor"]
     weights = [one.wet_weight or 0.0 for one in items if one.role != "anchor"]
     unknown = masses.count(None)
@@ -54,19 +54,19 @@ def line_facts(result: AnyResult) -> tuple[str, ...]:
         mass = "no mass in air is known"
     floats = -sum(weight for weight in weights if weight < 0.0)
     length = float(result.components.cut_length.sum())
-    depth = result.mooring.water.depth
+    depth = result.water.depth
     return (
         f"Without the anchor {mass}; what floats lifts {say('wet_weight', floats)}, net "
         f"{say('wet_weight', -sum(weights))}",
         f"Line of {say('length', length)}, scope {length / depth:.3f}; watch circle of "
         f"{say('offset', hypot(result.top.x, result.top.y))} in this current",
-        *_rise(result),
+        *_rise(result.leg),
     )
 
 
-def _rise(result: Result) -> Iterator[str]:
+def _rise(result: LegResult) -> Iterator[str]:
     with suppress(NoEquilibrium):
-        rise = recovery_of(result.mooring, result, first_only=True)
+        rise = recovery_of(result.leg, result, first_only=True)
         if rise.time_to_surface is None:
             yield "Once released, it does not rise by itself"
         elif rise.time_to_surface > 0.0:
@@ -256,7 +256,7 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
     aimed = (name, target.unit.replace("deg", "°"), *measured)
     rows: list[Sequence[Cell | str]] = [[Cell(text, strong=True) for text in aimed]]
     afloat = after.result is not None and after.result.type == "surface"
-    net = isinstance(after.result, NetResult)
+    net = after.result is not None and after.result.several
     for field, quantity, told in _ROWS:
         head = told.replace("the top", _place_told(after)) if net else told
         if head == name or (field == "used_buoyancy" and not afloat):

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.checks.finding import State
 from calm.drawing.graph import Axes, Graph, Scale, Stroke, Tick, covering, moments, seconds
 from calm.drawing.schematic.pen import shortened, text_width
 from calm.motion.remarks import Agreement, Fault, no_drag
@@ -70,7 +69,7 @@ def motion_report(
     return report_of(
         f"{name}: where it was",
         f"{str(time[0])[:16]} to {str(time[-1])[:16]}, {len(time)} times",
-        ReportPart("The deployment", (whole, *judged_prose(study), *doubts, health_table(study))),
+        ReportPart("The deployment", (whole, *doubts, health_table(study))),
         ReportPart("For the methods of a cruise report", (Prose(methods_text(study, series)),)),
         ReportPart("Factors", (factors, Note((_ASSUMED,)))),
         ReportPart("Measured against computed", (*found, how, *marks)),
@@ -138,19 +137,9 @@ def motion_part(study: MotionEstimate, name: str) -> ReportPart:
         sensors_table(study),
         Prose((PLAIN if study.plain else UNKNOWN,)),
         *([held_out_table(study.held_out.values())] if study.held_out else []),
-        *judged_prose(study),
         *blocks.warned(study.remarks),
     )
     return ReportPart("", shown)
-
-
-def judged_prose(study: MotionEstimate) -> list[Prose]:
-    """Return what is said of the sensor that was judged, if one was."""
-    one = study.judged
-    if one is None:
-        return []
-    state = {True: State.PASS, False: State.FAIL, None: State.UNKNOWN}[one.fits]
-    return [Prose((one.sentence(),), state)]
 
 
 _HEALTH = {
@@ -274,7 +263,6 @@ def motion_document(study: MotionEstimate, name: str) -> dict[str, Any]:
         "held_out": held_out_document(study.held_out.values()),
         "diagnosis": diagnosis_document(study.faults(of_line=False)),
         "line": {"fits": study.fits, "causes": diagnosis_document(study.faults(of_line=True))},
-        **({} if study.judged is None else {"judge": asdict(study.judged)}),
         "doubts": list(study.remarks),
     }
 

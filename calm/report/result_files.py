@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.case import TowResult
 from calm.case.columns import Output, shown_in, terms
-from calm.case.result import AnyResult, NetResult
+from calm.case.design import Result
 from calm.case.result_tables import (
     MOORED_ENDS,
     OF_ROWS,
@@ -23,7 +22,7 @@ from calm.case.result_tables import (
 )
 from calm.dataset import netcdf
 from calm.dataset.netcdf import Attributes, labels, numbers
-from calm.files.legs import leg_numbers
+from calm.files.mooring_file import leg_numbers
 from calm.records.delimited import table_csv
 
 
@@ -32,7 +31,7 @@ def header() -> tuple[str, ...]:
     return ("mooring", "part", *(one.header for one in Components.columns(Output.CSV)))
 
 
-def to_csv(results: Sequence[AnyResult]) -> str:
+def to_csv(results: Sequence[Result]) -> str:
     """The components of one mooring or tow, or of several, as CSV text (UTF-8, comma, point, LF).
 
     `part` is ``component`` or ``clamp``; the rows of clamped instruments follow the piece they sit
@@ -47,7 +46,7 @@ def to_csv(results: Sequence[AnyResult]) -> str:
     return table_csv(heads, ([*row[:shown], *(row[shown + at] for at in used)] for row in rows))
 
 
-def _rows(result: AnyResult) -> Iterator[list[object]]:
+def _rows(result: Result) -> Iterator[list[object]]:
     own, more = Components.columns(Output.CSV), shown_in(OF_ROWS, Output.CSV)
     for component, clamps in rows_down(result):
         beside = [one.value(component, result.file) for one in more]
@@ -66,7 +65,7 @@ _ACCURACY: dict[str, tuple[str, str, Attributes]] = {
 }
 
 
-def result_netcdf(result: AnyResult) -> bytes:
+def result_netcdf(result: Result) -> bytes:
     """The file of one mooring, tow or net, figures of 64 bits; what is unknown is NaN.
 
     A net has its ends leg by leg, and the nodes of its shape one leg after the other.
@@ -74,7 +73,7 @@ def result_netcdf(result: AnyResult) -> bytes:
     file, pieces, clamps = result.file, result.components, result.clamps
     place = () if file.position is None else (file.position.latitude, file.position.longitude)
     of_station, where = netcdf.station(result.name or "mooring", place, "the anchor")
-    lines = result.legs if isinstance(result, NetResult) else (result,)
+    lines = result.legs
     of_nodes = Shape.columns(Output.NETCDF)
     nodes = {
         one.variable: np.concatenate([getattr(line.shape, one.name) for line in lines])
@@ -92,10 +91,10 @@ def result_netcdf(result: AnyResult) -> bytes:
         variables += _table_variables("clamp", clamps, f"clamp_label clamp_depth{where}")
     variables += numbers(("node",), terms(of_nodes), f"shape_depth{where}", _floats(nodes))
     accuracy = {f"accuracy_{name}": getattr(result.accuracy, name) for name in ("depth", "tension")}
-    of_ends = shown_in(TOWED_ENDS if isinstance(result, TowResult) else MOORED_ENDS, Output.NETCDF)
+    of_ends = shown_in(TOWED_ENDS if result.towed else MOORED_ENDS, Output.NETCDF)
     ends = {one.name: [one.found(line) for line in lines] for one in of_ends if one.found}
     along: tuple[str, ...] = ()
-    if isinstance(result, NetResult):
+    if result.several:
         sizes["leg"], along = len(lines), ("leg",)
         own = leg_numbers(file)
         variables = netcdf.of_net(

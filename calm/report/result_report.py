@@ -5,12 +5,10 @@ from functools import partial
 from typing import Any
 
 from calm.case import Result
-from calm.case.result import AnyResult, NetResult
 from calm.case.uncertain import Uncertain
 from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface
 from calm.drawing.line_drawing import line_drawing
-from calm.drawing.line_picture import water_of
 from calm.drawing.schematic import schematic_svg
 from calm.files import Uncertainty
 from calm.files.uncertainty import Spread
@@ -22,11 +20,11 @@ from calm.report.provenance import NOT_JUDGED, document_part, inputs_part, repor
 from calm.report.sheet import leg_title, net_part, quality_of, summary_of, table_of_line, title_of
 
 
-def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> blocks.Report:
+def result_report(result: Result, uncertain: Uncertain | None = None) -> blocks.Report:
     """Schematic, table, drawing and inputs of one result, and how sure its figures are."""
     file = result.file
     limits: tuple[ReportPart, ...] = ()
-    if isinstance(result, NetResult):
+    if result.several:
         net = net_part(result)
         title, said = net.title, net.blocks
         line: tuple[Block, ...] = tuple(
@@ -34,13 +32,13 @@ def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> bloc
             for leg in result.legs
         )
     else:
-        title, said = title_of(result), (*summary_of(result), quality_of(result))
+        title, said = title_of(result.leg), (*summary_of(result.leg), quality_of(result.leg))
         line = (
             Figure("Schematic", schematic_svg(file, result), tall=True),
             table_of_line(result, "Table of the line", places=True),
         )
-    if isinstance(result, Result):  # a tow and a net have no margins in their tables
-        keys = limits_used(result.file, reaches_the_surface(result.mooring))
+    if not (result.several or result.towed):  # these have no margins in their tables
+        keys = limits_used(result.file, reaches_the_surface(result.leg.leg))
         limits = (ReportPart("Limits", (limits_table(keys),)),)
     described = (blocks.Prose((file.description,)),) if file.description else ()
     drawing = line_drawing(result, uncertain)
@@ -54,7 +52,7 @@ def result_report(result: AnyResult, uncertain: Uncertain | None = None) -> bloc
         *(() if uncertain is None else (uncertainty_part(uncertain),)),
         *limits,
         NOT_JUDGED,
-        inputs_part([(file.environment.name or "own", file, water_of(result))]),
+        inputs_part([(file.environment.name or "own", file, result.water)]),
     )
 
 

@@ -8,10 +8,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from calm.case import Result, TowResult
 from calm.case.columns import Output, ResultColumn, columns_of, shown_in
-from calm.case.mooring import ProfilerTravel
-from calm.case.result import AnyResult, NetResult, legs_of
+from calm.case.design import AnyResult, Result
+from calm.case.leg_result import LegResult
+from calm.case.profilers import ProfilerTravel
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down, table_columns
 from calm.case.strumming import StrummingBand
 from calm.checks.finding import State
@@ -40,9 +40,7 @@ _NOTE = "of the upper end. Tension: the greatest in the piece. ~ near a limit, !
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 
 
-def result_part(
-    result: AnyResult, facts: Sequence[Line] = (), *, verbose: bool = False
-) -> ReportPart:
+def result_part(result: Result, facts: Sequence[Line] = (), *, verbose: bool = False) -> ReportPart:
     """A result in short: it fits 80 columns, where long labels wrap.
 
     A figure beyond its limit carries ``!`` and one near it ``~``, so that nothing hangs on colour.
@@ -52,33 +50,33 @@ def result_part(
     facts : more about the line, after its summary
     verbose : say how the solution was reached
     """
-    if isinstance(result, NetResult):
+    if result.several:
         return net_part(result)
-    table, (summary, *warnings) = table_of_line(result), summary_of(result)
-    quality = quality_of(result).lines[: None if verbose else 1]
+    table, (summary, *warnings) = table_of_line(result), summary_of(result.leg)
+    quality = quality_of(result.leg).lines[: None if verbose else 1]
     ends = replace(summary, lines=(*summary.lines, *facts))
     shown: tuple[blocks.Block, ...] = (ends, *warnings, Note((table.note, *map(str, quality))))
-    return ReportPart(title_of(result), (replace(table, note=""), *shown))
+    return ReportPart(title_of(result.leg), (replace(table, note=""), *shown))
 
 
-def title_of(result: Result | TowResult) -> str:
+def title_of(result: LegResult) -> str:
     """Name and kind of what is solved."""
-    if isinstance(result, TowResult):
-        return f"{result.name}: tow at {say('speed', result.speed)} towards {result.toward:.0f}°"
+    if (tow := result.file.tow) is not None:
+        return f"{result.name}: tow at {say('speed', tow.speed)} towards {tow.toward:.0f}°"
     depth = say("depth", result.file.environment.depth)
     return f"{result.name}: {_TYPES[result.type]}, {depth} of water"
 
 
-def summary_of(result: Result | TowResult) -> tuple[Prose, ...]:
+def summary_of(result: LegResult) -> tuple[Prose, ...]:
     """The two ends of the line in words, the warnings below them."""
-    ends = _tow_summary(result) if isinstance(result, TowResult) else _mooring_summary(result)
+    ends = _tow_summary(result) if result.towed else _mooring_summary(result)
     return (Prose((*ends, *_strumming(result))), *blocks.warned(result.warnings))
 
 
-def quality_of(result: Result | TowResult) -> Prose:
+def quality_of(result: LegResult) -> Prose:
     """Return how good the solution is, and how it was reached."""
-    good, end = result.accuracy, "anchor" if _anchored(result) else "lower end"
-    if isinstance(result, TowResult):
+    good, end = result.accuracy, "anchor" if result.leg.anchored else "lower end"
+    if result.towed:
         end = "tow point"
     pull = "" if good.anchor is None else f", at the {end} {good.anchor:.2g} N"
     return Prose(
@@ -105,10 +103,11 @@ def _travel(profiler: ProfilerTravel) -> str:
     return said
 
 
-def _mooring_summary(result: Result) -> tuple[Line, ...]:
+def _mooring_summary(result: LegResult) -> tuple[Line, ...]:
     """The top, and the loads on the anchor, which most legs of a net have not."""
     top, anchor = result.top, result.anchor
-    off = f", {say('offset', math.hypot(top.x, top.y))} off the anchor" if _anchored(result) else ""
+    off = f", {say('offset', math.hypot(top.x, top.y))} off the anchor"
+    off *= result.leg.anchored
     if result.type == "surface":
         used = f"{top.used_buoyancy:.1%} of its buoyancy used"
         at = f"at the surface{off}; {used}, {say('reserve', top.reserve)} in reserve"
@@ -127,20 +126,16 @@ def _mooring_summary(result: Result) -> tuple[Line, ...]:
         weighs += " !"
     hull = f"Hull: draft {say('draft', top.draft)}, freeboard {say('freeboard', top.freeboard)}"
     above = f"Top {at}", *([hull] if top.draft is not None else []), *map(_travel, result.profilers)
-    if not _anchored(result):
+    if not result.leg.anchored:
         return above
     weight = (Span(f"Anchor weighs {weighs}", State.FAIL if lifts else None),)
     return *above, f"Anchor pulled by {pull}", weight
 
 
-def _anchored(result: Result | TowResult) -> bool:
-    """Return whether the line ends in an anchor, as not every leg of a net does."""
-    return not (isinstance(result, TowResult) or math.isnan(result.anchor.tension))
-
-
-def _tow_summary(result: TowResult) -> tuple[Line, ...]:
+def _tow_summary(result: LegResult) -> tuple[Line, ...]:
     """The loads at the ship, and where the body is."""
     point, body = result.tow_point, result.body
+    assert point is not None and body is not None
     at_ship, at_body = (
         f"{say('tension', end.tension)}, {say('angle', end.angle)} from the horizontal"
         for end in (point, body)
@@ -153,7 +148,7 @@ def _tow_summary(result: TowResult) -> tuple[Line, ...]:
     )
 
 
-def _strumming(result: Result | TowResult) -> tuple[str, ...]:
+def _strumming(result: LegResult) -> tuple[str, ...]:
     """Return how fast cables vibrate and what that makes, or would make, of their drag."""
     strumming, band = result.strumming, result.strumming_band
     if strumming is not None:
@@ -166,12 +161,12 @@ def _strumming(result: Result | TowResult) -> tuple[str, ...]:
     return ()
 
 
-def _with(result: Result | TowResult, band: StrummingBand) -> str:
+def _with(result: LegResult, band: StrummingBand) -> str:
     """Return what the line would do with more drag on its cables."""
     if band.status != Status.CONVERGED.label:
         return band.status
     assert band.depth is not None
-    if isinstance(result, TowResult):
+    if result.towed:
         return f"body {_level(result, band.depth)}, tow point {say('tension', band.tension)}"
     if result.type == "surface" and band.depth <= 0.0:  # a float at its draft stands out
         top = "top at the surface"
@@ -182,10 +177,11 @@ def _with(result: Result | TowResult, band: StrummingBand) -> str:
     return f"{top}, anchor {say('tension', band.tension)}"
 
 
-def _level(result: TowResult, depth: float) -> str:
+def _level(result: LegResult, depth: float) -> str:
     """Return how deep the body is, or how high it flies."""
-    if result.file.environment.fluid == "air":
-        return f"{say('depth', depth + result.tow.keys.height)} below the tow point"
+    tow = result.file.tow
+    if tow is not None and result.file.environment.fluid == "air":
+        return f"{say('depth', depth + tow.height)} below the tow point"
     return f"{say('depth', depth)} deep" if depth >= 0.0 else f"{say('depth', -depth)} in the air"
 
 
@@ -196,11 +192,11 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
     a length.
     """
     output, of_an_end, heads = Output.MOORING_TABLE, "Depth, height and offset", {}
-    if isinstance(result, TowResult):
+    if result.towed:
         output, of_an_end = Output.TOW_TABLE, "Depth and layback"
-    elif isinstance(result, NetResult):
+    elif result.several:
         output, of_an_end = Output.NET_TABLE, "Depth, east and north"
-        heads = {leg.file.legs[0].first: leg_title(leg) for leg in result.legs}
+        heads = {leg.leg.keys.first: leg_title(leg) for leg in result.legs}
     figures = table_columns(output)
     columns = [Column("no.", numeric=True, narrow=False), Column("piece", short="")]
     rows: list[tuple[Cell, ...]] = []
@@ -223,7 +219,8 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
             label = Cell(clamp.label, indented=True, strong=strong)
             rows.append((Cell(), label, *cells))
     columns += (blocks.quantity_column(one.quantity) for one in figures if one.quantity)
-    return Table(title, tuple(columns), tuple(rows), f"{of_an_end}: {_NOTE}", dense=True)
+    table = Table(title, tuple(columns), tuple(rows), f"{of_an_end}: {_NOTE}", dense=True)
+    return table.without_empty_columns()
 
 
 def tilt_state(component: Component, tilt: float) -> State | None:
@@ -242,7 +239,9 @@ def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
     The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
     mooring, for a synthetic cable, or for steel. What is not known, NaN, is not marked.
     """
-    meant = isinstance(result, Result) and reaches_the_surface(result.mooring)
+    # a leg of several shown as a whole is not asked what it is meant for
+    alone = not (result.several or result.towed)
+    meant = alone and reaches_the_surface(result.legs[0].leg)
     surface = meant or result.type == "surface"
     least = safety_factor(record.part.component, result.file.checks.safety_factor, surface)
     beyond = record.safety_factor < least or record.utilisation > 1.0
@@ -263,7 +262,7 @@ def _cells(
             yield blocks.figure_cell(one.quantity, value, states.get(one.name))
 
 
-def net_part(result: NetResult) -> ReportPart:
+def net_part(result: Result) -> ReportPart:
     """A net in short: a table of the pieces leg by leg, its nodes, its anchors and held ends."""
     depth = say("depth", result.file.environment.depth)
     count = len(result.legs)
@@ -274,23 +273,20 @@ def net_part(result: NetResult) -> ReportPart:
     return ReportPart(title, shown)
 
 
-def leg_title(leg: Result) -> str:
+def leg_title(leg: LegResult) -> str:
     """Name of a leg and what holds its ends."""
-    (keys,) = leg.file.legs
-    top = "at the surface" if leg.type == "surface" else end_text(keys.top)
-    return f"{leg.name}: {top} to {end_text(keys.bottom)}"
+    top = "at the surface" if leg.type == "surface" else end_text(leg.leg.top)
+    return f"{leg.name}: {top} to {end_text(leg.leg.bottom)}"
 
 
-def leg_titles(result: Result | NetResult) -> dict[str, str]:
+def leg_titles(result: Result) -> dict[str, str]:
     """The titles of the legs by their names; a single line has none."""
-    return {leg.name: f"leg {leg_title(leg)}" for leg in legs_of(result) if leg.file.legs}
+    return {leg.name: f"leg {leg_title(leg)}" for leg in result.legs if result.several}
 
 
-def ends_told(line: Result) -> tuple[str | None, str | None]:
+def ends_told(line: LegResult) -> tuple[str | None, str | None]:
     """Return what a leg comes from and leads to; None where that is the sea or the seabed."""
-    if not line.file.legs:
-        return None, None
-    top, bottom = line.file.legs[0].ends
+    top, bottom = line.leg.top, line.leg.bottom
     return (
         None if top.free else f"from {end_text(top)}",
         None if bottom.anchor is not None else end_text(bottom),
@@ -306,7 +302,7 @@ def end_text(end: EndKeys) -> str:
     return "free end" if end.anchor is None else "anchor"
 
 
-def _ends(result: NetResult) -> Iterator[Table | Prose]:
+def _ends(result: Result) -> Iterator[Table | Prose]:
     """Nodes, anchors and held ends, and floats at the surface."""
     ends = {"Nodes": result.nodes, "Anchors": result.anchors, "Held ends": result.held}
     for title, rows in ends.items():
@@ -332,7 +328,7 @@ def _fields(rows: Sequence[Any]) -> Iterator[Field]:
             yield blocks.quantity(one.quantity, one.name)
 
 
-def _convergence(result: NetResult) -> str:
+def _convergence(result: Result) -> str:
     """Return how the net was solved and how good that is."""
     accuracy = result.accuracy
     left = max((node.imbalance for node in result.nodes), default=0.0)

@@ -23,7 +23,7 @@ from calm.units import KNOT
 from calm.version import __version__
 
 if TYPE_CHECKING:
-    from calm.case import Tow, TowResult
+    from calm.case import Design, Result
 
 FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
 """What a row tells of a result: depth and layback of the body, tension and angle at the ship."""
@@ -40,10 +40,10 @@ class TabulationRow:
     """A speed of the ship over the ground [m/s], and the result or the failure at that speed."""
 
     speed: float
-    outcome: TowResult | NoEquilibrium
+    outcome: Result | NoEquilibrium
 
     @property
-    def result(self) -> TowResult | None:
+    def result(self) -> Result | None:
         """The equilibrium, where there is one."""
         return None if isinstance(self.outcome, NoEquilibrium) else self.outcome
 
@@ -90,7 +90,7 @@ class Tabulation:
 
 
 def by_speed(
-    tow: Tow, speeds: Sequence[float], outcomes: Sequence[TowResult | NoEquilibrium]
+    tow: Design, speeds: Sequence[float], outcomes: Sequence[Result | NoEquilibrium]
 ) -> Tabulation:
     """Tabulate the outcomes at speeds over the ground [m/s]."""
     rows = map(TabulationRow, speeds, outcomes)

@@ -81,13 +81,11 @@ def _nearest(dataset: xr.Dataset, time: str | np.datetime64) -> xr.Dataset:
 def shape_picture(dataset: xr.Dataset, time: str | np.datetime64) -> LinePicture:
     """The line from the side in the profile nearest to a time.
 
-    The line goes through the nodes of a result that has them (`--shape`), else straight from the
-    upper end of one component to that of the next. The picture is in the vertical plane of the
-    anchor and the top. UsageError: the profile has no equilibrium.
+    The line goes straight from the upper end of one component to that of the next. The picture is
+    in the vertical plane of the anchor and the top. UsageError: the profile has no equilibrium.
     """
     row = _nearest(dataset, time)
-    prefix, end = ("shape_", "") if "shape_depth" in row else ("", "_top")
-    names = (f"{prefix}{name}{end}" for name in ("depth", "x", "y"))
+    names = ("depth_top", "x_top", "y_top")
     depth, x, y = (np.asarray(row[name].values, np.float64) for name in names)
     if np.isnan(depth).any():
         raise UsageError(f"the profile of {when(row['time'].values)} has no equilibrium to draw")

@@ -53,7 +53,7 @@ def next_node(record: Record, node: int, last: int) -> int:
 
 
 def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, near: float) -> Errors:
-    """Extrapolate a shape, in the columns from `BETTER` on of the fine record; its errors.
+    """Extrapolate a shape into the columns from `BETTER` on of the fine record; return its errors.
 
     Nodes that both shapes have correspond: the ends of segments that hang, the touchdowns, and
     what lies below them.
@@ -133,8 +133,8 @@ def within_piece(record: Record, node: int) -> bool:
 def thirds_at(
     before: Record, last: int, n: int, after: Record, end: int, m: int
 ) -> tuple[float, float, float]:
-    """A third of the change of a node of both shapes: of its place from the line's end [m], and of
-    its tension [N]; and its tension in the fine shape."""
+    """A third of the change of a node from the coarse shape to the fine one, in its place relative
+    to the line's end [m] and in its tension [N]; and its tension in the fine shape [N]."""
     x = after[0][m] - after[0][end] - (before[0][n] - before[0][last])
     y = after[1][m] - after[1][end] - (before[1][n] - before[1][last])
     place = max(sqrt(x * x + y * y), abs(after[2][m] - before[2][n])) / 3.0
@@ -143,7 +143,7 @@ def thirds_at(
 
 
 def add_third(before: Record, last: int, n: int, after: Record, end: int, m: int) -> None:
-    """Extrapolate a node of both shapes, its place as from the line's end."""
+    """Extrapolate a node that both shapes have, its place relative to the line's end."""
     for column in range(6):
         third = (after[column][m] - before[column][n]) / 3.0
         if column < 2:
@@ -152,7 +152,7 @@ def add_third(before: Record, last: int, n: int, after: Record, end: int, m: int
 
 
 def fill_between(record: Record, first: int, last: int) -> None:
-    """Extrapolate the nodes between two as these are, by the length between."""
+    """Correct the nodes between two extrapolated ones by interpolation over the length of line."""
     length = way = 0.0
     for m in range(first + 1, last + 1):
         length += record[8][m]

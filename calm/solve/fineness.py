@@ -1,8 +1,9 @@
-"""How finely a line or a net is cut, by what its shapes on coarse and on fine segments lead to.
+"""How finely a line or a net is cut, from the difference between its coarse and its fine shape.
 
-Segments are chosen at twice the angle step; all is closed on these, and again with every segment
-halved. The march is of second order, so a third of the change is the error of the finer shape, see
-`calm.solve.accuracy`; if that is too much, all is done again with a smaller step.
+Segments are chosen at twice the angle step. The line or net is closed on these, and again with
+every segment halved. The march is of second order, so a third of the change is the error of the
+fine shape (`calm.solve.accuracy`). If the error is too large, both shapes are closed again at a
+smaller angle step.
 """
 
 from math import degrees, sqrt
@@ -11,21 +12,21 @@ from calm.solve.accuracy import Errors
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
-"""Error estimates, relative to the span and to the tension, above which the step is taken
-smaller, at an angle step of 1°; they follow its square."""
+"""Largest error estimates at an angle step of 1°, relative to the span and to the tension. They
+grow with the square of the angle step; beyond them a smaller one is taken."""
 MOST_ROUNDS = 6
-"""How often all is done, at most."""
+"""Most rounds of a coarse and a fine shape."""
 MOST_SEGMENTS = 20_000
 
 
 def finer(errors: Errors, span: float, asked: float, step: float, segments: int) -> float:
-    """The angle step with which all is done again [rad]; 0 where it is fine enough.
+    """Angle step of the next round [rad]; 0 if the shape is fine enough.
 
     Parameters
     ----------
-    span : what errors of depths are measured by [m]
-    asked, step : the angle step asked for, and that with which it was done [rad]
-    segments : how many there were
+    span : length to which errors of depth are relative [m]
+    asked, step : the angle step of the settings, and that of this round [rad]
+    segments : number of segments in the fine shape
     """
     target = degrees(asked)
     target *= target

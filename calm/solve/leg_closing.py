@@ -1,7 +1,8 @@
-"""A net of legs closed, as laws: Newton's method on segments that stay.
+"""Newton's method for a net of legs on given segments, as compiled laws.
 
-Slopes are kept by Broyden's rule while they lead on. A net with a single unknown is closed by
-secants, and in a bracket where these do not lead on.
+The Jacobian (`slopes`) is updated by Broyden's rule as long as each step reduces the residual
+(`found`) enough. A net with a single unknown is closed by secants, or by bisection of a bracket if
+these do not converge.
 """
 
 from collections.abc import Callable, MutableSequence, Sequence
@@ -14,7 +15,7 @@ from calm.physics.referee import RefereeShape, find_ends
 from calm.solve.accuracy import Errors, Extent, extrapolate
 from calm.solve.fineness import MOST_ROUNDS, finer
 from calm.solve.leg_from_below import record_down
-from calm.solve.leg_marches import left_over
+from calm.solve.leg_marches import write_residual
 from calm.solve.leg_numbers import (
     ANCHORED,
     COARSE_COUNT,
@@ -34,33 +35,36 @@ from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 from calm.solve.solution import FOUND, NO_SHAPE_NEAR
 
 MOST_STEPS, HALVINGS = 60, 9
-"""Newton steps towards a shape, and how often one is halved that leads nowhere."""
+"""Most Newton steps towards a shape; most halvings of a step that does not reduce the residual."""
 NEAR, CLOSED = 1e-4, 1e-10
-"""What is left of lengths and forces, as shares of the longest leg and of a typical force: before
-segments are kept, and in a shape."""
+"""Residual of lengths and forces, as shares of the longest leg and of a typical force: before the
+segments are kept, and of a finished shape."""
 BEFORE_CHOICE = 1e-7
-"""As `CLOSED`, of a shape in which segments are chosen that are to depend on the net alone."""
+"""As `CLOSED`, of the shape in which segments are chosen: close enough that they depend on the net
+alone, and not on the way to it."""
 MOST_LEFT = 10.0
-"""How many times `enough` may be left where no step leads on."""
+"""Residual, as a multiple of `enough`, that is accepted if no step reduces it further."""
 LEADS_ON = 0.25
-"""What a step leaves of the sum of squares, at most, for slopes to be kept."""
+"""Factor by which a step must reduce the sum of squares for the slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
 """Slope of a single unknown, in shares, at which a secant is held; the most steps it may take."""
 SINGULAR = 1e-14
-"""Slope, in shares, below which an unknown is left as it is."""
+"""Pivot, in shares, below which an unknown keeps its value."""
 NO_HOLD = 1e-5
-"""Pull at a touchdown, as a share of the weight of a leg, that holds nothing in place: more than
-the drag in a breath of current."""
+"""Pull at a touchdown, as a share of the weight of a leg, that is too small to hold the net in its
+place. It is more than the drag in the weak current that stirs still water."""
 NEEDS_ROOM = -1
-"""How a net ends, besides FOUND and NO_SHAPE_NEAR: more segments than there is room for."""
+"""How a search ends that needs more segments than there is room for; else `FOUND` or
+`NO_SHAPE_NEAR`."""
 
 DEPTH_ERROR, TENSION_ERROR = range(2)
 
 
-def find_way(net: NetProblem, found: Sequence[float]) -> float:
-    """Write the step that brings to nothing what is left, by its slopes; its size, in shares.
+def newton_step(net: NetProblem, found: Sequence[float]) -> float:
+    """Solve the linear equations of a Newton step for a residual; the size of the step, in shares.
 
-    By elimination, column by column. Unknowns of which the slopes say nothing stay.
+    The step goes to `net.way`. Gaussian elimination with partial pivoting; an unknown without a
+    pivot keeps its value.
     """
     size, paper, row = len(found), net.paper, 0
     for r in range(size):
@@ -98,20 +102,20 @@ def squares(values: Sequence[float]) -> float:
     return total
 
 
-def keep(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
-    """Copy values."""
+def copy_values(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
+    """Copy values to where they are kept."""
     for k in range(len(values)):
         kept[k] = values[k]
 
 
 def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough: float) -> int:
-    """`close_net` of a net with one unknown, of which what is left falls.
+    """`close_net` of a net with one unknown, whose residual falls as the unknown grows.
 
-    By secants, and by halving a bracket where these do not halve what is left.
+    By secants, and by bisection if a secant does not halve the residual.
     """
     above, below, scale, slope = -inf, inf, net.scale[0], net.slopes[0][0]
     slope, halved = slope if slope < 0.0 else -1.0, True
-    failure = left_over(net, x, how, False)
+    failure = write_residual(net, x, how, False)
     for _ in range(MOST_HALVED):
         value, left = x[0], net.found[0]
         if failure != GOES_ON or abs(left) <= enough:
@@ -125,7 +129,7 @@ def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough:
             x[0] = 0.5 * (above + below)
         if x[0] == value:
             break
-        failure = left_over(net, x, how, False)
+        failure = write_residual(net, x, how, False)
         slope = (net.found[0] - left) / (x[0] - value) * scale
         halved = abs(net.found[0]) < 0.5 * abs(left)
     net.slopes[0][0] = slope
@@ -137,17 +141,17 @@ def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough:
 def close_net(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """Newton's method; the last march is that of the unknowns that it ends with.
+    """Close a net by Newton's method; its last march is that of the unknowns it ends with.
 
     Parameters
     ----------
-    x : the unknowns, where they about are; then those found
-    enough : what may be left, in shares
-    known : whether the slopes are about right already, and need not be found first
+    x : approximate unknowns, replaced by those found
+    enough : the residual that is small enough, in shares
+    known : whether the slopes are good already, and need not be found first
     """
     if len(x) == 1:
         return close_one(net, x, how, enough)
-    failure = left_over(net, x, how, not known)
+    failure = write_residual(net, x, how, not known)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NO_SHAPE_NEAR
     return close_on(net, x, how, enough, known)
@@ -156,21 +160,21 @@ def close_net(
 def close_on(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """`close_net` from unknowns that were marched last, on these segments."""
+    """`close_net` from unknowns that were the last to be marched, on the same segments."""
     if len(x) == 1:
         return close_one(net, x, how, enough)
     size, trial, fresh, plain, left = len(x), net.trial, not known, known, net.kept
-    keep(net.found, left)
+    copy_values(net.found, left)
     for _ in range(MOST_STEPS):
         if squares(left) <= enough * enough:
             break
         before = squares(left)
-        share = min(1.0, 0.5 / max(find_way(net, left), 1e-300))
+        share = min(1.0, 0.5 / max(newton_step(net, left), 1e-300))
         now = inf
         for _ in range(HALVINGS if fresh else 1):
             for k in range(size):
                 trial[k] = x[k] + share * net.way[k] * net.scale[k]
-            failure = left_over(net, trial, how, False)
+            failure = write_residual(net, trial, how, False)
             if failure == NO_ROOM:
                 return NEEDS_ROOM
             now = squares(net.found) if failure == GOES_ON else inf
@@ -184,32 +188,30 @@ def close_on(
                 return NO_SHAPE_NEAR
             break
         if plain:
-            keep(trial, x)
+            copy_values(trial, x)
             whole = share * share * squares(net.way)
             for k in range(size):
                 off = (net.found[k] - (1.0 - share) * left[k]) * share / max(whole, 1e-300)
                 for m in range(size):
                     net.slopes[k][m] += off * net.way[m]
-            keep(net.found, left)
+            copy_values(net.found, left)
         fresh = not now < LEADS_ON * before
         if fresh and (not plain or squares(left) > enough * enough):
-            failure = left_over(net, x, how, True)
+            failure = write_residual(net, x, how, True)
             if failure != GOES_ON:
                 return NO_SHAPE_NEAR
-            keep(net.found, left)
+            copy_values(net.found, left)
             plain = False
     if squares(left) > MOST_LEFT * MOST_LEFT * enough * enough:
         return NO_SHAPE_NEAR
     if not plain:
-        left_over(net, x, how, False)
+        write_residual(net, x, how, False)
     return FOUND
 
 
 def drifts(net: NetProblem) -> bool:
-    """Return whether no end is held and every leg to an anchor lies on the seabed unpulled.
-
-    Where such a net is depends on nothing but where it was put.
-    """
+    """Return whether nothing holds a net in its place: no end is held, and every leg to an anchor
+    lies on the seabed without pull."""
     anchored = False
     for i in range(len(net.legs)):
         leg, state = net.legs[i], net.state[i]
@@ -237,9 +239,10 @@ def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
 def close_coarsely(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Choose segments of twice a step [rad] and close a net that about is on them."""
+    """Choose segments of twice an angle step [rad] near approximate unknowns; close the net on
+    them."""
     choosing = Marching(sea, 2.0 * step, CHOSEN, False, False, COARSE, 0.0)
-    failure = left_over(net, x, choosing, False)
+    failure = write_residual(net, x, choosing, False)
     if failure != GOES_ON:
         return NEEDS_ROOM if failure == NO_ROOM else NO_SHAPE_NEAR
     coarse = Marching(sea, 2.0 * step, CHOSEN, True, True, COARSE, 0.0)
@@ -247,8 +250,9 @@ def close_coarsely(
 
 
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
-    """Close a net that about is to the last digits, on segments that are short enough."""
-    # the root of a single unknown is known well; else segments are chosen anew where these lead
+    """Close a net to the last digits from approximate unknowns, on fine enough segments."""
+    # segments chosen near rough unknowns depend on these, so that they are chosen again in the
+    # closed shape; a single unknown is known well enough at once
     if len(x) > 1 and net.lines.limits.near == 0.0:
         ending = close_coarsely(net, sea, x, step, max(enough, BEFORE_CHOICE))
         if ending != FOUND:
@@ -267,12 +271,12 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
 def close_both(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Close a net near its unknowns on the segments chosen at twice a step, and on their halves."""
+    """Close a net near its unknowns on segments of twice an angle step, and on their halves."""
     ending = close_coarsely(net, sea, x, step, enough)
     if ending != FOUND:
         return ending
     record_shapes(net, x, Marching(sea, 2.0 * step, CHOSEN, True, True, COARSE, 0.0))
-    keep(x, net.coarse)
+    copy_values(x, net.coarse)
     for i in range(len(net.legs)):
         state = net.state[i]
         state[COARSE_COUNT], state[COARSE_HUNG] = state[COUNT], state[HUNG]
@@ -285,7 +289,7 @@ def close_both(
 
 
 def segments_of(net: NetProblem) -> int:
-    """Number of the halves of all segments that were chosen."""
+    """Number of segments in the fine shape: the halves of all chosen ones."""
     segments = 0
     for i in range(len(net.legs)):
         for k in range(net.legs[i].cables):
@@ -294,7 +298,7 @@ def segments_of(net: NetProblem) -> int:
 
 
 def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
-    """Extrapolate all legs and the places of nodes; their errors."""
+    """Extrapolate the shapes of all legs and the places of the nodes; return the errors."""
     records, near = net.lines.work.records, net.lines.limits.near
     deep = taut = moved = relative = 0.0
     for k in range(len(x)):
@@ -314,18 +318,20 @@ def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
         pieces = net.legs[i].pieces
         first, last = net.first[i][:pieces], net.last[i][:pieces]
         find_ends(RefereeShape(record, nodes, nodes - 1, first, last))
-        keep(first, net.first[i])
-        keep(last, net.last[i])
+        copy_values(first, net.first[i])
+        copy_values(last, net.last[i])
     net.errors[DEPTH_ERROR], net.errors[TENSION_ERROR] = deep + moved, taut
     return Errors(deep + moved, taut, relative, taut, taut)
 
 
-class AskedNet(NamedTuple):
-    """Hold what `ask_net` is asked: to march a net, with the slopes or without, to close it or to
-    settle it, from unknowns that it changes; or whether the net as it was settled drifts.
+class NetTask(NamedTuple):
+    """One task for `do_task`, the single entry to the compiled laws of a net.
 
     Attributes
     ----------
+    task : MARCH or SLOPES marches the net, without its slopes or with them; CLOSE is `close_net`,
+        SETTLE is `settle`, DRIFTS is `drifts` of the net that was settled last
+    x : the unknowns, which CLOSE and SETTLE replace
     enough, known : as of `close_net`
     """
 
@@ -340,8 +346,8 @@ class AskedNet(NamedTuple):
 MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
-def ask_net(asked: AskedNet, _: float) -> float:
-    """Do what is asked; how it ended."""
+def do_task(asked: NetTask, _: float) -> float:
+    """Do a task; return how it ended, or of DRIFTS 1 for yes."""
     net, x, how = asked.net, asked.x, asked.how
     if asked.task == DRIFTS:
         return 1.0 if drifts(net) else 0.0
@@ -349,12 +355,12 @@ def ask_net(asked: AskedNet, _: float) -> float:
         return float(settle(net, how.sea, x, how.step, asked.enough))
     if asked.task == CLOSE:
         return float(close_net(net, x, how, asked.enough, asked.known))
-    failure = left_over(net, x, how, asked.task == SLOPES)
+    failure = write_residual(net, x, how, asked.task == SLOPES)
     if asked.task == MARCH and failure == GOES_ON:
         record_shapes(net, x, how)
     return float(failure)
 
 
-def ask_now(ask: Callable[[AskedNet, float], float], asked: AskedNet) -> float:
-    """Call `ask_net` by its address."""
+def do_by_address(ask: Callable[[NetTask, float], float], asked: NetTask) -> float:
+    """Call `do_task` by the address of its compiled form."""
     return ask(asked, 0.0)

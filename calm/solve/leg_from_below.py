@@ -1,9 +1,9 @@
-"""An anchored leg of a net, marched from its touchdown up.
+"""An anchored leg of a net, marched up from its touchdown.
 
-Unknown is the force on its lower end: horizontally the pull at the touchdown; vertically the weight
-that the seabed bears or, where that is negative, the pull on the anchor. From the touchdown up the
-march is stable even where nothing pulls there. Then the leg is slack: what lies on the seabed is
-longer than the way to the anchor.
+The unknowns are the force on its lower end. The horizontal ones are the pull at the touchdown. The
+vertical one is the weight that the seabed bears, or minus the pull on the anchor if nothing lies.
+Upwards from the touchdown the march is stable even if no pull acts there. Then the leg is slack:
+the part on the seabed is longer than the way to the anchor.
 """
 
 from collections.abc import Sequence
@@ -54,12 +54,14 @@ from calm.solve.leg_numbers import (
 from calm.solve.problem import HALVED, SearchArrays
 
 NO_PULL = 1e-9
-"""Pull at a touchdown, as a share of the scale of the leg's forces, that counts as none."""
+"""Largest pull at a touchdown, as a share of the scale of the leg's forces, that counts as none."""
 
 
 def course_from_below(course: Course) -> Course:
-    """The course of a leg below a point that is pulled at, from its lower end up and with such a
-    point there. Pieces keep their numbers."""
+    """Turn the course of a leg upside down: a point load at its lower end, then its stages upwards.
+
+    The point load at its upper end is left out. Pieces keep their numbers.
+    """
     stages, loads = [course.stages[0]], [course.loads[0]]
     cables: list[CableStretch] = []
     for stage in reversed(course.stages[1:]):
@@ -88,7 +90,7 @@ def weight_of(course: Course, stage: Stage, excess: float) -> float:
 
 @within
 def pull_of(up: float, east: float, north: float) -> Load:
-    """A load without a body: a pull [N]."""
+    """Return a load that is a force alone [N]."""
     return Load(0, -1, 0.0, 0.5, 0.0, up, 0.0, 0.0, 0.0, 0, 0.0, east, north, 0.0, 0.0)
 
 
@@ -102,9 +104,9 @@ def of_length(cable: CableStretch, length: float) -> CableStretch:
 
 
 def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March an anchored leg from its touchdown, or its anchor, up; how that ended.
+    """March an anchored leg up from its touchdown, or from its anchor; return how that ended.
 
-    Its record goes up the leg, see `record_down`.
+    Its record goes up the leg; `record_down` turns it.
     """
     leg, state, problem, bed = net.legs[i], net.state[i], leg_of(net, how.sea, i), bed_of(net, i)
     stages, loads, cables = net.up.stages[i], net.up.loads[i], net.up.cables[i][: leg.cables]
@@ -168,14 +170,15 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
         end, state[COUNT], state[GROUNDED] = lay(net, i, how.sea, height, how.record, False)
         down = end[2] - height
         state[LIES] = sqrt(end[0] * end[0] + end[1] * end[1] + down * down)
-    meet(net, i, x, how.loose)
+    write_anchor_miss(net, i, x, how.loose)
     return GOES_ON
 
 
 def lay(
     net: NetProblem, i: int, sea: Sea, height: float, record: int, recording: bool
 ) -> tuple[State, int, float]:
-    """`lay_line` of an anchored leg that was marched last, from its touchdown at a height [m]."""
+    """Lay the lower part of an anchored leg on the seabed, from its touchdown at a height [m]; see
+    `lay_line`. The leg must have been the last that `march_up` marched in its work arrays."""
     state, course = net.state[i], leg_of(net, sea, i).course
     east, north, up, level = state[TO_EAST], state[TO_NORTH], state[TO_UP], 0
     foot: State = (0.0, 0.0, height, -east, -north, -up, -1.0, level)
@@ -186,8 +189,8 @@ def lay(
 
 
 def record_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> None:
-    """Turn the record of an anchored leg that was marched last into one like those of other legs:
-    the pull at its upper end, what hangs, what lies on the seabed."""
+    """Turn the record of an anchored leg into one like those of other legs: first the pull at its
+    upper end, then the part that hangs, then the part on the seabed."""
     state, record, out = net.state[i], net.lines.work.records[i][how.record], net.passed[i]
     nodes, height = int(state[HUNG]), net.lines.work.records[i][how.record][2][0]
     set_row(net.lines.course.loads[i], 0, pull_of(-out[5], -out[3], -out[4]))
@@ -206,10 +209,10 @@ def record_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> N
 def pass_hung(
     net: NetProblem, i: int, course: Course, how: Marching, work: SearchArrays, depth: float
 ) -> int:
-    """March the part of an anchored leg that hangs, on its part of the cuts; how that ended.
+    """March the hanging part of an anchored leg; return how that ended.
 
-    Cuts are those of whole cables from below. Given ones are as long, or as short, as what hangs of
-    their cable asks for, so that the march is a smooth function of that.
+    Cuts are those of whole cables, from below. Given cuts are stretched or shortened to the length
+    of their cable that hangs, which makes the march a smooth function of this length.
     """
     leg, cuts = net.legs[i], net.cuts
     of_step, counts = work.chosen, work.counts
@@ -265,8 +268,8 @@ def pass_hung(
 
 
 def turn_round(record: Record, nodes: int) -> None:
-    """Turn the record of a march up into one down the leg, which begins with the pull at its upper
-    end in place of that at its lower one."""
+    """Reverse the record of a march upwards. It then begins with the pull at the upper end of the
+    leg, where it began with the pull at the lower end."""
     for k in range(6):
         a, b = 1, nodes - 1
         column = record[k]
@@ -291,13 +294,15 @@ def turn_round(record: Record, nodes: int) -> None:
 
 
 @within
-def meet(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
-    """Write by how much a leg misses its anchor, east and north, and begins off the seabed.
+def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
+    """Write the distance by which a leg misses its anchor, east and north, and the height above the
+    seabed at which it begins.
 
-    What lies on the seabed leads straight to the anchor where it is pulled; where it is not it may
-    be longer than the way. Both at once: the way d from the touchdown to the anchor, at most as
-    long as what lies reaches, r, has the direction of the pull h, or there is no pull. So d is the
-    projection of d + ρh on the disc of radius r, whatever ρ (Alart and Curnier's form of contact).
+    Pulled line on the seabed leads straight to the anchor. Line without pull may be longer than the
+    way. One condition covers both. Let d be the way from the touchdown to the anchor, r the reach
+    of the line on the seabed, and h the pull. Either d has the length r and the direction of h, or
+    d is shorter than r and h is zero. So d is the projection of d + ρh on the disc of radius r,
+    for any ρ > 0 (the form of contact conditions by Alart and Curnier).
 
     `loose` is as in `Marching`.
     """
@@ -328,7 +333,7 @@ def meet(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
 
 
 def lay_loosely(net: NetProblem, i: int, x: Sequence[float], record: Record) -> None:
-    """Draw what lies of a slack leg: straight to its anchor, as closely as it has to."""
+    """Draw the part of a slack leg on the seabed: straight to its anchor, and shortened to fit."""
     state, hung, count = net.state[i], int(net.state[i][HUNG]), int(net.state[i][COUNT])
     foot, reach = hung - 1, max(net.state[i][LIES], 1e-300)
     to_east, to_north, _ = place_of(net, i, x, 1)

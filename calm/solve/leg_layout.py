@@ -78,9 +78,9 @@ class NetLeg:
 
 @dataclass(frozen=True)
 class LaidLeg:
-    """A leg as it is marched: its line, and that in numbers.
+    """A leg as it is marched: its line, and the problem that its march takes.
 
-    A leg without a free upper end that has a free lower one is listed from there.
+    The line of a leg that hangs with a free lower end is listed from that end.
     """
 
     leg: NetLeg
@@ -96,7 +96,7 @@ class LaidLeg:
 
     @property
     def unknowns(self) -> int:
-        """Return how many unknowns it has of its own: on a slope also how high it comes down."""
+        """Number of its own unknowns: on a slope the height of the touchdown is one more."""
         if self.kind == leg_numbers.ANCHORED:
             return 3 + any(self.bed[:2])
         return 3 if self.kind == leg_numbers.PULLED else 1
@@ -152,8 +152,8 @@ class LaidLeg:
 
     @property
     def stands(self) -> float:
-        """Change of its unknown from a float that is immersed to one out of the water [m]: as great
-        as its length, so that a step towards either lands on the way."""
+        """Range of its unknown that stands for a float at the surface, from immersed to out of the
+        water [m]. It is as long as the leg, so that a Newton step does not pass over it."""
         return max(float(self.line.length.sum()), 0.5)
 
     @property
@@ -178,8 +178,8 @@ class LaidLeg:
         return sum(stage.length for stage in stages), sum(weights)
 
     def most_lying(self, height: float) -> float:
-        """Weight that the seabed bears at most below an upper end at a height above it [N]: of all
-        but so much of the leg; inf where it cannot lie."""
+        """Largest weight on the seabed below an upper end at a height above it [N]: that of the leg
+        without as much of its upper part. inf if the leg cannot lie."""
         course, hung, weight = self.problem.course, max(height, 0.0), 0.0
         if self.may_lie[1] <= 0.0:
             return inf
@@ -191,12 +191,12 @@ class LaidLeg:
 
     @property
     def highest(self) -> float:
-        """Return how high it may come [m]: to the surface, or where an end is held above it."""
+        """Greatest height that is allowed [m]: of the surface, or of an end held above it."""
         return max(0.0, *(each.place[2] for each in self.ends if each.place is not None), 0.0)
 
 
 def lay_net(laid: Sequence[LaidLeg], nodes: int, compiled: bool, room: int) -> NetProblem:
-    """Lay out a net, with room for so many segments in each of its legs."""
+    """Lay out a net, with room for `room` segments in each of its legs."""
     firsts = [0, *np.cumsum([each.unknowns for each in laid]).tolist()]
     size, problems = firsts[-1] + 3 * nodes, [each.problem for each in laid]
     courses = [each.course for each in problems]
@@ -277,12 +277,12 @@ def leg_found(
     errors: tuple[float, float],
     water: Water, settings: Settings, compiled: bool,
 ) -> Solution:  # fmt: skip
-    """A leg as a line of its own, audited.
+    """Return a leg as the solution of a line of its own, audited.
 
     Parameters
     ----------
     i : its number
-    ends : (3,) where it ends as it was marched, and as extrapolated [m]
+    ends : (3,) place of its end in the fine shape, and extrapolated [m]
     errors : of depths [m] and of tensions [N]
     """
     state, (deep, taut) = net.state[i], errors

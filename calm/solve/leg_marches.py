@@ -1,7 +1,8 @@
-"""A net of legs as laws: its legs marched, and what is left at its ends and nodes.
+"""Residual and Jacobian of a net of legs, as compiled laws.
 
-Unknown are the depths of free ends, the pulls on ends that are not free, and the places of nodes;
-slopes are differences of marches on the same segments.
+The unknowns are the depths of free ends, the pulls on other ends, and the places of nodes. The
+residual (`found`) is the distance by which each leg misses its end, and the sum of the pulls at
+each node. The Jacobian (`slopes`) is made of differences between marches on the same segments.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -12,7 +13,7 @@ from calm.physics.line import GOES_ON
 from calm.physics.passing import FAILURE, HANGING, LANDED, NODES, How, Z, pass_line
 from calm.physics.passing import GROUNDED as LIES
 from calm.solve.closing import place
-from calm.solve.leg_from_below import march_up, meet, pull_of
+from calm.solve.leg_from_below import march_up, pull_of, write_anchor_miss
 from calm.solve.leg_numbers import (
     ANCHORED,
     COUNT,
@@ -46,8 +47,10 @@ ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-2, 1e-9, 50, -0.3
 how often a leg is marched for it, and the slope at which its secants are held."""
 
 
-def begun(net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]) -> tuple[float, float]:
-    """Load a leg with what is unknown of it.
+def load_leg(
+    net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]
+) -> tuple[float, float]:
+    """Load a leg with its unknowns.
 
     Returns
     -------
@@ -67,11 +70,11 @@ def begun(net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]) -> 
 
 
 def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg from what is unknown of it; how that ended, see `calm.physics.line`.
+    """March a leg from its unknowns; return how that ended, see `calm.physics.line`.
 
-    One that strums until it does at the frequency of the vortices at its end. That falls as the
-    frequency assumed rises, since more drag lifts the line: it is found by secants, and by halving
-    a bracket where these do not lead on.
+    A leg that strums is marched until it vibrates at the frequency of the vortices at its end. This
+    falls as the assumed frequency rises, since more drag lifts the line. It is found by secants,
+    and by bisection of a bracket if these do not converge.
     """
     leg, state = net.legs[i], net.state[i]
     failure = march_once(net, i, x, how)
@@ -98,7 +101,7 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
 
 
 def march_once(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg, at the frequency at which it was marched last where it strums."""
+    """March a leg once; one that strums at its last frequency."""
     net.state[i][SHARE] = 1.0
     if net.legs[i].kind == ANCHORED:
         return march_up(net, i, x, how)
@@ -109,7 +112,7 @@ def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
     """March a leg from its upper end, or from a free lower one."""
     leg, state, problem = net.legs[i], net.state[i], leg_of(net, how.sea, i)
     course, work = problem.course, problem.work
-    depth, out = begun(net, problem, i, x)
+    depth, out = load_leg(net, problem, i, x)
     cuts, counts = work.chosen, work.counts
     record, left = work.records[how.record], work.left
     reach = degrees(how.step) * leg.longest
@@ -147,7 +150,7 @@ def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
 
 
 def row_of(net: NetProblem, i: int, k: int) -> int:
-    """Where a result of a leg's march counts among what is left; -1 for nowhere."""
+    """Row of the residual for the result k of a leg's march, see `OUT`; -1 for none."""
     leg = net.legs[i]
     pulled = leg.own > 1
     if k < 2:
@@ -161,7 +164,7 @@ def row_of(net: NetProblem, i: int, k: int) -> int:
 
 
 def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, column: int) -> None:
-    """Add a share of what a leg came out with to what is left, or to a column of its slopes."""
+    """Add a share of the results of a leg's march to the residual, or to a column of its slopes."""
     for k in range(OUT):
         row = row_of(net, i, k)
         if row < 0:
@@ -173,9 +176,9 @@ def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, colu
             net.slopes[row][column] += change
 
 
-def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes: bool) -> int:
-    """Write what is left to be closed and balanced to `found`, and its slopes where asked for, in
-    scales that are taken anew.
+def write_residual(net: NetProblem, x: MutableSequence[float], how: Marching, slopes: bool) -> int:
+    """March all legs and write the residual to `found`; if asked, also its slopes, for which the
+    scales of forces are taken anew.
 
     Returns how the marches ended.
     """
@@ -215,19 +218,19 @@ def left_over(net: NetProblem, x: MutableSequence[float], how: Marching, slopes:
 
 
 def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: Marching) -> int:
-    """Add what a leg has in the slopes of what is left."""
+    """Add the share of a leg to the slopes of the residual."""
     leg, nodes, at, passed = net.legs[i], net.nodes_at, net.legs[i].first, net.passed[i]
     start, end = nodes + 3 * leg.start, nodes + 3 * leg.end
     if leg.kind == ANCHORED and leg.start >= 0:
         net.slopes[at + 2][start + 2] -= net.scale[start + 2] / net.rows[at + 2]
-        for k in range(2):  # where its upper end is changes what it misses, not its march
+        for k in range(2):  # the place of its upper end changes what it misses, not its march
             before = x[start + k]
             add_passed(net, i, passed, -1.0 / JUMP, start + k)
             x[start + k] = before + JUMP * net.scale[start + k]
-            meet(net, i, x, how.loose)
+            write_anchor_miss(net, i, x, how.loose)
             add_passed(net, i, passed, 1.0 / JUMP, start + k)
             x[start + k] = before
-            meet(net, i, x, how.loose)
+            write_anchor_miss(net, i, x, how.loose)
     moved = Marching(how.sea, how.step, how.cuts, True, how.exact, OTHER, how.loose)
     free = leg.own + (1 if leg.kind == PULLED and leg.start >= 0 else 0)
     for m in range(free):
@@ -271,4 +274,4 @@ def take_scale(net: NetProblem, i: int, x: Sequence[float], loose: float) -> Non
     for k in range(3):
         net.scale[leg.first + k] = min(max(pull, LEAST_PULL * leg.weight), net.force)
     if leg.kind == ANCHORED:
-        meet(net, i, x, loose)
+        write_anchor_miss(net, i, x, loose)

@@ -1,4 +1,4 @@
-"""A net of legs in numbers, as the laws that march and close it take it."""
+"""A net of legs in the arrays and named tuples that the compiled laws take."""
 
 from collections.abc import MutableSequence, Sequence
 from math import inf
@@ -16,24 +16,24 @@ STANDING, HANGING_DOWN, PULLED, ANCHORED = range(4)
 """Legs marched from a free upper end, from a free lower end, from an upper end that is held or at a
 node, and from the seabed up to such an end."""
 STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG = range(6)
-"""State of a leg after its last march: the stage where it comes down on the seabed or -1, its
-length there [m], its share of a float's buoyancy in use, how often it was marched; its nodes, and
-those of them that hang."""
+"""State of a leg after its last march: the stage of its touchdown, or -1; its length on the seabed
+[m]; the share of a float's buoyancy in use; the number of its marches, of its nodes, and of the
+nodes that hang."""
 EAST, NORTH, TO_EAST, TO_NORTH, TO_UP, HANGS, LIES, SLACK = range(6, 14)
-"""And of an anchored leg: the way from its touchdown to its upper end east and north [m]; the pull
-there, east, north and up [N]; how much of the stage hangs in which it comes down, as of
-`calm.physics.seabed`; how far the rest reaches along the seabed, and by how much that is more than
-the way to its anchor [m]."""
+"""State of an anchored leg: the way from its touchdown to its upper end, east and north [m]; the
+pull at the touchdown, east, north and up [N]; the hanging length of the stage of the touchdown, as
+in `calm.physics.seabed`; the reach of its part on the seabed, and how much longer this is than the
+way to the anchor [m]."""
 FREQUENCY, LACKING, YIELD = range(14, 17)
-"""And of a leg that strums: the frequency of its cables [Hz], what that lacks of the one that is
-shed [Hz], and the slope of this [-]."""
+"""State of a leg that strums: the frequency of its cables [Hz]; the frequency of the vortices minus
+that [Hz], and its slope [-]."""
 COARSE_COUNT, COARSE_HUNG, COARSE_STAGE, COARSE_GROUNDED = range(17, 21)
-"""And on coarse segments: its nodes, those that hang, the stage where it comes down, and its length
-on the seabed [m]."""
+"""`COUNT`, `HUNG`, `STAGE` and `GROUNDED` of the shape on coarse segments."""
 OF_LEG = 21
 OUT = 7
-"""Results of a march: way east and north, height and force where it came out, or of an anchored leg
-by how much it misses its anchor; then by how much it begins off the seabed."""
+"""Number of results of a march (`passed`): 0 and 1 the way east and north, or the miss of an
+anchored leg; 2 the height and 3 to 5 the force at the end of the march; 6 the height above the
+seabed at which an anchored leg begins."""
 
 
 class LegRow(NamedTuple):
@@ -49,7 +49,7 @@ class LegRow(NamedTuple):
     lifts : vertical pull on the anchor from which on its end is at the top [N], see `end_height`
     deeper_east, deeper_north : as of `Water`, below the leg
     longest : segment at an angle step of 1° [m]
-    stands : change of its unknown from a float that is immersed to one out of the water [m]
+    stands : range of its unknown that stands for a float at the surface [m], see `LaidLeg`
     highest : how high it may come [m]
     rides : as in `Limits`
     sheds : Strouhal number over diameter at its end, where vortices set the frequency of a leg that
@@ -87,20 +87,20 @@ class LegRow(NamedTuple):
 
 
 class NetProblem(NamedTuple):
-    """A net to be closed.
+    """A net to be closed, with the work arrays of its search.
 
     Attributes
     ----------
-    lines : the legs in one: what is of them has a row for each, as long as the longest needs
+    lines : a `LineProblem` whose arrays have a row for each leg, as long as the longest needs
     up : the courses of anchored legs from below, see `calm.solve.leg_from_below`
     cuts : room for the segments of such a leg
     held : (·, 6) places of the ends of each leg that are held, where its march begins and ends [m]
     state : numbers of each leg: `STAGE` and those after it
     passed : (·, `OUT`) what each march came out with
     first, last : node of each piece's ends
-    found, kept, slopes, way : what is left, by shares of `rows`, now and before, its slopes by
-        shares of `scale`, and the step that they ask for
-    trial, paper, order : room to find it
+    found, kept : the residual as shares of `rows`, of the last march and of the unknowns kept
+    slopes, way : the Jacobian of `found` by shares of `scale`, and the Newton step
+    trial, paper, order : work arrays for the step
     coarse, better : the unknowns on coarse segments, and as extrapolated
     scale : of the unknowns; that of the forces on a leg is its own
     errors : of depths [m] and tensions [N]
@@ -137,14 +137,14 @@ class NetProblem(NamedTuple):
 
 
 class Marching(NamedTuple):
-    """Tell how all legs are marched: in which water, at which angle step, on which cuts, given or
-    chosen now, and where they are recorded.
+    """How all legs are marched: water, angle step, cuts, whether these are given or chosen in the
+    march, and the record.
 
-    `exact` is whether segments are split at every level. Slopes are those of the march that they
-    belong to: marches that split otherwise differ by more than a jump of an unknown makes.
+    `exact`: whether segments are split at every level. Marches for slopes must split as the march
+    that they belong to: other splits change the results by more than the small step does.
 
-    `loose` is the pull that a slack leg has after all, towards its anchor, as a share of its scale:
-    for a start, from which it is found where a net with slack legs alone is carried.
+    `loose`: pull of a slack leg towards its anchor, as a share of its scale. It is zero in truth; a
+    search may begin with more, so that slack legs say which way a net drifts.
     """
 
     sea: Sea
@@ -158,7 +158,7 @@ class Marching(NamedTuple):
 
 @within
 def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
-    """A leg as a line."""
+    """Return a leg as the problem of a single line."""
     leg, lines, own = net.legs[i], net.lines, net.lines.afloat[i]
     course, work = lines.course, lines.work
     course = Course(
@@ -199,7 +199,7 @@ def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: in
 
 @within
 def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[float, float, float]:
-    """Return where the record of a leg is to begin (0) or to end (1) [m]."""
+    """Return the place where the record of a leg is to begin (`end` 0) or to end (1) [m]."""
     leg, held = net.legs[i], net.held[i]
     node = leg.end if end else leg.start
     if node >= 0:

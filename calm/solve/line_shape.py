@@ -1,4 +1,4 @@
-"""A moored line closed on coarse and on halved segments, for `calm.solve.fineness`."""
+"""A moored line closed on coarse and on halved segments, see `calm.solve.fineness`."""
 
 from math import inf, isnan
 from typing import NamedTuple
@@ -28,13 +28,15 @@ from calm.solve.solution import (
 )
 
 MOST_BETWEEN = 6
-"""Marches that look for two shapes between which all is linear."""
+"""Most marches to find two shapes near enough for linear interpolation between them."""
 LINEAR = 4e-7
-"""Product of the misses of two shapes, in spans squared, between which a third is linear."""
+"""Largest product of the misses of two shapes, in spans squared, for a third to be interpolated
+linearly."""
 FAR = 3e-4
-"""Miss, as a share of the span, that halving the cuts may lead to at most there."""
+"""Largest miss on halved cuts, as a share of the span, for that interpolation."""
 FAR_BELOW = 0.01
-"""How far below the seabed, in depths of the water, a line need not be cut finer to be refused."""
+"""Depth below the seabed, as a share of the water depth, at which a line is refused on coarse cuts
+already."""
 
 
 class FoundShape(NamedTuple):
@@ -63,7 +65,7 @@ NO_OTHER = OtherEquilibrium(-1.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def not_audited(closed: Closed, errors: Errors, share: float, grounded: float) -> FoundShape:
-    """The shape before it is audited."""
+    """Return a shape that is still to be audited."""
     return FoundShape(closed, errors, share, grounded, 0.0, 0.0, NO_OTHER)
 
 
@@ -74,11 +76,13 @@ def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
 
 
 def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
-    """Close the line finely enough, from a coarse root; in the record `FINE`, not audited.
+    """Close a line from a coarse root on segments that are fine enough.
+
+    The shape is in the record `FINE` and is not audited yet.
 
     Parameters
     ----------
-    hangs : whether it is to hang clear of the seabed: then one that comes far below is refused
+    hangs : whether the line is to hang clear of the seabed; one that comes far below it is refused
     """
     problem, limits = search.problem, search.problem.limits
     coarse = fine = not_closed(NO_SHAPE_NEAR, 0.0, root)
@@ -122,7 +126,7 @@ def extent_of(closed: Closed) -> Extent:
 
 
 def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bool) -> Closed:
-    """`polish`, sparing a line that hangs far below the seabed the finer cuts."""
+    """`polish`, then refuse a line that hangs far below the seabed before it is cut finer."""
     return refused_far_below(search.problem, polish(search, root, cuts, record), record, hangs)
 
 
@@ -138,7 +142,7 @@ def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: 
 
 
 def lowest_node(problem: LineProblem, record: Record, nodes: int) -> tuple[int, float]:
-    """The node that is lowest above the seabed, and how far above it [m]."""
+    """The node that is nearest to the seabed, and its height above it [m]."""
     lowest, least, end = 0, inf, nodes - 1
     for n in range(nodes):
         x, y = record[0][n] - record[0][end], record[1][n] - record[1][end]
@@ -149,10 +153,11 @@ def lowest_node(problem: LineProblem, record: Record, nodes: int) -> tuple[int, 
 
 
 def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
-    """Close one of many on its cuts and on these halved, as what is linear between two shapes.
+    """Close a line of a batch on its cuts and on their halves, by linear interpolation.
 
-    One march on either does, as what a change of the unknown leads to is known from the shape
-    before, in the record `OTHER`. Not `FOUND` where that is too far, or lies on the seabed.
+    Two shapes on the cuts, in the records `OTHER` and `COARSE`, show how every node moves with the
+    unknown. Both closed shapes follow from them, and from one march on the halves. Not `FOUND` if
+    the closed shapes are too far from those marched, or if the line lies on the seabed.
     """
     problem, unknown = search.problem, root.unknown
     limits, work = problem.limits, problem.work
@@ -196,11 +201,11 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
 
 
 def move_shapes(problem: LineProblem, nodes: int, closing: float, halved: float) -> int:
-    """Move the shapes COARSE and FINE by shares of the way from `OTHER` to COARSE.
+    """Move the shapes `COARSE` and `FINE` by shares of the change from `OTHER` to `COARSE`.
 
     Returns
     -------
-    How many nodes the fine one has.
+    Number of nodes of the fine shape.
     """
     records, same = problem.work.records, 0
     before, coarse, fine = records[OTHER], records[COARSE], records[FINE]

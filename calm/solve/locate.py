@@ -75,8 +75,8 @@ class CoarseRoots(NamedTuple):
     other: Root
 
 
-def locate(search: Search, lands: bool) -> CoarseRoots:
-    """Find coarse roots.
+def locate(search: Search, lands: bool, first: bool) -> CoarseRoots:
+    """Find coarse roots, or only the `first` below the surface.
 
     Where the miss grows with depth a line does not stay, so such roots do not count.
     """
@@ -118,9 +118,9 @@ def locate(search: Search, lands: bool) -> CoarseRoots:
             between = dip(search, unknown, earlier, here, after)
             if isnan(between[1]):
                 return stopped(problem, none)
-        first, second = (between, here) if between[0] < here[0] else (here, between)
+        upper, second = (between, here) if between[0] < here[0] else (here, between)
         for step in range(2):
-            lower = first if step == 0 else second
+            lower = upper if step == 0 else second
             if before[1] >= 0.0 > lower[1]:
                 root = coarse_root(search, unknown, before[0], before[1], lower[0], lower[1])
                 if isnan(root.miss):
@@ -129,7 +129,7 @@ def locate(search: Search, lands: bool) -> CoarseRoots:
                     other = root
                 else:
                     highest = root
-                if problem.limits.near > 0.0:
+                if first:
                     return CoarseRoots(FOUND, 0.0, highest, other)
             before = lower
     if not highest.found:

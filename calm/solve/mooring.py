@@ -37,6 +37,7 @@ from calm.solve.problem import (
 from calm.solve.search import Referee, audited, find_shape
 from calm.solve.solution import (
     FOUND,
+    MISSES,
     SLACK_ON_DIGITS,
     OtherEquilibrium,
     Settings,
@@ -334,11 +335,13 @@ class Nearby:
 
 def close_coarsely(search: Search, lands: bool) -> Closed:
     """Close a line on the cuts that the march chooses at its angle step, in the record `FINE`."""
-    located = locate(search, lands)
+    located, step = locate(search, lands, False), search.problem.limits.angle_step
     if located.ending != FOUND:
         return not_closed(located.ending, located.value, located.root)
-    root = planned(search, located.root, search.problem.limits.angle_step)
-    return polish(search, root, CHOSEN, FINE)
+    closed = polish(search, planned(search, located.root, step), CHOSEN, FINE)
+    if closed.ending == MISSES and located.other.found:  # as in `calm.solve.search.highest`
+        closed = polish(search, planned(search, located.other, step), CHOSEN, FINE)
+    return closed
 
 
 def _used(problem: LineProblem, closed: Closed, line: Line) -> float:

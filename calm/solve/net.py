@@ -8,6 +8,7 @@ balance: see `calm.solve.leg_marches`.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from math import sqrt
 from typing import Any, TypeVar
 
 import numpy as np
@@ -18,7 +19,7 @@ from calm.physics.line import FAILURES, GOES_ON, NO_ROOM, Floats, Line, Trace, W
 from calm.physics.profile import Profile
 from calm.solve import leg_closing, leg_numbers
 from calm.solve.finish import refuse_unbalanced
-from calm.solve.leg_closing import AskedNet, ask_net, ask_now, keep
+from calm.solve.leg_closing import NetTask, copy_values, do_by_address, do_task
 from calm.solve.leg_layout import LaidLeg, NetLeg, lay_net, leg_found, refuse_misplaced, unsettled
 from calm.solve.leg_numbers import Marching
 from calm.solve.mooring import BREATH, stirred
@@ -35,8 +36,9 @@ from calm.solve.solution import (
 
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
-LOOSE = 1e-3, 1e-5, 1e-7
-"""Pulls of slack legs, as shares of their scales, to find a net that nothing else holds."""
+LOOSE, TIGHTEST, FALL = 1e-2, 1e-8, 0.1
+"""Pulls of slack legs, as shares of their scales, with which a net that nothing else holds is first
+and last sought, and by what they fall between."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ class NetSolution:
     miss : the worst distance of a leg's end from where it is held [m]
     depth_error, tension_error : own estimate of the worst errors [m], [N]
     marches : done for it
-    unknowns : what it was found by, for nets that stand about alike
+    unknowns : of the solution, from which similar nets are sought
     """
 
     legs: tuple[Solution, ...]
@@ -70,7 +72,8 @@ class LacksRoom(Exception):
 
 
 class NetSearch:
-    """All legs, and what is unknown of them: of each leg its own, then the places of the nodes."""
+    """The search for a net: its legs laid out, and its unknowns, those of each leg and then the
+    places of the nodes."""
 
     def __init__(
         self, legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
@@ -83,12 +86,12 @@ class NetSearch:
         self.put_in(water)
 
     def put_in(self, water: Water) -> None:
-        """Put the same net in other water, of the same depth and density."""
+        """Give the net other water, of the same depth and density."""
         profile = Profile(water)
         self.water, self.sea = water, profile.packed if self.compiled else profile.sea
 
     def begin(self, start: NetStart) -> Floats:
-        """The unknowns of a start."""
+        """Return the unknowns of a start."""
         x, first = np.zeros(len(self.net.found)), 0
         x[self.net.nodes_at :] = start.nodes.ravel()
         for i, each in enumerate(self.laid):
@@ -107,15 +110,15 @@ class NetSearch:
             first += each.unknowns
         return x
 
-    def asked(self, task: int, x: Floats, how: Marching, enough: float = 0.0) -> tuple[int, Floats]:
-        """Ask about unknowns, see `AskedNet`; how it ended, and the unknowns then."""
+    def do(self, task: int, x: Floats, how: Marching, enough: float = 0.0) -> tuple[int, Floats]:
+        """Do a task of `NetTask`; return how it ended, and the unknowns after it."""
         own: Any = x.copy() if self.compiled else x.tolist()
-        asked = AskedNet(task, self.net, own, how, enough, False)
+        asked = NetTask(task, self.net, own, how, enough, False)
         if self.compiled:
-            ask = by_address(ask_net, asked)
-            ending = outcome(ask_now, True, ask, asked)
+            ask = by_address(do_task, asked)
+            ending = outcome(do_by_address, True, ask, asked)
         else:
-            ending = ask_net(asked, 0.0)
+            ending = do_task(asked, 0.0)
         closing = task in (leg_closing.CLOSE, leg_closing.SETTLE)
         if ending == (leg_closing.NEEDS_ROOM if closing else NO_ROOM):
             raise LacksRoom
@@ -128,19 +131,23 @@ class NetSearch:
         return Marching(self.sea, float(step), cuts, given, given, record, loose)
 
     def closed(self, x: Floats, step: float, enough: float, loose: float = 0.0) -> Floats | None:
-        """Newton's method; None where it leads nowhere. `loose` is as in `Marching`."""
+        """Return the unknowns closed by Newton's method, None if it does not converge.
+
+        `loose` is as in `Marching`.
+        """
         how = self.marching(step, CHOSEN, FINE, given=False, loose=loose)
-        ending, found = self.asked(leg_closing.CLOSE, x, how, enough)
+        ending, found = self.do(leg_closing.CLOSE, x, how, enough)
         return found if ending == FOUND else None
 
     def settled(self, x: Floats) -> Floats:
-        """The unknowns closed to the last digits, on segments that are short enough.
+        """Return the unknowns closed to the last digits, on segments that are fine enough.
 
-        NoEquilibrium: they cannot be.
+        NoEquilibrium: Newton's method does not converge.
         """
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=False)
-        for enough in (leg_closing.CLOSED, 100.0 * leg_closing.CLOSED):  # slack ones; audited too
-            ending, found = self.asked(leg_closing.SETTLE, x, how, enough)
+        # slack legs may miss the first limit; the audit judges what meets the second alone
+        for enough in (leg_closing.CLOSED, 100.0 * leg_closing.CLOSED):
+            ending, found = self.do(leg_closing.SETTLE, x, how, enough)
             if ending == FOUND:
                 return found
         raise unsettled("its legs do not come together to the last digits")
@@ -151,14 +158,15 @@ class NetSearch:
         return x[first + 3 * end.node :] if end.place is None else np.array(end.place)
 
     def shape(self, i: int, x: Floats) -> Trace:
-        """The shape of a leg as it was marched last, where it is."""
+        """Return the shape of a leg as it was marched last, in the frame of the net."""
         nodes = int(self.net.state[i][leg_numbers.COUNT])
         trace = Trace.of(self.net.lines.work.records[i][FINE], nodes)
         trace.position[:, :2] += self.end(i, x)[:2] - trace.position[-1, :2]
         return trace
 
-    def told(self, x: Floats) -> NetSolution:
-        """The solution that was settled, every leg audited and every node in balance.
+    def solution(self, x: Floats) -> NetSolution:
+        """Return the solution that was settled last, with every leg audited and every node in
+        balance.
 
         NoEquilibrium: it does not pass the checks.
         """
@@ -166,7 +174,7 @@ class NetSearch:
         water = self.water
         slow = float(np.hypot(water.u, water.v).max(initial=0.0)) <= BREATH
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=True)
-        if slow and self.asked(leg_closing.DRIFTS, x, how)[0]:
+        if slow and self.do(leg_closing.DRIFTS, x, how)[0]:
             raise Status.SLACK.because(
                 "Nothing holds the net sideways: every leg to an anchor lies on the seabed and is "
                 "slack, so that the net may be anywhere between its anchors.",
@@ -222,7 +230,7 @@ def solve_net(
     expect_many(4.0 * len(legs))
 
     def solved(net: NetSearch) -> NetSolution:
-        found = net.told(settled_from(net, near))
+        found = net.solution(settled_from(net, near))
         before = 0
         for each, leg in zip(net.laid, found.legs, strict=True):
             refuse_misplaced(each, leg, found.depth_error, before)
@@ -242,7 +250,7 @@ def with_room(
     solve: Callable[[NetSearch], Answer],
     legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
 ) -> Answer:  # fmt: skip
-    """Return what becomes of a search, with room for as many segments as it takes."""
+    """Return the outcome of a search, repeated with more room until all segments fit."""
     room = ROOM
     while True:
         try:
@@ -252,31 +260,37 @@ def with_room(
 
 
 def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
-    """The unknowns of a net closed to the last digits.
+    """Return the unknowns of a net closed to the last digits.
 
-    Where nothing but slack legs holds it at first, in still water, nothing says which way leads on.
-    It is then sought with legs that pull a little after all, by less and less.
+    If slack legs alone hold a net in still water, no force says which way it drifts. Newton's
+    method then begins with slack legs that pull a little, towards their anchors, and this pull is
+    lowered to a tenth at a time, or by less if that does not converge.
 
     Raises
     ------
     NoEquilibrium
     """
     try:
-        return net.settled(about(net, near))
+        return net.settled(roughly_closed(net, near))
     except NoEquilibrium as failure:
         try:
-            x = about(net, None, LOOSE[0])
-            for loose in LOOSE[1:]:
-                closer = net.closed(x, 4.0 * net.settings.angle_step, leg_closing.NEAR, loose)
-                x = x if closer is None else closer
+            x, loose, fall = roughly_closed(net, None, LOOSE), LOOSE, FALL
+            while loose > TIGHTEST and fall < 0.6:
+                less, step = fall * loose, 4.0 * net.settings.angle_step
+                closer = net.closed(x, step, leg_closing.NEAR, less)
+                x, loose = (x, loose) if closer is None else (closer, less)
+                fall = fall if closer is not None else sqrt(fall)
             return net.settled(x)
         except NoEquilibrium:
             raise failure from None
 
 
-def about(net: NetSearch, near: NetSolution | None, loose: float = 0.0) -> Floats:
-    """The unknowns of a net about closed: near another, else from still water on, which of several
-    equilibria leads to the highest; where that leads nowhere, from where it comes to rest.
+def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0) -> Floats:
+    """Return roughly closed unknowns of a net.
+
+    They are sought near another solution if there is one. Else the current is raised from still
+    water in steps, which leads to the highest of several equilibria. If that does not converge,
+    they are sought from where lumps let go in the current come to rest (`calm.solve.net_start`).
 
     `loose` is as in `Marching`.
 
@@ -330,13 +344,13 @@ class NearbyNet:
         step = settings.angle_step
         self._how = net.marching(step, CHOSEN, FINE, given=True)
         chosen = net.marching(step, CHOSEN, FINE, given=False)
-        _, x = net.asked(leg_closing.MARCH, about(net, near), chosen)
-        ending, self._x = net.asked(leg_closing.CLOSE, x, self._how, leg_closing.CLOSED)
+        _, x = net.do(leg_closing.MARCH, roughly_closed(net, near), chosen)
+        ending, self._x = net.do(leg_closing.CLOSE, x, self._how, leg_closing.CLOSED)
         if ending != FOUND:
             raise unsettled("its legs do not come together to the last digits")
-        net.asked(leg_closing.SLOPES, self._x, self._how)
+        net.do(leg_closing.SLOPES, self._x, self._how)
         self._slopes = np.array(net.net.slopes)
-        net.asked(leg_closing.MARCH, self._x, self._how)
+        net.do(leg_closing.MARCH, self._x, self._how)
 
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
         """The node at the top of a piece of a leg, or at a clamp, in every one of these shapes."""
@@ -361,15 +375,15 @@ class NearbyNet:
         legs = [each.leg for each in net.laid]
         legs[number] = replace(legs[number], line=line)
         other = NetSearch(legs, net.nodes, net.water, net.settings, net.room)
-        keep(net.net.scale, other.net.scale)
+        copy_values(net.net.scale, other.net.scale)
         mine, its = other.net.lines.work, net.net.lines.work
         for i in range(len(legs)):
             mine.chosen[i][:], mine.counts[i][:] = its.chosen[i], its.counts[i]
         for _ in range(2):
-            other.asked(leg_closing.MARCH, x, self._how)
+            other.do(leg_closing.MARCH, x, self._how)
             left = np.array(other.net.found)
             x = x - np.linalg.lstsq(self._slopes, left, rcond=1e-14)[0] * np.array(net.net.scale)
-        failure, _ = other.asked(leg_closing.MARCH, x, self._how)
+        failure, _ = other.do(leg_closing.MARCH, x, self._how)
         if failure != GOES_ON:
             raise unsettled(FAILURES[failure])
         return other.shape(leg, x).position, float(other.net.state[leg][leg_numbers.SHARE])

@@ -42,6 +42,7 @@ from calm.solve.solution import (
     BELOW_SEABED,
     FOUND,
     MARCH_STOPPED,
+    MISSES,
     NO_SHAPE_NEAR,
     NOT_CLOSED,
     NOT_LYING,
@@ -165,10 +166,13 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
         found = shape_near(search, referee, start, lands)
         if found.closed.ending == FOUND and is_highest(problem, found.closed.root):
             return found
-    located = locate(search, lands)
+    located = locate(search, lands, problem.limits.near > 0.0)
     if located.ending != FOUND:
         return refused(located.ending, located.value, -1, located.root)
     found = shape_near(search, referee, located.root, lands)
+    if found.closed.ending == MISSES:  # the line jumps there as a float tips over
+        located = locate(search, lands, False)
+        return shape_near(search, referee, located.other, lands) if located.other.found else found
     if found.closed.ending != FOUND or not located.other.found:
         return found
     if problem.limits.near > 0.0:  # of one of many its share is told, found roughly

@@ -50,7 +50,7 @@ def fill_starts(search: Search) -> int:
             )
             if limits.lift <= 0.0 and not lands:
                 continue
-            located = locate(evenly, lands)
+            located = locate(evenly, lands, True)
             root = located.root
             if located.ending != FOUND or root.unknown.sought > 0:
                 continue

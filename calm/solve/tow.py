@@ -176,7 +176,7 @@ class _Marches:
 
     def miss(self, _: None, depth: float) -> float:
         """Height of the upper end above the tow point [m]; NaN if the march stops."""
-        self.failure, _same = self.net.asked(leg_closing.MARCH, np.array([depth]), self._how)
+        self.failure, _same = self.net.do(leg_closing.MARCH, np.array([depth]), self._how)
         return float(self.net.net.found[0]) * self.span if self.failure == GOES_ON else nan
 
 
@@ -185,10 +185,10 @@ def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
     rough = _Marches(net, max(COARSE_STEP, 2.0 * net.settings.angle_step))
     start, other_depth = _locate(rough, towing)
     how = net.marching(net.settings.angle_step, CHOSEN, FINE, given=False)
-    ending, x = net.asked(leg_closing.SETTLE, np.array([start]), how, leg_closing.CLOSED)
+    ending, x = net.do(leg_closing.SETTLE, np.array([start]), how, leg_closing.CLOSED)
     if ending != FOUND or _lacking(net):
         raise _why_not(rough, start, float(x[0]), towing)
-    return net.told(x), other_depth
+    return net.solution(x), other_depth
 
 
 def _lacking(net: NetSearch) -> bool:

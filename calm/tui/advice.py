@@ -8,8 +8,9 @@ from contextlib import suppress
 from dataclasses import dataclass
 from math import ceil
 
-from calm.case import Mooring, Result, net, targets
+from calm.case import Design, targets
 from calm.case.adjustment import parse_change
+from calm.case.leg_result import LegResult
 from calm.case.size import NOT_MET, size
 from calm.checks.finding import Finding, State
 from calm.errors import CalmError, UsageError
@@ -40,15 +41,22 @@ class Offer:
     make: Callable[[Draft], Draft]
 
 
+def single(view: View) -> LegResult | None:
+    """Return the line of a mooring that stands; None of a tow and of several legs."""
+    result = view.result
+    return None if result is None or result.several or result.towed else result.leg
+
+
 def offers(view: View, catalogue: Catalogue | None) -> list[Offer]:
     """Return what mends the failures and warnings of a line that was judged, the gravest first."""
-    if not isinstance(view.result, Result):
+    result = single(view)
+    if view.result is None or result is None:
         return [*_against_lifting(view, catalogue)]
-    mooring = view.result.mooring
+    mooring = view.result.design
     grave = sorted((e for e in view.findings if e.state in _GRAVE), key=lambda each: each.rank)
     found: dict[str, Offer] = {}
     for finding in grave:
-        for offer in _for(finding, mooring, view.result, grave, catalogue):
+        for offer in _for(finding, mooring, result, grave, catalogue):
             found.setdefault(offer.title, offer)
     return [*found.values()]
 
@@ -59,12 +67,12 @@ def _against_lifting(view: View, catalogue: Catalogue | None) -> Iterator[Offer]
         return
     draft = Draft(view.text)
     held = judge(draft.delete([len(draft.items) - 1]).text, view.path, view.environment)
-    if view.file is not None and isinstance(held.result, Result):
-        needed = held.result.anchor.required_weight
+    if view.file is not None and (result := single(held)) is not None:
+        needed = result.anchor.required_weight
         yield from _anchors(view.file.pieces[-1], needed, catalogue)
 
 
-def sized(mooring: Mooring | net.Net, target: str, change: str) -> Offer:
+def sized(mooring: Design, target: str, change: str) -> Offer:
     """The smallest change that meets a target, both as `calm size` reads them.
 
     Raises
@@ -96,8 +104,8 @@ def sized(mooring: Mooring | net.Net, target: str, change: str) -> Offer:
 
 def _for(
     finding: Finding,
-    mooring: Mooring,
-    result: Result,
+    mooring: Design,
+    result: LegResult,
     grave: Sequence[Finding],
     catalogue: Catalogue | None,
 ) -> Iterator[Offer]:
@@ -109,7 +117,7 @@ def _for(
         yield from _buoyancy(mooring, finding)
 
 
-def _needed_weight(result: Result, grave: Sequence[Finding]) -> float:
+def _needed_weight(result: LegResult, grave: Sequence[Finding]) -> float:
     """Return what the anchor is to weigh in water for all that is found of it [N]."""
     factor = result.file.checks.anchor_factor
     needed = [result.anchor.required_weight]
@@ -147,7 +155,7 @@ def _heavy_enough(catalogue: Catalogue, needed: float) -> Iterator[tuple[float, 
                     yield -component.net_buoyancy, id
 
 
-def _floats(mooring: Mooring, finding: Finding, lacking: float) -> Iterator[Offer]:
+def _floats(mooring: Design, finding: Finding, lacking: float) -> Iterator[Offer]:
     """More of the floats between a break and the release."""
     file, release = mooring.file, mooring.file.release
     broken = next((p.index for p in file.pieces if p.place == finding.place), -1)
@@ -179,7 +187,7 @@ def _is_float(piece: Piece) -> bool:
     return is_one and piece.component.role == "float" and piece.component.net_buoyancy > 0.0
 
 
-def _buoyancy(mooring: Mooring, finding: Finding) -> Iterator[Offer]:
+def _buoyancy(mooring: Design, finding: Finding) -> Iterator[Offer]:
     """More buoyancy of the highest float against a knockdown, an excursion or a tilt."""
     floats = [piece for piece in mooring.file.pieces if _is_float(piece)]
     if not floats:
@@ -195,8 +203,8 @@ def _buoyancy(mooring: Mooring, finding: Finding) -> Iterator[Offer]:
 def differences(before: View, after: View) -> list[str]:
     """Return what a change does to the figures and to the findings, each as ``from → to``."""
     effects = []
-    one, other = before.result, after.result
-    if isinstance(one, Result) and isinstance(other, Result):
+    one, other = single(before), single(after)
+    if one is not None and other is not None:
         figures = [
             ("top", "depth", one.top.depth, other.top.depth),
             ("knockdown", "knockdown", one.top.knockdown, other.top.knockdown),

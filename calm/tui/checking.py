@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from calm.files import editing, logbook
+from calm.files import editing, item_keys
 from calm.files.definition import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.units import QuantityError, QuantityRange
 
@@ -145,7 +145,7 @@ def length(before: str = "", *, towed: bool = False) -> Check:
     """A length, one with the load it is measured ``at``, or ``fit`` with the depth to reach."""
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))
-    load = quantity(logbook.LOAD, usual_unit="kN")
+    load = quantity(item_keys.LOAD, usual_unit="kN")
     what = "the depth its lower end is to reach" if towed else "the depth the top is to reach"
 
     def check(text: str) -> Reading:

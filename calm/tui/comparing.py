@@ -18,8 +18,7 @@ from calm.tui.forms import Asked
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from calm.case import Mooring, Result, net
-    from calm.case.result import NetResult
+    from calm.case import Design, Result
     from calm.tui.advice import Offer
     from calm.tui.live import View
 
@@ -79,8 +78,7 @@ class ComparingScreen(line_screen.LineScreen):
 
     def action_advise(self) -> None:
         """Ask which of the changes that would mend what was found is wanted."""
-        from calm.case import Result, TowResult
-        from calm.tui.advice import offers
+        from calm.tui.advice import offers, single
 
         if not self.settle():
             return
@@ -90,17 +88,17 @@ class ComparingScreen(line_screen.LineScreen):
         index, result = self.workspace.index, view.result
         found = offers(view, None if index is None else index.catalogue)[:_MOST_OFFERS]
         answers = numbered((offer.title, partial(self._try, offer, view)) for offer in found)
-        if result is not None and not isinstance(result, TowResult):
-            other = partial(self._ask_for_target, view, result.mooring)
+        if result is not None and not result.towed:
+            other = partial(self._ask_for_target, view, result.design)
             answers.append(Answer("o", "another target, as in `calm size`", other))
         text = "What it changes is shown before it is taken."
         if not found:
             text = "No finding has a remedy that can be computed here. " + text
-        if isinstance(result, Result) and not view.complete:
+        if single(view) is not None and not view.complete:
             text += " Launch, recovery, breaks and waves are still being judged."
         choose(self.app, Question("Advice", text, answers))
 
-    def _ask_for_target(self, view: View, mooring: Mooring | net.Net) -> None:
+    def _ask_for_target(self, view: View, mooring: Design) -> None:
         from calm.tui.advice import sized
 
         def take(texts: dict[str, str]) -> None:
@@ -155,13 +153,11 @@ class ComparingScreen(line_screen.LineScreen):
 
     def action_papers(self) -> None:
         """Show the bill, or have report and sheets written of the file as it is saved."""
-        from calm.case import TowResult
-
         if not self.settle():
             return
         view = self.workspace.view if self.workspace.is_fresh else None
         result = None if view is None else view.result
-        if result is None or isinstance(result, TowResult):
+        if result is None or result.towed:
             self.tell("Reports and sheets need a mooring that stands")
             return
         report, deck = (partial(self._ask_where, what) for what in _PAPERS)
@@ -213,15 +209,14 @@ def changed_lines(before: str, after: str) -> list[str]:
     return lines[:_MOST_LINES] + ([f"and {more} lines more"] if more > 0 else [])
 
 
-def _bill(result: Result | NetResult) -> RenderableType:
-    from calm.case.result import legs_of
+def _bill(result: Result) -> RenderableType:
     from calm.checks.inventory import inventory_of
-    from calm.files.mooring_file import STAND_IN
+    from calm.files.pieces import STAND_IN
     from calm.quantities import QUANTITIES
     from calm.report import blocks, terminal
     from calm.report.check_tables import inventory_table
 
-    listed = [item for leg in legs_of(result) for item in inventory_of(leg.mooring)]
+    listed = [item for leg in result.legs for item in inventory_of(leg.leg)]
     items = tuple(item for item in listed if item.use != STAND_IN)
     lengths = {
         kind: sum(each.cut_length or 0.0 for each in items if each.kind == kind)

@@ -13,20 +13,17 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
-from calm.case import Mooring, Result, Tow, TowResult
+from calm.case import Design, Result
 from calm.case.columns import Output
 from calm.case.memory import Memory
-from calm.case.net import Net
-from calm.case.parts import cut_like
-from calm.case.result import AnyResult, NetResult, legs_of
 from calm.case.result_tables import ComponentRow, rows_by_place, table_columns
-from calm.checks import assess, net_check
+from calm.checks import assess, design_check
 from calm.checks.assessment import MooringInEnvironment, Situation
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.missing import with_missing
 from calm.checks.strength import strength
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
-from calm.files import MooringFile, Piece, Place, editing, mooring_file, read_mooring, yaml_document
+from calm.files import MooringFile, Piece, Place, editing, pieces, read_mooring, yaml_document
 from calm.quantities import show_in
 
 UNNAMED = "unnamed.yaml"
@@ -63,7 +60,7 @@ class View:
     problems: tuple[Problem, ...] = ()
     missing: tuple[str, ...] = ()
     file: MooringFile | None = None
-    result: AnyResult | None = None
+    result: Result | None = None
     failure: NoEquilibrium | None = None
     findings: tuple[Finding, ...] = ()
     tighter: tuple[Finding, ...] = ()
@@ -91,7 +88,7 @@ class View:
     @property
     def anchored(self) -> bool:
         """Return whether the line has an anchor of its own, or needs none."""
-        return self.file is not None and self.file.pieces[-1].use != mooring_file.STAND_IN
+        return self.file is not None and self.file.pieces[-1].use != pieces.STAND_IN
 
 
 def judge(
@@ -137,11 +134,11 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
 
     A tow, and a line without an anchor of its own or without equilibrium, is returned as it is.
     """
-    if view.complete or not view.anchored or not isinstance(view.result, Result | NetResult):
+    if view.complete or not view.anchored or view.result is None or view.result.towed:
         return view
     file = view.result.file
-    moorings, problems = _in_all_environments(view, view.result.mooring, catalogs)
-    assessment = net_check.check(*moorings)
+    moorings, problems = _in_all_environments(view, view.result.design, catalogs)
+    assessment = design_check.check(*moorings)
     findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
     rows = tuple(rows_of(file, view.result, (*findings, *tighter)))
     return replace(
@@ -151,26 +148,22 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
 
 
 def _in_all_environments(
-    view: View, here: Mooring | Net, catalogs: Sequence[str | Path]
-) -> tuple[list[Mooring | Net], list[Problem]]:
+    view: View, here: Design, catalogs: Sequence[str | Path]
+) -> tuple[list[Design], list[Problem]]:
     """The mooring in each of its environments, as long in all as here; what is wrong with them."""
-    found: list[Mooring | Net] = []
+    found: list[Design] = []
     problems: list[Problem] = []
     for name in dict.fromkeys([None, *view.environments, view.environment]):
         if name == view.environment:
             found.append(here)
             continue
         try:
-            file = read_mooring(
-                view.path, environment=name, catalogs=catalogs, text=view.text, net=True
-            )
+            file = read_mooring(view.path, environment=name, catalogs=catalogs, text=view.text)
         except InputError as error:
             problems += error.problems
         else:
-            if isinstance(here, Net):
-                found.append(Net(file))
-            else:
-                found.append(Mooring(cut_like(file, here), memory=view.memory))
+            leg = here.legs[0]  # nothing in one of several is cut to fit
+            found.append(Design(leg.cut(file), memory=view.memory))
     return found, problems
 
 
@@ -184,7 +177,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
     try:
         file = read_mooring(
             view.path, environment=view.environment, catalogs=catalogs, text=view.text,
-            stand_in=True, net=True,
+            stand_in=True,
         )  # fmt: skip
     except InputError as error:
         return _wrong(view, error.problems)
@@ -203,29 +196,27 @@ def _lacking(file: MooringFile) -> Iterator[str]:
     parts = [*(piece.component for piece in file.pieces), *clamps]
     if not any(part.net_buoyancy > 0.0 for part in parts):
         yield "no float"
-    if file.pieces[-1].use == mooring_file.STAND_IN:
+    if file.pieces[-1].use == pieces.STAND_IN:
         yield "no anchor"
 
 
 def _solved(view: View, file: MooringFile) -> View:
-    line: Mooring | Tow | Net = Net(file)
-    if not file.legs:
-        line = Mooring(file, memory=view.memory) if file.tow is None else Tow(file, view.memory)
+    design = Design(file, memory=view.memory)
     try:
-        result, failure = line.solve(), None
+        result, failure = design.solve(), None
     except NoEquilibrium as error:
         result, failure = None, error
     findings: list[Finding] = []
-    if not isinstance(result, TowResult) and file.tow is None:  # no rule is of a tow
-        for each in (None,) if result is None else legs_of(result):
+    if not design.towed:  # no rule is of a tow
+        for each in (None,) if result is None else result.legs:
             situation = Situation(AS_GIVEN, each, failure)
             findings += assess.findings_of(situation, file.name, file.environment.name or OWN)
-    parts = {part.label: part for part in mooring_file.parts_of(file.pieces)}
+    parts = {part.label: part for part in pieces.parts_of(file.pieces)}
     findings = with_missing(findings, parts, file.name, file.environment.name or OWN)
     rows = tuple(rows_of(file, result, findings))
     return replace(
         view, result=result, failure=failure, findings=tuple(findings), rows=rows,
-        complete=isinstance(result, TowResult),
+        complete=result is not None and design.towed,
     )  # fmt: skip
 
 
@@ -261,7 +252,7 @@ class FoundRow:
 
 
 def rows_of(
-    file: MooringFile, result: AnyResult | None, findings: Iterable[Finding] = ()
+    file: MooringFile, result: Result | None, findings: Iterable[Finding] = ()
 ) -> Iterator[FoundRow]:
     """Down the file; with figures where there is a result, and what the findings say of each."""
     solved = {} if result is None else rows_by_place(result)
@@ -271,9 +262,9 @@ def rows_of(
         for place in finding.places:
             found[place].append(finding)
     for piece in file.pieces:
-        if piece.use == mooring_file.STAND_IN:
+        if piece.use == pieces.STAND_IN:
             continue
-        for part in mooring_file.parts_of([piece]):
+        for part in pieces.parts_of([piece]):
             own, length = found[part.place], part.length if isinstance(part, Piece) else None
             row, figures = solved.get(part.place), {}
             if row is not None:

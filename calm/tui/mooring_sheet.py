@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 from calm.checks.missing import alternatives
 from calm.files import Clamp, Flexible, MooringFile, Piece, Place
 from calm.files.editing import Draft, Value
-from calm.files.logbook import DeployedItem, Equipment
-from calm.files.mooring_file import parts_of
+from calm.files.item_keys import Equipment
+from calm.files.logbook import DeployedItem
+from calm.files.pieces import parts_of
 from calm.files.reader import MooringKeys
 from calm.files.rule_texts import RULES
 from calm.files.yaml_document import Location

@@ -9,7 +9,7 @@ from typing import Any
 from calm.errors import CalmError
 from calm.files import Place, check_limits, yaml_document
 from calm.files.editing import Draft, History
-from calm.files.mooring_file import numbered_labels
+from calm.files.pieces import numbered_labels
 
 _MOST_OF_A_COUNT = 1000
 

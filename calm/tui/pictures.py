@@ -17,7 +17,7 @@ from textual.widgets import Static
 from calm.tui import scrolled, theme
 
 if TYPE_CHECKING:
-    from calm.case.result import AnyResult
+    from calm.case import Result
     from calm.case.result_tables import Shape
     from calm.tui.live import View
 
@@ -67,13 +67,12 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         if result is None:
             words = "A picture appears once the line stands." if self._view else theme.ELLIPSIS
             return [Text(""), *(Text(line, style="dim") for line in wrap(words, size.width))]
-        from calm.drawing.line_picture import lines_of
         from calm.drawing.schematic.in_terminal import schematic_text
         from calm.drawing.sketch import plan, tension
 
         if self.tab == "plan":
             return plan(result, *size, self._beside)
-        lines = lines_of(result)
+        lines = result.legs
         if self.tab == "tension":
             rows = size.height // len(lines)
             if rows < _LEAST[1]:
@@ -84,15 +83,14 @@ class Picture(scrolled.DrawnRows, can_focus=True):
             return [Text(row) for text in texts for row in text.splitlines()]
         return self._elevation(result, size)
 
-    def _elevation(self, result: AnyResult, size: Size) -> list[Text]:
-        from calm.drawing.line_picture import water_of
+    def _elevation(self, result: Result, size: Size) -> list[Text]:
         from calm.drawing.sketch import current_profile, elevation
 
         if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
             return elevation(result, *size, self._beside)
         beside = min(size.width // _BESIDE, _MOST_BESIDE)
         line = elevation(result, size.width - beside - 1, size.height, self._beside)
-        profile = current_profile(water_of(result), beside, size.height)
+        profile = current_profile(result.water, beside, size.height)
         rows = []
         for left, right in zip(line, profile, strict=True):
             left.truncate(size.width - beside, pad=True)

@@ -13,7 +13,7 @@ from calm.tui.workspace import mistakes, place_of
 
 if TYPE_CHECKING:
     from calm.case import Result
-    from calm.case.result import AnyResult, NetResult
+    from calm.case.leg_result import LegResult
     from calm.checks.assessment import MooringInEnvironment
     from calm.files import Place
     from calm.tui.live import View
@@ -126,17 +126,16 @@ def _stand(stand: MooringInEnvironment) -> Saying:
 
 
 def _figures(
-    result: AnyResult | None, findings: Sequence[Finding], *, pending: bool
+    result: Result | None, findings: Sequence[Finding], *, pending: bool
 ) -> Iterator[Saying]:
     """The ends of the line; whoever has a result has loaded what solves it, the start has not."""
-    from calm.case import Result
-    from calm.case.result import NetResult
-
-    if isinstance(result, Result):
-        yield from _mooring(result, findings, pending)
-    elif isinstance(result, NetResult):
+    if result is None:
+        return
+    if result.several:
         yield from _net(result)
-    elif result is not None:
+    elif not result.towed:
+        yield from _mooring(result.leg, findings, pending)
+    else:
         point, body = result.tow_point, result.body
         pull = f"{say('tension', point.tension)}, {say('angle', point.angle)} below the horizontal"
         yield Saying(pull, "Tow point")
@@ -144,7 +143,7 @@ def _figures(
         yield Saying(behind, "Body")
 
 
-def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
+def _mooring(result: LegResult, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
     """Return what the line does as given; what is judged shows the worst of its findings."""
     from calm.checks.posture import knockdown, reserve
     from calm.checks.strength import anchor_weight
@@ -171,7 +170,7 @@ def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iter
         yield Saying(f"{say('grounded_length', anchor.grounded_length)} of line", heading="Lies")
 
 
-def _holds(result: Result, worst: Finding | None, pending: bool) -> Saying:
+def _holds(result: LegResult, worst: Finding | None, pending: bool) -> Saying:
     """Return what the anchor is to weigh, and weighs; of a line without one the first alone."""
     if worst is None:
         return Saying(f"needs {say('required_weight', result.anchor.required_weight)} in water")
@@ -202,7 +201,7 @@ def _figure(text: str, heading: str, worst: Finding | None) -> Saying:
     return Saying(text, heading, state, places=_places([worst]))
 
 
-def _net(result: NetResult) -> Iterator[Saying]:
+def _net(result: Result) -> Iterator[Saying]:
     """Return what the anchors and held ends of a net bear, and where its nodes are."""
     for end in (*result.anchors, *result.held):
         needs = end.required_weight

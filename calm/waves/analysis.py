@@ -18,7 +18,7 @@ from calm.waves.pieces_in_sea import CutOffs, MooringInSea, mooring_in_sea
 from calm.waves.response import WaveResponse, Waves, respond
 
 if TYPE_CHECKING:
-    from calm.case import Mooring
+    from calm.case.leg import Leg
     from calm.files import Piece
     from calm.solve import Solution
 
@@ -145,7 +145,7 @@ class _Setting:
 
 
 def analyse(
-    mooring: Mooring,
+    leg: Leg,
     seas: Sequence[SeaState],
     toward: float,
     duration: float = 10_800.0,
@@ -172,16 +172,16 @@ def analyse(
         The float at the surface has no hull, or no mass; a sea breaks in this depth.
     """
     for sea in seas:
-        if sea.significant_height > SHALLOWEST * mooring.water.depth:
+        if sea.significant_height > SHALLOWEST * leg.water.depth:
             raise UsageError(
-                f"a sea of {sea.significant_height:g} m breaks in {mooring.water.depth:g} m of "
-                f"water, where it is {SHALLOWEST * mooring.water.depth:.1f} m high at most"
+                f"a sea of {sea.significant_height:g} m breaks in {leg.water.depth:g} m of "
+                f"water, where it is {SHALLOWEST * leg.water.depth:.1f} m high at most"
             )
-    solution = mooring.equilibrium(mooring.water)
+    solution = leg.equilibrium(leg.water)
     highest = max(seas, key=lambda sea: sea.significant_height)
     shortest = min(seas, key=lambda sea: sea.shortest or sea.peak_period)
     judged = [highest] if shortest == highest else [highest, shortest]
-    setting, flow, accuracy = _settled(mooring, solution, judged, toward)
+    setting, flow, accuracy = _settled(leg, solution, judged, toward)
     states, before = [], highest
     for sea in watched(seas):
         near = flow * (sea.significant_height / before.significant_height)
@@ -190,25 +190,21 @@ def analyse(
         responses = setting.cut_offs(sea, response, flow)
         follower = setting.below_a_follower(sea, flow) if sea is highest else None
         line, buoy = setting.line, setting.buoy
-        states.append(
-            mooring_in_sea(mooring, solution, line, buoy, sea, responses, duration, follower)
-        )
+        states.append(mooring_in_sea(leg, solution, line, buoy, sea, responses, duration, follower))
     warnings = [
         f"{label} gives no `stiffness` and is taken as inextensible: its tensions are "
         "overestimated."
         for label in setting.line.inextensible
     ]
     fatigue = tuple(
-        _fatigue(piece, states) for piece in mooring.file.pieces[setting.line.top_pieces : -1]
+        _fatigue(piece, states) for piece in leg.file.pieces[setting.line.top_pieces : -1]
     )
     missing = None
     if setting.buoy is not None and setting.buoy.profile is None:
         missing = "it takes its `hull`, `centre_of_mass` and `radius_of_gyration`"
-    elif getattr(mooring.file.pieces[0].component, "centre_of_mass", None) and not setting.buoy:
+    elif getattr(leg.file.pieces[0].component, "centre_of_mass", None) and not setting.buoy:
         missing = "it stands below the surface"
-    return WaveAnalysis(
-        mooring.file.name, tuple(states), fatigue, accuracy, tuple(warnings), missing
-    )
+    return WaveAnalysis(leg.file.name, tuple(states), fatigue, accuracy, tuple(warnings), missing)
 
 
 def _fatigue(piece: Piece, states: Sequence[MooringInSea]) -> PieceFatigue:
@@ -224,23 +220,23 @@ def _fatigue(piece: Piece, states: Sequence[MooringInSea]) -> PieceFatigue:
 
 
 def _settled(
-    mooring: Mooring, solution: Solution, seas: Sequence[SeaState], toward: float
+    leg: Leg, solution: Solution, seas: Sequence[SeaState], toward: float
 ) -> tuple[_Setting, Floats, WaveAccuracy]:
     """Return elements and frequencies that are enough for seas, and what twice as many change.
 
     Between them stands the flow past the nodes in the first of them.
     """
-    density = mooring.water.density_at(np.array(0.0))
-    water = Waves(np.zeros(0), toward, mooring.water.depth, float(density), mooring.water.gravity)
-    longest, count = COARSEST * mooring.water.depth, FEWEST
-    buoy = buoy_of(mooring, solution, follows=False)
-    setting = _Setting(lumped_line(mooring, solution, longest), buoy, water, count)
+    density = leg.water.density_at(np.array(0.0))
+    water = Waves(np.zeros(0), toward, leg.water.depth, float(density), leg.water.gravity)
+    longest, count = COARSEST * leg.water.depth, FEWEST
+    buoy = buoy_of(leg, solution, follows=False)
+    setting = _Setting(lumped_line(leg, solution, longest), buoy, water, count)
     found, flows = setting.deviations(seas, [None] * len(seas))
     mesh = frequencies = np.inf
     for _ in range(MOST_HALVINGS):
         if mesh > SETTLED:
             longest *= 0.5
-            finer = replace(setting, line=lumped_line(mooring, solution, longest))
+            finer = replace(setting, line=lumped_line(leg, solution, longest))
             carried = [_carried(setting.line, finer.line, flow) for flow in flows]
             better, passing = finer.deviations(seas, carried)
             mesh = _change(found, better)

@@ -15,7 +15,7 @@ from calm.physics.line import Floats
 from calm.waves.lumped_line import Complexes
 
 if TYPE_CHECKING:
-    from calm.case import Mooring
+    from calm.case.leg import Leg
     from calm.solve import Solution
 
 DISC_ADDED = 4.0 / 3.0
@@ -219,7 +219,7 @@ class Buoy:
         return added, radiated, pushing
 
 
-def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
+def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
     """Return the float at the surface; None of a line below it.
 
     Parameters
@@ -234,15 +234,15 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     if not solution.afloat:
         return None
     index = solution.afloat[0]
-    piece = mooring.file.pieces[index]
-    above = mooring.file.pieces[: index + 1]
+    piece = leg.file.pieces[index]
+    above = leg.file.pieces[: index + 1]
     riding, component = solution.riding, piece.component
     if not isinstance(component, Rigid):
         raise UsageError(f"{piece.label}, a {component.kind}, floats at the surface, and no float")
     given = component.rao or ()
     follows = follows or component.heave == "follows"
     draft = 0.0 if riding is None or np.isnan(riding.draft) else riding.draft
-    floating = mooring.line.floating
+    floating = leg.line.floating
     radius, profile = _round_hull(None if floating is None else floating.hull, draft)
     known = radius > 0.0 if component.heave != "panels" else profile is not None
     if not (known or follows or (given and component.heave != "panels")):
@@ -253,10 +253,10 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     masses = [each.component.mass for each in above]
     if any(mass is None for mass in masses):
         raise UsageError(f"{piece.label} gives no `mass`, which decides how it heaves")
-    density = mooring.water.density_at(np.array(0.0))
+    density = leg.water.density_at(np.array(0.0))
     panels = None
     if component.heave == "panels" and profile is not None and not follows:
-        panels = panel_response(profile[::5], float(density), mooring.water.gravity)
+        panels = panel_response(profile[::5], float(density), leg.water.gravity)
     centre, gyration = component.centre_of_mass, component.radius_of_gyration
     if centre is None and given and len(given[0]) > 3:
         centre, gyration = draft, 0.0
@@ -264,7 +264,7 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
     mass = float(sum(mass or 0.0 for mass in masses))
     buoy = Buoy(
         mass=mass,
-        displaced=max(mass + lift / mooring.water.gravity, 0.0),
+        displaced=max(mass + lift / leg.water.gravity, 0.0),
         radius=radius,
         draft=draft,
         drag=float(solution.carried.normal_drag[index]) * float(density) / 1025.0,
@@ -278,7 +278,7 @@ def buoy_of(mooring: Mooring, solution: Solution, follows: bool) -> Buoy | None:
         gyration=gyration or 0.0,
     )
     if buoy.profile is not None and gyration:
-        righted = buoy.righting(buoy.profile, float(density), mooring.water.gravity)
+        righted = buoy.righting(buoy.profile, float(density), leg.water.gravity)
         if righted <= 0.0:
             raise UsageError(
                 f"{piece.label} does not float upright: its `centre_of_mass` is {centre:g} m above "

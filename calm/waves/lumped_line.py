@@ -15,7 +15,7 @@ from calm.physics.line import Floats, Integers, Line
 from calm.physics.seawater import REFERENCE_DENSITY
 
 if TYPE_CHECKING:
-    from calm.case import Mooring
+    from calm.case.leg import Leg
     from calm.solve import Solution
 
 Complexes = NDArray[np.complex128]
@@ -98,7 +98,7 @@ class LumpedLine:
         return np.asarray(np.where((first >= 0).reshape(shape), ends, 0.0))
 
 
-def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedLine:
+def lumped_line(leg: Leg, solution: Solution, longest: float) -> LumpedLine:
     """Return the line of a solution as lumped masses.
 
     Half the mass and the drag of an element is lumped at each of its ends. What lies on the seabed
@@ -106,10 +106,10 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
 
     Parameters
     ----------
-    mooring : what was solved
+    leg : that was solved
     longest : length of an element [m]
     """
-    pieces = mooring.file.pieces
+    pieces = leg.file.pieces
     carried = solution.carried
     buoy = (solution.afloat[0] + 1) if solution.afloat else 0
     first = int(solution.piece_nodes[buoy - 1, 1]) if buoy else 0
@@ -162,7 +162,7 @@ def lumped_line(mooring: Mooring, solution: Solution, longest: float) -> LumpedL
     spring /= span[:, None]
     tangent = np.vstack([spring[:1], spring[:-1] + spring[1:], spring[-1:]])
     tangent /= np.linalg.norm(tangent, axis=1)[:, None]
-    water, depth = mooring.water, np.maximum(-where[:, 2], 0.0)
+    water, depth = leg.water, np.maximum(-where[:, 2], 0.0)
     denser = water.density_at(depth) / REFERENCE_DENSITY
     for name in ("across_drag", "along_drag", "any_drag"):
         node[name] *= denser

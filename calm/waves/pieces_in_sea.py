@@ -17,7 +17,7 @@ from calm.waves.measured import MeasuredBand, measured_band
 from calm.waves.response import WaveResponse
 
 if TYPE_CHECKING:
-    from calm.case import Mooring
+    from calm.case.leg import Leg
     from calm.solve import Solution
 
 
@@ -158,7 +158,7 @@ class _Tensions:
 
 
 def mooring_in_sea(
-    mooring: Mooring,
+    leg: Leg,
     solution: Solution,
     line: LumpedLine,
     buoy: Buoy | None,
@@ -185,7 +185,7 @@ def mooring_in_sea(
     pitch = degrees(float(response.moments(response.pitch)[0])) if pitches else None
     rows: list[PieceInWaves] = []
     moments: list[list[tuple[float, Floats]]] = [[] for _ in cases]
-    for piece in mooring.file.pieces[:-1]:
+    for piece in leg.file.pieces[:-1]:
         at, node = piece.index, int(line.piece_node[piece.index])
         # nothing pulls at the upper end of what floats on top
         on_top = at < line.top_pieces

@@ -8,12 +8,13 @@ brackets.
 """
 _SECTIONS = {
     "Read, solve, check": ["calm.load", "calm.check"],
-    "Moorings": ["calm.Mooring", "calm.Result"],
-    "Tows": ["calm.Tow", "calm.TowResult"],
+    "Designs": ["calm.Design", "calm.Result", "calm.case.leg.Leg", "calm.LegResult"],
     "Parts of a result": [
         "calm.case.result_tables.Components", "calm.case.result_tables.Clamps",
         "calm.case.result_tables.Shape",
         "calm.case.result_tables.Top", "calm.case.result_tables.AnchorLoad",
+        "calm.case.result_tables.TowPoint", "calm.case.result_tables.TowedBody",
+        "calm.case.result_tables.EndLoad", "calm.case.result_tables.NodePlace",
         "calm.case.result_tables.Accuracy",
         "calm.case.strumming.Strumming", "calm.case.strumming.StrummingBand",
     ],

@@ -33,7 +33,7 @@ _YEAR_OF = "upward-adcp-300m"
 def hero() -> Figure:
     """A mooring in space in a current that turns with depth, with its instruments."""
     result = _moored("veering-current").solve()
-    shape, water = result.shape, result.mooring.water
+    shape, water = result.shape, result.design.water
     figure = Figure(figsize=(8.0, 8.5))
     axes = figure.add_axes((-0.08, -0.02, 1.12, 1.06), projection="3d", computed_zorder=False)
     assert isinstance(axes, Axes3D)
@@ -77,13 +77,13 @@ def _current(axes: Axes3D, level: Floats, u: Floats, v: Floats) -> None:
     axes.text(mast[0][0] - 14, mast[1][0], -25.0, "current", color=WATER, fontsize=10)
 
 
-def thumbnail(result: calm.Result | calm.TowResult) -> str:
+def thumbnail(result: calm.Result) -> str:
     """A line without words, in the plane of its excursion; its width fills the picture."""
     shape, environment = result.shape, result.file.environment
     far = int(np.argmax(np.hypot(shape.x, shape.y)))
     bearing = np.arctan2(shape.y[far], shape.x[far])
     plane = np.array([np.cos(bearing), np.sin(bearing)])
-    if isinstance(result, calm.TowResult):
+    if result.towed:
         top, bottom = levels_of(result)
     else:
         top, bottom = -0.08 * environment.depth, 1.08 * environment.depth
@@ -106,7 +106,7 @@ def thumbnail(result: calm.Result | calm.TowResult) -> str:
 def veering_plan() -> Figure:
     """The line from above, beside the current from above: each turns as the other does."""
     result = _moored("veering-current").solve()
-    shape, water = result.shape, result.mooring.water
+    shape, water = result.shape, result.design.water
     figure = Figure(figsize=(10, 5), layout="constrained")
     plan, hodograph = figure.subplots(1, 2)
     _coloured(plan, shape.x, shape.y, shape.depth, water.depth)
@@ -218,13 +218,13 @@ def made_year(bed: float) -> tuple[Floats, Floats, Floats, Floats]:
 def out_and_back() -> Figure:
     """The same tow out with the current and back against it, by the same speed over the ground."""
     tow = calm.load(shipped_folder("lines") / "a-frame-sheared-tow.yaml")
-    assert isinstance(tow, calm.Tow)
-    course = tow.keys.toward
+    given = tow.file.tow
+    course = given.toward
     figure = Figure(figsize=(10, 4.6), layout="constrained")
     elevation, plan = figure.subplots(1, 2, width_ratios=(3, 2))
     for name, toward, colour in (("out", course, LINE), ("back", course + 180.0, "#cc3311")):
-        keys = tow.keys.model_copy(update={"toward": toward % 360.0})
-        result = calm.Tow(replace(tow.file, tow=keys)).solve()
+        keys = given.model_copy(update={"toward": toward % 360.0})
+        result = calm.Design(replace(tow.file, tow=keys)).solve()
         angle = np.radians(toward)
         ahead = np.array([np.sin(angle), np.cos(angle)])
         behind = -(result.shape.x * ahead[0] + result.shape.y * ahead[1])
@@ -247,7 +247,5 @@ def out_and_back() -> Figure:
     return figure
 
 
-def _moored(name: str) -> calm.Mooring:
-    mooring = calm.load(shipped_folder("lines") / f"{name}.yaml")
-    assert isinstance(mooring, calm.Mooring)
-    return mooring
+def _moored(name: str) -> calm.Design:
+    return calm.load(shipped_folder("lines") / f"{name}.yaml")

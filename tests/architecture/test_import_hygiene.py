@@ -70,7 +70,9 @@ def test_reading_files_loads_no_heavy_library() -> None:
     ids=" ".join,
 )
 def test_everyday_commands_load_no_heavy_library(arguments: list[str]) -> None:
-    assert not HEAVY & loaded(COMMAND.format(arguments=arguments))
+    modules = loaded(COMMAND.format(arguments=arguments))
+    assert not HEAVY & modules
+    assert not [name for name in modules if name.startswith("calm.exchange")]  # file formats
 
 
 def test_help_reads_no_files() -> None:

@@ -287,16 +287,16 @@ def test_a_report_that_cannot_be_written_loses_nothing_else(
 
 
 def test_a_failure_of_calm_itself_does_not_stop_the_rest(calm, write_mooring, monkeypatch):
-    import calm.checks.assess as assess
+    from calm.checks import design_check
 
-    stand_of = assess.stand_of
+    stands_of = design_check.stands_of
 
     def failing(mooring, name, day):
         if name == "Two":
             raise ValueError("a bug")
-        return stand_of(mooring, name, day)
+        return stands_of(mooring, name, day)
 
-    monkeypatch.setattr(assess, "stand_of", failing)
+    monkeypatch.setattr(design_check, "stands_of", failing)
     files = write_mooring("one.yaml", name="One"), write_mooring("two.yaml", name="Two")
     done = calm("check", *files, "--json", "-")
     assert done.code == 3

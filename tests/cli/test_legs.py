@@ -14,9 +14,9 @@ import pytest
 import xarray
 from scipy.optimize import fsolve
 
+from calm.case import load
 from calm.case.adjustment import parse_change
 from calm.case.explain import explain
-from calm.case.net import load
 from calm.checks.criterion import READINGS, pieces_of
 from calm.cli.main import main
 from calm.drawing.line_picture import LineKind, elevation_of, plan_of
@@ -161,7 +161,7 @@ def test_other_commands_say_which_one_solves_nets(
     }
     assert run(command, net, *more.get(command, [])) == 2
     told = capsys.readouterr().err
-    assert f"{net}:5:1" in told
+    assert f"{net}: this is a net of legs" in told
     assert "for `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`" in told
 
 
@@ -283,7 +283,7 @@ legs:
   one:{leg}  two:{leg}    bottom: {{anchor: {{at: [200 m, 0 m]}}}}
 """
     one, two = load(tmp_path / "two.yaml", text=text).solve().legs
-    part = pieces_of(one.mooring)[0]
+    part = pieces_of(one.leg)[0]
     offset = READINGS["offset"](one, part)
     assert offset == pytest.approx(one.top.x, rel=1e-12)
     assert READINGS["offset"](two, part) == pytest.approx(offset, rel=1e-9)
@@ -352,7 +352,7 @@ def test_an_anchor_that_is_lifted_is_no_result(
     file = tmp_path / "light.yaml"
     file.write_text(NET.replace("anchor-wheels-4", "anchor-wheels-1"))
     assert run("run", file) == 3
-    assert "anchor-lifts: Leg stem has a vertical pull of" in capsys.readouterr().err
+    assert "anchor-lifts: The vertical pull of leg stem is" in capsys.readouterr().err
 
 
 MISTAKES = {
@@ -832,6 +832,21 @@ def test_a_line_lies_on_the_plane_of_a_grid(tmp_path: Path) -> None:
         assert len(said) == (bowl > 0.0)
         told = float(re.search(r"up to ([\d.]+) m off", said[0])[1]) if said else 0.0
         assert told == pytest.approx(bowl * grid.anchor.grounded_length**2, rel=0.05, abs=0.06)
+
+
+def test_chain_far_from_the_origin_lies_on_the_plane(tmp_path: Path) -> None:
+    """Legs lie on the plane of their file, which is nowhere off it, wherever their anchors are."""
+    text = SLOPE
+    for leg, at in (("west", -120), ("east", 120)):
+        wire = f"{{use: wire-jacketed-8, length: 60 m}}, {{use: anchor-wheels-4, label: {leg}}}"
+        chain = f"{{use: chain-buoy-16, length: 160 m}}, {{use: anchor-wheels-4, label: {leg}}}"
+        near = f"at: [{at // 4} m, 0 m]"
+        assert wire in text
+        assert near in text
+        text = text.replace(wire, chain).replace(near, f"at: [{at} m, 0 m]")
+    result = load(tmp_path / "slope.yaml", text=text).solve()
+    assert min(anchor.grounded_length for anchor in result.anchors) > 5.0
+    assert not any("lies on the plane" in said for said in result.warnings)
 
 
 def test_an_export_says_that_its_seabed_is_level(

@@ -87,7 +87,7 @@ def test_interrupt(calm, write_mooring, monkeypatch):
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("calm.case.net.load", interrupted)
+    monkeypatch.setattr("calm.case.load", interrupted)
     done = calm("run", write_mooring())
     assert done.code == 130
     assert done.err == "calm: interrupted\n"
@@ -97,7 +97,7 @@ def test_a_bug_is_one_line_unless_debugging(calm, write_mooring, monkeypatch):
     def bug(*_, **__):
         raise ZeroDivisionError("of all things")
 
-    monkeypatch.setattr("calm.case.net.load", bug)
+    monkeypatch.setattr("calm.case.load", bug)
     done = calm("run", write_mooring())
     assert done.code == 70
     assert done.err == (

@@ -104,7 +104,7 @@ def in_time(text, omega, amplitude, phase, folder, step, span):
 def in_frequency(text, omega, amplitude):
     """Return depths and deviations of tension here, the top held to the heave, no water moving."""
     mooring = load("line.yaml", text=text)
-    line = lumped_line(mooring, mooring.equilibrium(mooring.water), 1.0)
+    line = lumped_line(mooring.leg, mooring.leg.equilibrium(), 1.0)
     held = np.zeros((len(omega), 3, 3))
     held[:, 0, 0] = held[:, 1, 1] = -(omega**2) * 1350.0  # kg, of a float and the water beside it
     held[:, 2, 2] = 1e10
@@ -171,7 +171,7 @@ def test_tensions_of_lines_heaved_by_a_sea(name, tmp_path, monkeypatch):
     below = at > LINES[name][-1]
     found, tensions = np.interp(at[below], depths, deviations), tensions[:, below]
     mooring = load("line.yaml", text=written(name))
-    mean = float(mooring.equilibrium(mooring.water).tension[-2])
+    mean = float(mooring.leg.equilibrium().tension[-2])
     least = mean - np.array([greatest_of(each, 8.0, SPAN) for each in found])
     assert (tensions.min() < 0.01 * mean) == SEAS[name]
     assert (least.min() < 0.0) == SEAS[name]

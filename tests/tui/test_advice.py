@@ -92,16 +92,16 @@ def test_buoyancy_for_a_knockdown_is_found_by_solving():
 
 def test_a_length_for_a_depth_of_the_top():
     view = judge(MOORING)
-    made = sized(view.result.mooring, "depth(top) = 50 m", "rope.length").make(Draft(MOORING))
+    made = sized(view.result.design, "depth(top) = 50 m", "rope.length").make(Draft(MOORING))
     assert judge(made.text).result.top.depth == pytest.approx(50.0, abs=0.1)
 
 
 def test_what_cannot_be_met_is_said():
     view = judge(MOORING)
     with pytest.raises(UsageError):
-        sized(view.result.mooring, "depth(top) = 5 km", "rope.length").make(Draft(MOORING))
+        sized(view.result.design, "depth(top) = 5 km", "rope.length").make(Draft(MOORING))
     with pytest.raises(UsageError):
-        sized(view.result.mooring, "depth(top) = 5", "rope.length")
+        sized(view.result.design, "depth(top) = 5", "rope.length")
 
 
 def test_advice_is_shown_and_taken_by_key(drive, folder):

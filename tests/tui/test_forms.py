@@ -9,7 +9,8 @@ from calm.files.components import KINDS, Cable
 from calm.files.definition import Model, QuantityField, described, optional
 from calm.files.editing import Draft
 from calm.files.environment import EnvironmentKeys, TowEnvironmentKeys
-from calm.files.logbook import Deployed, DocumentKeys, Equipment
+from calm.files.item_keys import Equipment
+from calm.files.logbook import Deployed, DocumentKeys
 from calm.files.mooring_file import Solver, TowKeys
 from calm.files.reader import MooringKeys
 from calm.tui.component_screen import form_fields

@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 
 import calm
-from calm.case import Mooring, Result
-from calm.checks.assess import RULES, assessment_of, stand_of
+from calm.case import Design, Result
+from calm.checks.assess import RULES
+from calm.checks.design_check import assessment_of, stands_of
 from calm.checks.finding import AS_GIVEN, State
 from calm.checks.wave_rules import IN_WAVES
 from calm.cli.reading import read_designs
@@ -68,7 +69,7 @@ def test_rows_are_those_of_run(name: str) -> None:
 def test_findings_are_those_of_check(name: str) -> None:
     path = LINES / f"{name}.yaml"
     view, mooring = judge(text_of(name), path), calm.load(path)
-    stand = stand_of(mooring, mooring.file.name)
+    (stand,) = stands_of(mooring, mooring.file.name)
     in_waves = {rule.name for rule in IN_WAVES}  # with the whole check alone: a sea takes seconds
     assert view.findings == tuple(
         each for each in stand.findings if each.situation == AS_GIVEN and each.rule not in in_waves
@@ -76,7 +77,7 @@ def test_findings_are_those_of_check(name: str) -> None:
     assert not view.complete
     fully = judge_fully(view)
     (design,), _ = read_designs([path], None, [], 1)  # in each of its environments
-    stands = [stand_of(each, design.name) for each in design.moorings]
+    stands = [one for each in design.moorings for one in stands_of(each, design.name)]
     assessment = assessment_of(design.name, stands)
     assert [each.environment for each in fully.stands] == [each.environment for each in stands]
     assert fully.complete and fully.findings == tuple(assessment.all_findings())
@@ -218,16 +219,16 @@ def test_a_line_that_does_not_stand_tells_why() -> None:
 
 
 def test_a_failure_of_calm_itself_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(self: Mooring) -> Result:
+    def broken(self: Design) -> Result:
         raise ZeroDivisionError("so")
 
-    monkeypatch.setattr(Mooring, "solve", broken)
+    monkeypatch.setattr(Design, "solve", broken)
     assert judge(WHOLE).failure.status == "internal-error"
 
 
 @pytest.mark.usefixtures("own_memory")
 def test_what_has_not_changed_is_not_solved_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    import calm.case.mooring as case
+    import calm.case.leg as case
 
     solved = []
     solve = case.solve_mooring

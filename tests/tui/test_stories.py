@@ -11,7 +11,7 @@ import pytest
 import yaml
 from textual.events import Paste
 
-from calm.case import Mooring
+from calm.case import Design
 from calm.files import read_mooring
 from tests.tui.conftest import NAMES
 
@@ -140,7 +140,7 @@ def test_a_deep_mooring_from_nothing_in_five_hundred_keys(drive, folder):
     assert len(line) == 33 and sum(len(piece.get("clamps", ())) for piece in line) == 6
     for environment, top in ((None, 172.6), ("storm", 266.8)):
         file = read_mooring(folder / "deep.yaml", environment=environment)
-        assert abs(Mooring(file).solve().top.depth - top) < 0.5
+        assert abs(Design(file).solve().top.depth - top) < 0.5
 
 
 def test_a_surface_mooring_from_nothing_in_a_hundred_and_twenty_keys(drive, folder):
@@ -152,5 +152,5 @@ def test_a_surface_mooring_from_nothing_in_a_hundred_and_twenty_keys(drive, fold
     drive(story)
     assert counts[0] <= 120
     assert_is_meant(folder / "buoy.yaml", SURFACE_MEANT)
-    result = Mooring(read_mooring(folder / "buoy.yaml")).solve()
+    result = Design(read_mooring(folder / "buoy.yaml")).solve()
     assert result.type == "surface" and len(result.file.pieces) == 11

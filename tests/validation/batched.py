@@ -10,7 +10,7 @@ import numpy as np
 from calm.batch.profiles import Batch, Profiles
 from calm.batch.solving import OF_CLAMP, OF_ENDS, OF_PIECE, Results
 from calm.batch.statuses import STATUSES, status_of
-from calm.case.net import Net
+from calm.case import Design
 from calm.physics.line import Integers, Line, Water
 from calm.solve import Settings
 from calm.solve.problem import MANY_ROOM
@@ -55,7 +55,7 @@ def in_company(line: Line, water: Water, settings: Settings) -> tuple[str, Ends]
     return STATUSES[status_of(batch.mooring, int(ending))], (places, tensions)
 
 
-def net_in_company(net: Net) -> tuple[str, Ends]:
+def net_in_company(net: Design) -> tuple[str, Ends]:
     """The same of a net: places (p, 3) at the tops of all pieces and tensions (2p).
 
     Raises
@@ -80,7 +80,7 @@ def net_in_company(net: Net) -> tuple[str, Ends]:
     return STATUSES[together.status[own]], ends
 
 
-def net_run(net: Net) -> Ends:
+def net_run(net: Design) -> Ends:
     """Those ends by a run."""
     return _net_ends(net.solve().components, ...)
 
@@ -97,6 +97,7 @@ def _batch(line: Line, water: Water, settings: Settings) -> Batch:
     may_lie = SimpleNamespace(component=SimpleNamespace(kind="chain"))
     file = SimpleNamespace(pieces=[may_lie] * (len(line.length) + 1))
     mooring: Any = SimpleNamespace(line=line, water=water, settings=settings, file=file)
+    mooring.moored = mooring
     batch = Batch(mooring)
     vars(batch)["water"] = water.still()
     return batch
@@ -112,10 +113,5 @@ def _solved(batch: Batch, water: Water, shares: tuple[float, ...]) -> tuple[Resu
     )
     endings = np.zeros(count, np.int64)
     mooring: Any = batch.mooring
-    for block in (slice(0, 0), slice(0, count)):  # the first makes its starts
-        few = Results(*(array[block] for array in rows))
-        parts = [np.ascontiguousarray(part[block]) for part in current]
-        batch._solve_rows(
-            mooring, (water.level[None].copy(), *parts), few, endings[block], MANY_ROOM
-        )
+    batch._solve_rows(mooring, (water.level[None].copy(), *current), rows, endings, MANY_ROOM)
     return rows, endings

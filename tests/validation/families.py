@@ -14,7 +14,8 @@ from random import Random
 
 import numpy as np
 
-from calm.case.net import Net, load
+from calm.case import Design, load
+from calm.case.net import net_legs
 from calm.files.legs import nodes_of
 from calm.physics.drag import Friction
 from calm.physics.line import Line, Water
@@ -85,23 +86,22 @@ class TowCase:
 class NetCase:
     """A net."""
 
-    net: Net
+    net: Design
 
     def __call__(self, settings: Settings) -> NetSolution:
         """By CALM."""
         nodes = len(nodes_of(self.net.file.legs))
-        return solve_net(self.net.legs, nodes, self.net.water, settings)
+        return solve_net(net_legs(self.net.legs), nodes, self.net.water, settings)
 
     def integrated(self, found: NetSolution) -> list[Ends]:
         """By the referee, near what CALM found."""
-        ends, _ = solve_continuous_net(self.net.legs, found, self.net.water)
+        ends, _ = solve_continuous_net(net_legs(self.net.legs), found, self.net.water)
         return ends
 
 
 def random_net(random: Random) -> NetCase:
     """A surface buoy on several legs, or floats below the surface."""
     net = load("net.yaml", text=net_text(random))
-    assert isinstance(net, Net)
     return NetCase(net)
 
 

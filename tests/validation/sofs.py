@@ -16,7 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.case import Mooring, load
+from calm.case import load
+from calm.case.leg import Leg
 from calm.records.sea_states import spectrum_of
 from calm.waves.analysis import WaveAnalysis, analyse
 from calm.waves.measured import COMPARED, HIGHEST_LOW_SEA, measured_band
@@ -101,7 +102,7 @@ _LONG_CAGES = (
 1.85 m: by its own comments they have 100 and 137 kg, not 54 and 74."""
 
 
-def mooring(name: str, *, whole_cages: bool = False, heave: str | None = None) -> Mooring:
+def mooring(name: str, *, whole_cages: bool = False, heave: str | None = None) -> Leg:
     """Return a line by its name; the cages of SOFS-5 with their whole mass, a way to heave."""
     file = "sofs5.yaml" if name == "SOFS-5" else "sofs1.yaml"
     edits = _EDITS.get("SOFS-3" if name == "SOFS-4" else name, ())
@@ -113,7 +114,7 @@ def mooring(name: str, *, whole_cages: bool = False, heave: str | None = None) -
     for old, new in edits:
         assert text.count(old) == 1, old
         text = text.replace(old, new)
-    return load(path, text=text)
+    return load(path, text=text).leg
 
 
 def seas():

@@ -8,7 +8,6 @@ import pytest
 
 import calm
 from calm.assemble import with_axial_clamps
-from calm.case.tow import Tow
 from calm.drop import drop_plan, plan
 from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Ship, fall, settle, towed
@@ -54,7 +53,7 @@ def loaded(tmp_path):
 
 def dropped(mooring, ship=(0.0, 1.0), fineness=COARSE):
     """The start, the fall and the rest of a mooring's line."""
-    anchor = FallingAnchor(mooring.anchor_weight, mooring.file.anchor.kt or 0.0)
+    anchor = FallingAnchor(mooring.leg.anchor_weight, mooring.file.anchor.kt or 0.0)
     line, water = with_axial_clamps(mooring.line, mooring.file.pieces[:-1]), mooring.water
     start = towed(line, water, anchor, Ship(*ship), fineness)
     drop = fall(line, water, anchor, start, fineness)
@@ -124,7 +123,7 @@ def test_masses_and_springs_fall_as_far_and_as_long(loaded, text, way, wire, top
     sea = drop_dynamics.Sea(water.depth, float(water.density[0]), 9.81, current)
     nodes = np.column_stack([-np.sign(way) * start[1:, 1], start[1:, 2]])
     time, back, moved = drop_dynamics.dynamic_drop(
-        sea, wire, top, anchor, mooring.anchor_weight, nodes
+        sea, wire, top, anchor, mooring.leg.anchor_weight, nodes
     )
     # what leaving out inertia costs, and 24 segments there
     assert plan.fall_time == pytest.approx(time, rel=0.015)
@@ -157,10 +156,10 @@ def test_the_drag_of_the_anchor_is_what_matters(loaded):
 @pytest.mark.thorough
 def test_every_shipped_line_comes_to_rest_in_its_equilibrium(path):
     mooring = calm.load(path)
-    if isinstance(mooring, Tow):
+    if mooring.towed:
         pytest.skip("a tow has no anchor")
     _, drop, rest = dropped(mooring)
-    assert rest_difference(mooring.solve(), rest) < 1e-3 * mooring.water.depth
+    assert rest_difference(mooring.solve().leg, rest) < 1e-3 * mooring.water.depth
     assert drop.states[-1].time > 0.0
 
 
@@ -199,12 +198,12 @@ components:
 def test_the_design_check_and_the_plan_tell_of_one_fall(name):
     """A line that lands before it is plumb, and one whose float is at the surface."""
     mooring = calm.load(shipped_folder("lines") / f"{name}.yaml")
-    launch, told = launch_of(mooring), drop_plan(mooring, fineness=IN_SHORT)
+    launch, told = launch_of(mooring.leg), drop_plan(mooring, fineness=IN_SHORT)
     assert told.touchdown_speed == pytest.approx(launch.fall_speed, rel=1e-12)
     pulls = [pull.tension for pull in told.pulls]
     given = np.maximum(launch.tension_top, launch.tension_bottom)
     assert pulls == pytest.approx(given, rel=5e-3)  # the greatest may be between the ends
-    finer = launch_of(mooring, plan.FINE)
+    finer = launch_of(mooring.leg, plan.FINE)
     assert launch.fall_speed == pytest.approx(finer.fall_speed, rel=0.02)
     assert launch.greatest_tension == pytest.approx(finer.greatest_tension, rel=0.02)
 
@@ -214,7 +213,7 @@ def test_in_deep_water_it_falls_at_the_terminal_speed(loaded):
     _, drop, _ = dropped(mooring, fineness=Fineness(50, 200))
     line = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
     last = drop.states[-1].velocity
-    weight, drag = mooring.anchor_weight, mooring.anchor_drag
+    weight, drag = mooring.leg.anchor_weight, mooring.leg.anchor_drag
     terminal = falling(line, mooring.water, weight, drag, last[-1])
     # after 2800 m of fall the line has long been plumb
     assert last[-1, 2] == pytest.approx(terminal[2], rel=5e-4)
@@ -235,7 +234,7 @@ def test_a_heavy_sphere_on_a_thin_line_falls_as_if_alone(loaded):
         """
     )
     _, drop, _ = dropped(mooring, fineness=Fineness(50, 100))
-    speed = sqrt(mooring.anchor_weight / (100.0 * 1200.0 / 1025.0))
+    speed = sqrt(mooring.leg.anchor_weight / (100.0 * 1200.0 / 1025.0))
     assert -drop.states[-1].velocity[-1, 2] == pytest.approx(speed, rel=1e-3)
     assert drop.states[-1].time == pytest.approx(500.0 / speed, rel=5e-3)
 
@@ -367,10 +366,10 @@ def test_a_line_held_upright_leans_as_in_its_equilibrium(loaded, text):
     node[:, 2] = line.anchor_height - water.depth + above
     upright = ChainState(0.0, node, np.full(len(length), 1000.0), np.zeros_like(node))
     rest = settle(
-        line, water, FallingAnchor(mooring.anchor_weight, 100.0), upright, Fineness(50, 20)
+        line, water, FallingAnchor(mooring.leg.anchor_weight, 100.0), upright, Fineness(50, 20)
     )
     # bars of 2.4 m lie along chords: some 2e-6 of the depth here
-    assert rest_difference(mooring.solve(), rest) < 1e-5 * water.depth
+    assert rest_difference(mooring.solve().leg, rest) < 1e-5 * water.depth
 
 
 def test_a_line_towed_below_the_surface_is_that_of_the_tow(loaded):
@@ -387,7 +386,7 @@ def test_a_line_towed_below_the_surface_is_that_of_the_tow(loaded):
 
 def test_nothing_is_lost_where_the_chain_is_cut_finer(loaded):
     mooring = loaded(LEAN.format(depth=200, length=120, current=0.5))
-    anchor = FallingAnchor(mooring.anchor_weight, 400.0)
+    anchor = FallingAnchor(mooring.leg.anchor_weight, 400.0)
     weights = []
     for bars in (50, 133):
         start = towed(mooring.line, mooring.water, anchor, Ship(-1.0, 0.0), Fineness(bars, 50))

@@ -77,7 +77,6 @@ def test_a_friction_that_jumps_inside_a_cable_is_within_the_stated_error() -> No
     the tensions by 3.5 times. At a tenth of the step errors are a hundredth.
     """
     mooring = calm.load("turning.yaml", text=TURNING)
-    assert isinstance(mooring, calm.Mooring)
     usual = solve_mooring(mooring.line, mooring.water)
     fine = solve_mooring(mooring.line, mooring.water, Settings(radians(0.1), 1e-10))
     at, finely = usual.piece_nodes, fine.piece_nodes

@@ -4,7 +4,6 @@ Whatever is drawn from the laws that `calm.motion` assumes must lie within its i
 these say. The line is that of docs/field/dune2; everything that was measured is made.
 """
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +15,6 @@ from calm.motion.correction import Task
 from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import Forward, labels_of, points
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.motion_estimate import fit_of, fitted
-from calm.motion.study import prepare
 from calm.motion.whole_record import estimate_common
 
 FIELD = Path(__file__).parents[2] / "docs" / "field" / "dune2"
@@ -186,48 +183,3 @@ def test_what_a_block_holds_changes_nothing(mooring):
     part, less = task.columns(20, 30)
     np.testing.assert_allclose(part.clamp_depth, whole.clamp_depth[20:30], rtol=0.0, atol=1e-9)
     np.testing.assert_allclose(less["depth_sd"], more["depth_sd"][20:30], rtol=0.0, atol=1e-9)
-
-
-def judged(mooring, off, used=THREE, label="Aquadopp 226", readings=slice(None)):
-    """Whether a sensor that reads too deep by so much fits the line by the others."""
-    measured, _, depth = twin(mooring, 0, used)
-    mine = used.index(label)
-    strong = np.argsort(depth[:, measured.point[mine]])[::-1][readings]
-    pressure = np.full_like(measured.depth[:, mine], np.nan)
-    pressure[strong] = measured.depth[strong, mine] + off
-    whole = measured.depth.copy()
-    whole[:, mine] = pressure
-    measured = replace(measured, depth=whole)
-    return fit_of(prepare(mooring, measured, NAMES, [label]), measured, label)
-
-
-def test_a_sound_sensor_fits_and_one_ten_metres_off_does_not(mooring):
-    sound, off = judged(mooring, 0.0), judged(mooring, 10.0)
-    assert sound.fits and 10.0 <= sound.odds <= 20.0  # a zero of 1 m against one of 20 m
-    assert off.fits is False and off.odds < 1e-3
-    assert off.sentence().startswith("Aquadopp 226: its pressures do not fit the line (odds ")
-    assert "m off throughout" in off.reason
-
-
-def test_a_sensor_that_one_far_below_hardly_constrains_cannot_be_judged(mooring):
-    """Known in strong currents alone, and by a sensor that hardly moves."""
-    for off in (0.0, 10.0):
-        found = judged(mooring, off, USED, "Aquadopp 626", slice(0, 24))
-        assert found.fits is None and 0.05 < found.odds < 5.0
-        assert "cannot be told" in found.sentence()
-
-
-@pytest.mark.slow
-def test_a_right_pressure_is_seldom_judged_wrong_where_no_current_was_measured(mooring):
-    # odds of 97 and 38 to 1 against these, before the error of the line was counted at the sensor
-    for seed in (7, 10):
-        measured, _, _ = twin(mooring, seed, THREE)
-        none, empty = np.zeros((TIMES, 0)), np.zeros(0, np.int64)
-        alone = replace(
-            measured, u=none, v=none, level_depth=none, level_point=empty,
-            flag=none.astype(np.int8),
-        )  # fmt: skip
-        wrong = replace(alone, depth=alone.depth + np.array([0.0, 15.0, 0.0]))
-        task = prepare(mooring, alone, fitted(currents=False), [THREE[1]])
-        assert fit_of(task, alone, THREE[1]).fits is not False
-        assert fit_of(task, wrong, THREE[1]).fits is False

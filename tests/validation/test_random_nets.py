@@ -11,7 +11,8 @@ from math import asinh, hypot
 
 import pytest
 
-from calm.case.net import Net, load
+from calm.case import Design, load
+from calm.case.net import net_legs
 from calm.physics.line import Floats
 from calm.solve.leg_layout import LegEnd, NetLeg
 from calm.solve.net import NetSolution, solve_net
@@ -35,16 +36,15 @@ def test_calm_agrees_with_the_referee(number: int) -> None:
     assert not case.plain_differs
 
 
-def net_of(number: int) -> tuple[Net, NetSolution]:
+def net_of(number: int) -> tuple[Design, NetSolution]:
     net = load("net.yaml", text=surface_net(number).text)
-    assert isinstance(net, Net)
     return net, net.standing
 
 
 def test_a_weight_that_the_leg_lifts_in_part_stands_on_the_seabed() -> None:
     """The wire above it bears that part: 53 of 145 N, which the seabed does not."""
     net, found = net_of(7)
-    ends, _ = solve_continuous_net(net.legs, found, net.water)
+    ends, _ = solve_continuous_net(net_legs(net.legs), found, net.water)
     leg = found.legs[1]
     assert leg.grounded_length == pytest.approx(net.legs[1].line.length[2])
     off = apart(ends_of(leg), ends[1], net.water.depth)
@@ -60,7 +60,7 @@ def test_a_leg_followed_up_is_that_followed_down(monkeypatch: pytest.MonkeyPatch
     ways: list[Floats] = []
     for weak in (1e-6, 1.0):
         monkeypatch.setattr(netted, "WEAK", weak)
-        _, nodes = solve_continuous_net(net.legs, found, net.water)
+        _, nodes = solve_continuous_net(net_legs(net.legs), found, net.water)
         ways.append(nodes)
     assert ways[0] == pytest.approx(ways[1], abs=1e-8 * net.water.depth)
 

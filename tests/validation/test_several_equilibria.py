@@ -258,3 +258,36 @@ def test_a_float_has_two_equilibria_in_a_current_that_turns_back() -> None:
     )  # fmt: skip
     assert found.used_buoyancy == pytest.approx(shares[-1], abs=1e-5)
     assert found.other_used_buoyancy == pytest.approx(other["used_buoyancy"], abs=2e-3)
+
+
+TIPPING = """
+environment:
+  depth: 90 m
+  current:
+    columns: [depth m, u m/s, v m/s]
+    rows:
+      - [0, 1.2, 0]
+      - [10, 1.2, 0]
+      - [10.01, -1.2, 0]
+      - [20, -1.2, 0]
+      - [20.01, 1.2, 0.24]
+      - [50, 1.2, 0.24]
+      - [50.01, 0, -1.2]
+      - [90, 0, -1.2]
+line: [{use: glass, count: 5}, {use: wire, length: 75 m}, {use: block}]
+components:
+  glass: {kind: sphere, diameter: 0.51 m, buoyancy: 225.6 N, cx: 0.95}
+  wire: {kind: cable, diameter: 8 mm, weight: 1.5 N/m, cn: 1.3, ct: 0.01, stiffness: 2.5 MN}
+  block: {kind: anchor, weight: 9 kN, length: 0.7 m}
+"""
+
+
+def test_a_float_that_tips_over_at_a_step_of_the_current_leaves_the_lower_equilibrium() -> None:
+    """The lowest ball leans to one side of the step or to the other: in between no line stands."""
+    mooring = calm.load("tipping.yaml", text=TIPPING)
+    water = mooring.water
+    *_, expected = stays(mooring.line, water, 60)
+    solution = solve_mooring(mooring.line, water)
+    assert -solution.position[0, 2] == pytest.approx(expected, abs=NEAR * water.depth)
+    found = calm.solve_profiles(mooring, water.u[None], water.v[None], water.level)
+    assert found.depth_top[0, 0] == pytest.approx(expected, abs=1e-4 * water.depth)

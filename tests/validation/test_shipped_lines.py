@@ -42,7 +42,7 @@ def referee_of(path: Path) -> Equilibrium | Towed:
     """The continuous solution of a shipped line, which two tests look at."""
     if path in TOWS:
         tow = calm.load(path)
-        return solve_continuous_tow(tow.line, tow.water, tow.towing)
+        return solve_continuous_tow(tow.line, tow.water, tow.leg.towing)
     mooring = calm.load(path)
     return solve_continuous(mooring.line, mooring.water)
 
@@ -57,12 +57,12 @@ def test_calm_agrees_with_the_referee_on_tows(path) -> None:
     tow = calm.load(path)
     referee = referee_of(path)
     for degrees, near, close in [(1.0, 5e-5, 2e-4), (0.1, 2e-6, 1e-5)]:
-        solution = solve_tow(tow.line, tow.water, tow.towing, Settings(radians(degrees)))
+        solution = solve_tow(tow.line, tow.water, tow.leg.towing, Settings(radians(degrees)))
         found = difference(solution, referee)
         assert found.place <= near, f"at {degrees}°"
         assert found.tension <= close, f"at {degrees}°"
         assert solution.frequency == pytest.approx(referee.frequency, rel=close)
-        assert closure(solution, Passing(tow.water, tow.towing)) <= 1e-6
+        assert closure(solution, Passing(tow.water, tow.leg.towing)) <= 1e-6
 
 
 @pytest.mark.parametrize("path", _cases(MOORINGS))
@@ -95,5 +95,5 @@ def test_the_accuracy_a_tow_states_holds(path) -> None:
     tow = calm.load(path)
     referee = referee_of(path)
     length = tow.line.length.sum()
-    error = difference(solve_tow(tow.line, tow.water, tow.towing), referee).place * length
+    error = difference(solve_tow(tow.line, tow.water, tow.leg.towing), referee).place * length
     assert error <= 1.5 * tow.solve().accuracy.depth + 1e-7 * length

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calm.case.net import Net, load
+from calm.case import Design, load
 from calm.solve.net import NetSolution
 from tests.validation.surface_nets import SurfaceNet, surface_net
 
@@ -23,9 +23,8 @@ MIRRORED = TURNED @ np.diag([1.0, -1.0])
 AS_IT_IS = np.eye(2)
 
 
-def read(path: Path | str, text: str | None = None) -> Net:
+def read(path: Path | str, text: str | None = None) -> Design:
     net = load(path, text=text)
-    assert isinstance(net, Net)
     return net
 
 
@@ -84,6 +83,56 @@ def test_a_float_of_no_length_is_as_good_as_another() -> None:
     assert none.nodes == pytest.approx(short.standing.nodes, abs=0.02)
 
 
+CHAINS = """\
+environment: {{depth: 8 m, current: {{speed: {speed} m/s, toward: {toward} deg}}}}
+components:
+  buoy: {{kind: body, length: 0.5 m, buoyancy: 3 kN, kn: 100 N/(m/s)^2, inclination: insensitive}}
+  chain: {{kind: chain, diameter: 16 mm, weight: 48 N/m}}
+  block: {{kind: anchor, weight: 30 kN, length: 0 m}}
+legs:
+  float: {{line: [{{use: buoy}}], bottom: {{join: A}}}}
+"""
+CHAIN = """\
+  {leg}:
+    line: [{{use: chain, length: 50 m}}, {{use: block}}]
+    top: {{join: A}}
+    bottom: {{anchor: {{at: [{at[0]} m, {at[1]} m]}}}}
+"""
+ANCHORS = np.array([(25.0, 0.0), (-12.0, 22.0), (-12.0, -22.0)])
+
+
+def farthest(way: np.ndarray, reach: float) -> np.ndarray:
+    """The place farthest along a way of those that are within a reach of every anchor."""
+    places = [at + reach * way for at in ANCHORS]
+    for first, second in ((0, 1), (1, 2), (2, 0)):
+        apart = ANCHORS[second] - ANCHORS[first]
+        aside = np.array([-apart[1], apart[0]]) / np.hypot(*apart)
+        high = np.sqrt(reach**2 - 0.25 * apart @ apart)
+        places += [ANCHORS[first] + 0.5 * apart + side * high * aside for side in (1.0, -1.0)]
+    near = [p for p in places if np.hypot(*(p - ANCHORS).T).max() <= reach * (1.0 + 1e-9)]
+    return max(near, key=lambda place: float(place @ way))
+
+
+@pytest.mark.parametrize(
+    ("speed", "toward"), [(0.1, 17.0), (0.05, 77.0), (0.015, 17.0), (0.015, 200.0)]
+)
+def test_a_weak_current_carries_a_buoy_on_slack_chains_as_far_as_they_reach(
+    speed: float, toward: float
+) -> None:
+    """Where chain hangs plumb 42.5 m of 50 m lie, and hold what drifts within that of the anchor.
+
+    Drag bends a chain by a few times H/w, 2 cm at 0.1 m/s, and where two bear it each by more.
+    """
+    legs = "".join(CHAIN.format(leg=f"a{i}", at=at) for i, at in enumerate(ANCHORS))
+    net = read("chains.yaml", CHAINS.format(speed=speed, toward=toward) + legs)
+    (at,) = net.solve().nodes
+    way = np.array([np.sin(np.radians(toward)), np.cos(np.radians(toward))])
+    drag = 100.0 * speed**2 + 1025.0 * 0.016 * 7.5 * speed**2 * 1.4
+    a = 2.0 * drag / 48.0
+    bent = a * np.arccosh(1.0 + 7.5 / a) - np.sqrt(7.5**2 + 2.0 * 7.5 * a) + 7.5
+    assert (at.x, at.y) == pytest.approx(farthest(way, 42.5), abs=4.0 * bent + 1e-3)
+
+
 def of_images(net: SurfaceNet) -> list[tuple[np.ndarray, SurfaceNet]]:
     return [
         (TURNED, net.placed(TURNED)), (MIRRORED, net.placed(MIRRORED)), (AS_IT_IS, net.reordered()),
@@ -125,7 +174,7 @@ def test_a_batch_solves_slack_legs_as_a_run_does(name: str) -> None:
     first = [leg.first for leg in net.file.legs]
     for case in range(3):
         columns = tuple(map(tuple, (water.level, u[case], v[case], 0.0 * u[case])))
-        alone = net.equilibrium(profiles.water(*columns))
+        alone = net.together(profiles.water(*columns))
         assert case > 0 or any(leg.slack > 0.0 for leg in alone.legs)
         near = 1e-4 * water.depth
         for leg, row in zip(alone.legs, first, strict=True):

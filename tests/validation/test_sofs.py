@@ -86,7 +86,7 @@ def test_a_float_that_follows_every_wave_as_whoi_cable_has_it(sofs5):
 
 def test_regular_waves_as_whoi_cable_has_them(sofs5):
     """An amplitude of 704 N in waves of 1 m and 8.4 s, the buoy following."""
-    solution = sofs5.equilibrium(sofs5.water)
+    solution = sofs5.equilibrium()
     line, buoy = lumped_line(sofs5, solution, 20.0), buoy_of(sofs5, solution, True)
     omega = 2.0 * np.pi / 8.4 * np.array([0.999, 1.0, 1.001])
     sea = spectrum_of("bretschneider", 1.0, 8.4, 3.3)
@@ -111,7 +111,7 @@ def test_sofs1_as_it_was_designed():
     """
     designed = [spectrum_of("bretschneider", height, period, 3.3) for height, period, _ in DESIGNED]
     sofs1 = mooring("SOFS-1")
-    solution = sofs1.equilibrium(sofs1.water)
+    solution = sofs1.equilibrium()
     line, buoy = lumped_line(sofs1, solution, 20.0), buoy_of(sofs1, solution, True)
     found, flow = [], None
     for sea in designed:

@@ -41,7 +41,7 @@ tension in the upper chain itself is not compared: a step of the motion given to
 def test_tensions_of_a_heaved_line():
     """Within 1 %: the segments of MoorDyn, 2 m of nylon, and the three digits of its mean."""
     mooring = load("coastal.yaml", text=COASTAL)
-    line = lumped_line(mooring, mooring.equilibrium(mooring.water), 0.5)
+    line = lumped_line(mooring.leg, mooring.leg.equilibrium(), 0.5)
     omega = np.array([2.0])
     water = np.zeros((1, len(line.mass), 3), complex)
     held = np.diag([-4.0 * 1150.0, -4.0 * 1150.0, 1e10])[None], np.zeros((1, 3))  # of 1150 kg

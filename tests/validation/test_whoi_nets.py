@@ -17,8 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calm.case.net import Net, load
-from calm.case.result import NetResult
+from calm.case import Result, load
 from calm.exchange.importing import import_file
 from calm.solve.leg_layout import LegEnd, NetLeg
 from calm.solve.net import solve_net
@@ -126,22 +125,21 @@ HUNG = "terminal = { buoy = sinker }\n"
 
 
 @pytest.fixture
-def imported(tmp_path: Path) -> Callable[[str, float, str], NetResult]:
-    def solve(kind: str, depth: float, layout: str) -> NetResult:
+def imported(tmp_path: Path) -> Callable[[str, float, str], Result]:
+    def solve(kind: str, depth: float, layout: str) -> Result:
         path = tmp_path / "net.cbl"
         path.write_text(HEAD.format(kind=kind, depth=depth) + layout + "End\n")
         net = load(path, text=import_file(path, tmp_path / "net.yaml").text)
-        assert isinstance(net, Net)
         return net.solve()
 
     return solve
 
 
-def heights(net: NetResult, depth: float) -> np.ndarray:
+def heights(net: Result, depth: float) -> np.ndarray:
     return np.array([[node.x, depth - node.depth] for node in net.nodes])
 
 
-def test_branch_as_a_file(imported: Callable[[str, float, str], NetResult]) -> None:
+def test_branch_as_a_file(imported: Callable[[str, float, str], Result]) -> None:
     """The first sphere is a piece of the leg that stands; of the other nodes each has a branch.
 
     Figures and tolerances as above.
@@ -168,7 +166,7 @@ def test_branch_as_a_file(imported: Callable[[str, float, str], NetResult]) -> N
 
 
 @pytest.mark.thorough
-def test_multi_leg_as_a_file(imported: Callable[[str, float, str], NetResult]) -> None:
+def test_multi_leg_as_a_file(imported: Callable[[str, float, str], Result]) -> None:
     branch = "branch = {\n" + wire(40) + clump(30.0) + "}\n"
     layout = clump(0.0) + wire(50) + BALL + branch + wire(50) + clump(60.0)
     net = imported("positioned", 44.0, layout)
@@ -178,7 +176,7 @@ def test_multi_leg_as_a_file(imported: Callable[[str, float, str], NetResult]) -
 
 
 @pytest.mark.thorough
-def test_multi_leg_3d_as_a_file(imported: Callable[[str, float, str], NetResult]) -> None:
+def test_multi_leg_3d_as_a_file(imported: Callable[[str, float, str], Result]) -> None:
     branches = "".join(
         "branch = {\n" + wire(50) + clump(x, y) + "}\n" for x, y in ((30, -30), (-30, 30))
     )

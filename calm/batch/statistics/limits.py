@@ -1,7 +1,7 @@
 """The criteria of the design check in every profile of a batch, and how often each is broken."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 
 from calm.batch.statistics.series import Column, LegSeats, ResultColumns, Seat
 from calm.batch.statuses import Ending
-from calm.case import Mooring
-from calm.case.net import Net
+from calm.case import Design
+from calm.case.leg import Leg
 from calm.checks.assess import RULES, is_judged
 from calm.checks.criterion import AT_SURFACE, Criterion, JudgedPart
 from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.situations import equilibrium
-from calm.files.mooring_file import STAND_IN
+from calm.files.pieces import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
 from calm.physics.seabed import required_weight
 
@@ -36,19 +36,19 @@ class CountedLimit:
     ----------
     rule : of the design check, whose quantity the values are
     criterion : what it asks
-    mooring : of what, a leg of a net among them
-    leg : where that has its columns
+    leg : of what
+    seats : where one of several has its columns
     """
 
     rule: Rule
     criterion: Criterion
-    mooring: Mooring
-    leg: LegSeats | None = None
+    leg: Leg
+    seats: LegSeats | None = None
 
     def values(self, series: ResultColumns) -> Column:
         """The (n,) values of a batch; NaN where there is nothing to judge."""
-        own = series if self.leg is None else series.of_leg(self.leg)
-        return _VALUES[self.criterion.quantity](own, self.criterion.part, self.mooring)
+        own = series if self.seats is None else series.of_leg(self.seats)
+        return _VALUES[self.criterion.quantity](own, self.criterion.part, self.leg)
 
     def broken(self, values: Column) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
         """(n,) where values are beyond the limit; never where they are NaN."""
@@ -58,28 +58,24 @@ class CountedLimit:
         return np.asarray(beyond, np.bool_)
 
 
-def limits_of(mooring: Mooring | Net) -> tuple[CountedLimit, ...]:
+def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
     """Every limit of a mooring that can be counted in a batch, rule by rule and down the line.
 
     The tension of a piece is the greatest, or the least, of those at its ends and at the clamps on
     it, which is what a result holds. A line meant for the surface is judged as such wherever the
-    current takes its float. Of a net each leg is judged as the design check judges it.
+    current takes its float. Each leg is judged as the design check judges it.
     """
-    if isinstance(mooring, Net):
-        found = [
-            replace(limit, leg=leg)
-            for line, leg in zip(mooring.meant, LegSeats.of_file(mooring.file), strict=True)
-            for limit in limits_of(line)
-            if is_judged(line.file, limit.rule, limit.criterion.part.index)
-        ]
-        order = list(RULES)
-        return tuple(sorted(found, key=lambda limit: order.index(limit.rule.name)))
-    return tuple(
-        CountedLimit(rule, criterion, mooring)
+    seats = LegSeats.of_file(mooring.file) if mooring.several else (None,)
+    order = list(RULES)
+    found = [
+        CountedLimit(rule, criterion, leg, seat)
+        for leg, seat in zip(mooring.meant, seats, strict=True)
         for rule in RULES.values()
         if rule.criteria is not None
-        for criterion in rule.criteria(mooring)
-    )
+        for criterion in rule.criteria(leg)
+        if is_judged(leg.file, rule, criterion.part.index)
+    ]
+    return tuple(sorted(found, key=lambda limit: order.index(limit.rule.name)))
 
 
 def top_offset(series: ResultColumns) -> Column:
@@ -98,16 +94,16 @@ def _seat(part: JudgedPart) -> Seat:
     return Seat(part.index) if part.clamp is None else Seat(part.clamp, True)
 
 
-def _greatest_tension(series: ResultColumns, part: JudgedPart, mooring: Mooring) -> Column:
-    pieces = mooring.file.pieces
+def _greatest_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
+    pieces = leg.file.pieces
     first = sum(len(piece.clamps) for piece in pieces[: part.index])
     clamps = range(first, first + len(pieces[part.index].clamps))
     return series.greatest_tension([_seat(part), *(Seat(clamp, True) for clamp in clamps)])
 
 
-def _least_tension(series: ResultColumns, part: JudgedPart, mooring: Mooring) -> Column:
+def _least_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
     """Return the least at the ends of a piece; NaN where all of it lies on the seabed."""
-    water, pieces, least = mooring.water, mooring.file.pieces, series.least_tension(_seat(part))
+    water, pieces, least = leg.water, leg.file.pieces, series.least_tension(_seat(part))
     bed: Column | float = water.depth * (1.0 - _LYING)
     for name, deeper in (("x_top", water.deeper_east), ("y_top", water.deeper_north)):
         if deeper != 0.0 and pieces[-1].use != STAND_IN:
@@ -117,11 +113,11 @@ def _least_tension(series: ResultColumns, part: JudgedPart, mooring: Mooring) ->
     return least
 
 
-def _greatest_depth(series: ResultColumns, part: JudgedPart, mooring: Mooring) -> Column:
+def _greatest_depth(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
     """Return the depth of the deeper end of a piece, whose lower end is the top of the next one."""
     depth = series.depth(_seat(part))
-    floats = depth <= (AT_SURFACE if reaches_the_surface(mooring) else -np.inf)
-    pieces = mooring.file.pieces
+    floats = depth <= (AT_SURFACE if reaches_the_surface(leg) else -np.inf)
+    pieces = leg.file.pieces
     if part.clamp is None and pieces[part.index + 1].use == STAND_IN:
         depth += pieces[part.index].length or 0.0  # it cannot be deeper, but for its stretch
     elif part.clamp is None:
@@ -130,23 +126,23 @@ def _greatest_depth(series: ResultColumns, part: JudgedPart, mooring: Mooring) -
     return depth
 
 
-def _required_weight(series: ResultColumns, _: JudgedPart, mooring: Mooring) -> Column:
+def _required_weight(series: ResultColumns, _: JudgedPart, leg: Leg) -> Column:
     return required_weight(
         series.ends("anchor_vertical"),
         series.ends("anchor_horizontal"),
-        mooring.file.checks.anchor_factor,
-        mooring.file.anchor_friction,
+        leg.file.checks.anchor_factor,
+        leg.file.anchor_friction,
     )
 
 
-def _slide(series: ResultColumns, _: JudgedPart, mooring: Mooring) -> Column:
+def _slide(series: ResultColumns, _: JudgedPart, leg: Leg) -> Column:
     slide = series.ends("anchor_vertical")
-    slide *= mooring.file.anchor_friction
+    slide *= leg.file.anchor_friction
     slide += series.ends("anchor_horizontal")
     return slide
 
 
-_VALUES: dict[str, Callable[[ResultColumns, JudgedPart, Mooring], Column]] = {
+_VALUES: dict[str, Callable[[ResultColumns, JudgedPart, Leg], Column]] = {
     "tension": _greatest_tension,
     "tension_bottom": lambda series, part, _: series.column("tension_bottom", part.index),
     "least_tension": _least_tension,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from copy import copy
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from calm.batch.finished import labels_of, readable, statuses_of
 from calm.case.result_tables import MOORED_ENDS
+from calm.errors import UsageError
 from calm.files import MooringFile
 
 if TYPE_CHECKING:
@@ -72,7 +73,6 @@ class ResultColumns:
     ----------
     dataset : the result, opened without loading it
     folder : for the temporary file; the system's unless given
-    check : called now and then while it is turned; what it raises ends that
     source : its file, for messages
 
     Attributes
@@ -83,22 +83,18 @@ class ResultColumns:
 
     Raises
     ------
-    OSError
-        There is no room for the temporary file.
     UsageError
-        The result cannot be read.
+        The result cannot be read, or there is no room for the temporary file.
     """
 
     def __init__(
         self,
         dataset: Dataset,
         folder: Path | None = None,
-        check: Callable[[], None] = lambda: None,
         source: Path = Path("the result"),
     ) -> None:
         self.dataset = dataset
         self._source = source
-        self._check = check
         self.time: Times = dataset["time"].values
         self.statuses = statuses_of(dataset)
         self.component_label = labels_of(dataset, "component_label")
@@ -109,7 +105,7 @@ class ResultColumns:
             self._turn()
         except OSError as error:
             place = folder or "the folder for temporary files"
-            raise OSError(f"cannot gather the statistics in {place}: {error.strerror}") from None
+            raise UsageError(f"cannot gather the statistics in {place}: {error.strerror}") from None
 
     def __enter__(self) -> Self:
         return self
@@ -203,7 +199,6 @@ class ResultColumns:
             columns = range(first, first + (variable.shape[1] if variable.ndim > 1 else 1))
             self._columns[name] = columns
             for begin in range(0, len(self), _ROWS):
-                self._check()
                 with readable(self._source):
                     block = np.asarray(variable[begin : begin + _ROWS], _FIGURE)
                 by_column = np.ascontiguousarray(block.T).reshape(len(columns), -1)

@@ -15,9 +15,8 @@ from calm.batch.statistics import limits
 from calm.batch.statistics.extremes import Fit, LevelsRefused, median_step, return_levels, years_of
 from calm.batch.statistics.series import Column, LegSeats, ResultColumns, Seat, Times
 from calm.batch.statuses import Ending, endings
-from calm.case import Mooring
-from calm.case.mooring import profilers_in
-from calm.case.net import Net
+from calm.case import Design
+from calm.case.profilers import profilers_in
 from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface
 from calm.files import Profiler
@@ -148,9 +147,8 @@ class Summary:
 
 def summarize(
     dataset: Dataset,
-    mooring: Mooring | Net,
+    mooring: Design,
     folder: Path | None = None,
-    check: Callable[[], None] = lambda: None,
     source: Path = Path("the result"),
 ) -> Summary:
     """Gather what a finished result says.
@@ -161,7 +159,6 @@ def summarize(
     mooring : that it was solved for: its limits are judged
     folder : for a temporary file, as large as the result is without compression; the system's
         unless given
-    check : called now and then while the result is read; what it raises ends that
     source : the file of the result, for messages
 
     Profiles that were not solved are left out, and counted. All shares are of profiles: shares of
@@ -170,12 +167,11 @@ def summarize(
 
     Raises
     ------
-    OSError
-        There is no room for the temporary file.
     UsageError
-        The dataset is no result of `calm batch`, or cannot be read.
+        The dataset is no result of `calm batch`, or cannot be read; there is no room for the
+        temporary file.
     """
-    with ResultColumns(dataset, folder, check, source) as series:
+    with ResultColumns(dataset, folder, source) as series:
         ended = endings(series.statuses)
         equilibrium = limits.equilibrium_share(ended)
         unsolved = ended[Ending.NO_EQUILIBRIUM] + ended[Ending.NOT_CONVERGED]
@@ -198,11 +194,11 @@ def summarize(
             limits_used=tuple(
                 dict.fromkeys(
                     key
-                    for line in (mooring.meant if isinstance(mooring, Net) else (mooring,))
-                    for key in limits_used(line.file, reaches_the_surface(line))
+                    for leg in mooring.meant
+                    for key in limits_used(leg.file, reaches_the_surface(leg))
                 )
             ),
-            stops=tuple(_stops(series, mooring)) if isinstance(mooring, Mooring) else (),
+            stops=tuple(_stops(series, mooring)),
         )
 
 
@@ -220,11 +216,11 @@ def _parts(series: ResultColumns) -> Iterator[PartDistributions]:
         )
 
 
-def _stops(series: ResultColumns, mooring: Mooring) -> Iterator[StopDepths]:
+def _stops(series: ResultColumns, mooring: Design) -> Iterator[StopDepths]:
     seats = {series.label(seat): seat for seat in series.seats}
     position = mooring.file.environment.position or mooring.file.position
     latitude = MID_LATITUDE if position is None else position.latitude
-    for profiler in profilers_in(mooring):
+    for profiler in (one for leg in mooring.legs for one in profilers_in(leg)):
         assert isinstance(profiler.component, Profiler)
         for stop, label in zip(("upper", "lower"), profiler.component.between or (), strict=True):
             seat = seats[label]
@@ -260,9 +256,9 @@ _LegColumns = Mapping[str, Sequence[ResultColumns]]
 """The columns that each response is the greatest of: of a line, or of the legs of a net."""
 
 
-def _columns_of(series: ResultColumns, mooring: Mooring | Net) -> _LegColumns:
+def _columns_of(series: ResultColumns, mooring: Design) -> _LegColumns:
     """Of a net the free ends count, and the anchors; an offset is that from the leg's own."""
-    if isinstance(mooring, Mooring):
+    if not mooring.several:
         return dict.fromkeys(RESPONSES, (series,))
     keys, seats = mooring.file.legs, LegSeats.of_file(mooring.file)
     legs = [series.of_leg(each) for each in seats]

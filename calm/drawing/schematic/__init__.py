@@ -12,7 +12,7 @@ from itertools import accumulate
 from math import isnan, log10
 from typing import NamedTuple
 
-from calm.case import Result, TowResult
+from calm.case.design import AnyResult
 from calm.drawing.schematic import symbols
 from calm.drawing.schematic.pen import FAINT, INK, SOFT, Pen, picture, svg_text, text_width, wrapped
 from calm.drawing.schematic.shown_parts import HEADINGS, Schematic, ShownPart, TextRow, schematic_of
@@ -43,7 +43,7 @@ _SUBMERGED, _BELOW_BODY = 12.0, 14.0
 _MOORED_AT, _TOWED_AT = 26.0, 46.0
 
 
-def schematic_svg(file: MooringFile, result: Result | TowResult | None = None) -> str:
+def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
     """A line as an SVG picture; it prints on A4 up to some 50 parts, beyond on a longer sheet.
 
     It refers to nothing outside and has neither identifiers nor style sheets, so that it can stand

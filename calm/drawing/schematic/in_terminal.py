@@ -8,7 +8,7 @@ from rich.cells import cell_len, set_cell_size
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.text import Text
 
-from calm.case import Result, TowResult
+from calm.case.design import AnyResult
 from calm.drawing.picture import encodable
 from calm.drawing.schematic.pen import ELLIPSIS
 from calm.drawing.schematic.shown_parts import HEADINGS, Schematic, TextRow, schematic_of
@@ -41,7 +41,7 @@ _LEAST_LABEL, _LEAST_NAME = 12, 14
 
 def schematic_text(
     file: MooringFile,
-    result: Result | TowResult | None = None,
+    result: AnyResult | None = None,
     width: int = 80,
     *,
     ascii_only: bool = False,
@@ -77,7 +77,7 @@ class TerminalSchematic:
     """The schematic as a rich console prints it, as wide as that is."""
 
     file: MooringFile
-    result: Result | TowResult | None
+    result: AnyResult | None
     ascii_only: bool
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:

@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate
 
-from calm.case import Result, TowResult
+from calm.case.design import AnyResult
 from calm.drawing.line_picture import alike, together
 from calm.drawing.picture import printable
 from calm.drawing.schematic.symbols import BALLS, LINES, Sign, Symbol, sign_of
 from calm.files import Clamp, MooringFile, Piece, Place, Rigid
-from calm.files.mooring_file import STAND_IN
+from calm.files.pieces import STAND_IN
 from calm.quantities import QUANTITIES, say
 
 HEADINGS = {"cut_length": ("cut", "length"), "depth": ("", "depth"), "height": ("above", "seabed")}
@@ -83,7 +83,7 @@ class Schematic:
     seabed: TextRow | None
 
 
-def schematic_of(file: MooringFile, result: Result | TowResult | None = None) -> Schematic:
+def schematic_of(file: MooringFile, result: AnyResult | None = None) -> Schematic:
     """Return what the schematic of a line shows; as solved, where there is a result."""
     levels = levels_of(file, result)
     bottom = file.environment.depth
@@ -222,7 +222,7 @@ class Levels:
     note: str
 
 
-def levels_of(file: MooringFile, result: Result | TowResult | None) -> Levels:
+def levels_of(file: MooringFile, result: AnyResult | None) -> Levels:
     """Levels as solved; else of the upright, unstretched line.
 
     Without a result they are unknown in a tow, and where the line reaches the surface.

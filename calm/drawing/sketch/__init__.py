@@ -12,8 +12,8 @@ import numpy as np
 from rich.cells import cell_len
 from rich.text import Text
 
-from calm.case import Result, TowResult
-from calm.case.result import AnyResult, NetResult
+from calm.case.design import AnyResult
+from calm.case.leg_result import LegResult
 from calm.case.result_tables import Shape
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import allowable_load
@@ -48,9 +48,9 @@ def elevation(
     Shapes `beside` a mooring, of other environments or designs, are dashed.
     """
     side = line_picture.elevation_of(result, beside)
-    moored = not isinstance(result, TowResult)
+    moored = not result.towed
     if moored:  # its seabed is the foot of the picture
-        held = [line.y.min() for line in side.lines] if isinstance(result, NetResult) else []
+        held = [line.y.min() for line in side.lines] if result.several else []
         side = replace(side, top=float(min(0.0, *held, 0.0)), bottom=side.seabed or side.bottom)
     seabed = side.seabed if side.seabed is not None and side.seabed <= side.bottom else None
     head = header_rows(height)
@@ -83,27 +83,25 @@ def draw_picture(frame: canvas.PlotFrame, picture: LinePicture) -> None:
 
 def _caption(result: AnyResult) -> str:
     """Return how deep and how far off the end is, in words."""
-    if isinstance(result, NetResult):
+    if result.several:
         return _distance(result)
-    if isinstance(result, Result):
-        top = result.top
-        deep = "top afloat" if result.type == "surface" else f"top {say('depth', top.depth)}"
+    (leg,) = result.legs
+    if leg.body is None:
+        deep = "top afloat" if leg.type == "surface" else f"top {say('depth', leg.top.depth)}"
         return f"{deep}, {_distance(result)}"
-    body = result.body
-    deep = say("depth", body.depth)
-    if result.file.environment.fluid == "air":
-        deep = f"{say('depth', body.depth + result.tow.keys.height)} below"
-    return f"body {deep}, {say('layback', body.layback)} behind"
+    deep = say("depth", leg.body.depth)
+    if leg.file.tow is not None and leg.file.environment.fluid == "air":
+        deep = f"{say('depth', leg.body.depth + leg.file.tow.height)} below"
+    return f"body {deep}, {say('layback', leg.body.layback)} behind"
 
 
 def _distance(result: AnyResult) -> str:
-    """Return how far off the end is and where to; of a net how many legs it has."""
-    if isinstance(result, NetResult):
+    """Return how far off the end is and where to; of several legs how many there are."""
+    if result.several:
         return f"net of {len(result.legs)} legs"
-    if isinstance(result, Result):
-        x, y = result.top.x, result.top.y
-    else:
-        x, y = float(result.shape.x[0]), float(result.shape.y[0])
+    (leg,) = result.legs
+    free = leg.shape  # which begins at the free end
+    x, y = (float(free.x[0]), float(free.y[0])) if leg.towed else (leg.top.x, leg.top.y)
     distance = hypot(x, y)
     towards = f" to {bearing_text(bearing_of(x, y))}" if distance >= 0.05 else ""
     return f"{say('offset', distance)} off{towards}"
@@ -173,14 +171,14 @@ _KILO = 1e4
 """Tensions are in kilonewtons from here on [N]."""
 
 
-def tension(result: Result | TowResult, width: int, height: int) -> list[Text]:
+def tension(result: LegResult, width: int, height: int) -> list[Text]:
     """Tension by the way along the line, as listed from the top.
 
     Dotted in red is what the weakest piece there may bear: its working load, or its breaking load
     over the safety factor that the design asks for. What bears far more than is drawn has no mark.
     """
     pulls, way = result.shape.tension, along_the_line(result.shape)
-    if not isinstance(result, Result):  # listed from the ship down, its shape from the body up
+    if result.towed:  # listed from the ship down, its shape from the body up
         pulls, way = pulls[::-1], (way[-1] - way)[::-1]
     greatest = max(float(pulls.max()), 1e-9)
     loads = _allowable(result)
@@ -200,10 +198,10 @@ def tension(result: Result | TowResult, width: int, height: int) -> list[Text]:
     return frame.canvas.rows()
 
 
-def _allowable(result: Result | TowResult) -> list[tuple[float, float, float]]:
+def _allowable(result: LegResult) -> list[tuple[float, float, float]]:
     """Start and end along the line [m] of each piece with a known limit, and that [N]."""
     factors = result.file.checks.safety_factor
-    surface = isinstance(result, Result) and reaches_the_surface(result.mooring)
+    surface = not result.towed and reaches_the_surface(result.leg)
     found, start = [], 0.0
     for piece, length in zip(result.file.pieces, result.components.length.tolist(), strict=True):
         load = allowable_load(piece.component, factors, surface)
@@ -267,7 +265,7 @@ def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = (
 
     Shapes `beside` it, of other environments or designs, are dashed.
     """
-    shapes = [*(line.shape for line in line_picture.lines_of(result)), *beside]
+    shapes = [*(leg.shape for leg in result.legs), *beside]
     rows = height - header_rows(height) - 2
     west, east = _range([0.0, *_ends(each.x for each in shapes)])
     south, north = _range([0.0, *_ends(each.y for each in shapes)])
@@ -279,7 +277,7 @@ def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = (
         gutter = max(map(len, map(number, levels(bottom, top, rows))))
     left, right = _centred(west, east, metres * (width - gutter - 1) * ACROSS)
     across, down = (left, right), (top, bottom)
-    what = "" if isinstance(result, NetResult) else "top " if isinstance(result, Result) else "end "
+    what = "" if result.several else "end " if result.towed else "top "
     said = f"{what}{_distance(result)}"
     frame = scaled_frame((width, height), said, across, down, "m east", "m E")
     frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calm.batch.profiles import STATUSES, Profiles
-from calm.case import Mooring, Result, load
+from calm.case import Design, Result, load
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.shipped import shipped_folder
@@ -19,20 +19,19 @@ CLAMP_TILT = np.degrees(TENSION)
 """Degrees; of the pull in the line, whose direction is as good as its size."""
 
 
-def shipped(name: str) -> Mooring:
+def shipped(name: str) -> Design:
     mooring = load(shipped_folder("lines") / f"{name}.yaml")
-    assert isinstance(mooring, Mooring)
     return mooring
 
 
-def in_profile(mooring: Mooring, *columns: np.ndarray) -> Mooring:
+def in_profile(mooring: Design, *columns: np.ndarray) -> Design:
     current = CurrentTable(*(tuple(column.tolist()) for column in columns))
     environment = replace(mooring.file.environment, current=current)
-    return Mooring(replace(mooring.file, environment=environment))
+    return Design(replace(mooring.file, environment=environment))
 
 
 def assert_alike(found: Profiles, case: int, result: Result) -> None:
-    depth = result.mooring.water.depth
+    depth = result.design.water.depth
     parts = result.components
     for name in ("depth_top", "x_top", "y_top", "knockdown"):
         expected = getattr(parts, name)
@@ -62,7 +61,7 @@ def assert_alike(found: Profiles, case: int, result: Result) -> None:
     assert found.used_buoyancy[case] == pytest.approx(result.top.used_buoyancy, abs=TENSION)
 
 
-def assert_as_run(found: Profiles, mooring: Mooring, *columns: np.ndarray) -> None:
+def assert_as_run(found: Profiles, mooring: Design, *columns: np.ndarray) -> None:
     """Every profile of a batch: its figures, or its status."""
     depth, *currents = columns
     for case in range(len(currents[0])):

@@ -1,6 +1,5 @@
 """A small mooring, and records of currents that stand in memory."""
 
-import hashlib
 from pathlib import Path
 
 import numpy as np
@@ -54,20 +53,9 @@ class MadeRecord:
     def profiles(self, start, stop):
         return self.depth, self.u[start:stop], self.v[start:stop], None
 
-    def digest(self, check=lambda: None):
-        return hashlib.sha256(self.u.tobytes() + self.v.tobytes()).hexdigest()
-
 
 def made_mooring(folder: Path, text: str = MOORING):
     """The mooring, from a file in a folder."""
     file = folder / "m.yaml"
     file.write_text(text, encoding="utf-8")
     return calm.load(file)
-
-
-def content(output: Path) -> dict[str, bytes]:
-    """Every byte of a result, by the files of it."""
-    if output.is_file():
-        return {"": output.read_bytes()}
-    files = (path for path in output.rglob("*") if path.is_file())
-    return {path.relative_to(output).as_posix(): path.read_bytes() for path in files}

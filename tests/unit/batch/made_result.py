@@ -103,7 +103,7 @@ def one_profile(result):
         anchor_vertical=[result.anchor.vertical],
         anchor_horizontal=[result.anchor.horizontal],
         used_buoyancy=[top.used_buoyancy],
-        other_used_buoyancy=[result.other_used_buoyancy],
+        other_used_buoyancy=[result.leg.other_used_buoyancy],
     )
 
 

@@ -68,30 +68,17 @@ def test_an_unknown_label_gets_the_nearest(dataset):
 
 
 def test_a_result_is_opened_without_loading_it(dataset, tmp_path):
-    for path, write in (
-        (tmp_path / "result.nc", lambda to: dataset.to_netcdf(to, engine="h5netcdf")),
-        (tmp_path / "result.zarr", lambda to: dataset.to_zarr(to, zarr_format=2)),
-    ):
-        write(path)
-        with open_result(path) as opened:
-            assert not opened["knockdown"].variable._in_memory
-            assert opened.calm.knockdown("meter").values.tolist() == [0.0, 3.0, 6.0]
+    path = tmp_path / "result.nc"
+    dataset.to_netcdf(path, engine="h5netcdf")
+    with open_result(path) as opened:
+        assert not opened["knockdown"].variable._in_memory
+        assert opened.calm.knockdown("meter").values.tolist() == [0.0, 3.0, 6.0]
 
 
 def test_the_shape_is_drawn_at_the_nearest_time(dataset):
     axes = dataset.calm.plot_shape(time="2001-01-01T01:10")
     assert "2001-01-01 01:00" in axes.get_title()
     assert axes.lines[1].get_ydata().tolist() == [101.0, 111.0, 121.0, 131.0, 141.0]
-
-
-def test_a_stored_shape_is_drawn_by_its_nodes(dataset):
-    nodes = {
-        name: (("time", "node"), np.full((3, 4), value))
-        for name, value in (("shape_depth", 50.0), ("shape_x", 3.0), ("shape_y", 4.0))
-    }
-    axes = dataset.assign(nodes).calm.plot_shape(time="2001-01-01")
-    assert axes.lines[1].get_xdata().tolist() == [5.0] * 4
-    assert axes.lines[1].get_ydata().tolist() == [50.0] * 4
 
 
 def test_no_shape_of_a_profile_without_equilibrium():

@@ -7,7 +7,7 @@ import pytest
 
 from calm.batch.profiles import solve_profiles
 from calm.batch.statuses import STATUSES
-from calm.case import Mooring
+from calm.case import Design
 from tests.unit.batch.alike import assert_alike, assert_as_run, in_profile, shipped
 from tests.unit.batch.drawn_profiles import CHARACTERS, drawn
 
@@ -52,6 +52,6 @@ def test_an_anchor_that_would_lift_is_a_status() -> None:
     light = pieces[-1].component.model_copy(update={"weight": 1000.0})
     file = replace(mooring.file, pieces=(*pieces[:-1], replace(pieces[-1], component=light)))
     depth, u, v, w = drawn(1, 1, mooring.water.depth)
-    found = solve_profiles(Mooring(file), u, v, depth, w)
+    found = solve_profiles(Design(file), u, v, depth, w)
     assert STATUSES[found.status[0]] == "anchor-lifts"
     assert np.isnan(found.tension_top[0]).all()

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from calm.batch import work as cluster_module
 from calm.batch.run import run_batch
 from calm.errors import UsageError
-from tests.unit.batch.made import MadeRecord, content, made_mooring
+from tests.unit.batch.made import MadeRecord, made_mooring
 
 distributed = pytest.importorskip("distributed")
 dask = pytest.importorskip("dask")
@@ -76,68 +75,34 @@ def test_a_worker_killed_on_the_way_changes_nothing(tmp_path, cluster):
             killed.append(progress.done)
 
     there, here = tmp_path / "there.nc", tmp_path / "here.nc"
-    outcome = run_batch(
-        mooring, record, there, block=16, shape=True, scheduler=cluster.scheduler_address,
-        progress=kill,
-    )  # fmt: skip
-    assert outcome.done
+    counts = run_batch(
+        mooring, record, there, block=16, scheduler=cluster.scheduler_address, progress=kill
+    )
     assert killed and killed[0] < 400
-    assert run_batch(mooring, record, here, block=16, shape=True) == outcome
-    assert content(there) == content(here)
+    assert run_batch(mooring, record, here, block=16) == counts == {
+        "converged": 399, "no-current": 1,
+    }  # fmt: skip
+    assert there.read_bytes() == here.read_bytes()
 
 
-def test_workers_that_come_late_get_their_share(tmp_path, started, monkeypatch):
-    """The first is waited for, and that is said; with the second there is twice as much ahead."""
-    monkeypatch.setattr(cluster_module, "ASKED_ANEW", 0.1)
+def test_the_first_worker_is_waited_for(tmp_path, started):
     address = address_of(started(*SCHEDULER))
-    mooring, record = made_mooring(tmp_path), MadeRecord(1600)
-    told, under_way, taken, kept = [], [], [], []
-    read = record.profiles
-
-    def count(progress):
-        kept.append(progress.done)
-        under_way.append(len(taken) - progress.done // 16)
-        if len(kept) == 10:
-            started(*worker_of(address))
-            with distributed.Client(address, set_as_default=False) as client:
-                client.wait_for_workers(2, timeout=60)
-
-    record.profiles = lambda start, stop: taken.append(start) or read(start, stop)
-    record.digest = lambda check: "the same"
+    told = []
 
     def tell(text):
         told.append(text)
-        if "waiting for the first" in text:
-            started(*worker_of(address))
+        started(*worker_of(address))
 
-    outcome = run_batch(
-        mooring, record, tmp_path / "r.nc", block=16, scheduler=address, progress=count, tell=tell
+    mooring = made_mooring(tmp_path)
+    counts = run_batch(
+        mooring, MadeRecord(100), tmp_path / "r.nc", block=16, scheduler=address, tell=tell
     )
-    assert outcome.done
-    assert sum("waiting for the first" in text for text in told) == 1
-    assert max(under_way[1:10]) == cluster_module.AHEAD
-    assert max(under_way) == 2 * cluster_module.AHEAD
-
-
-def test_a_worker_that_compiles_says_so(tmp_path, monkeypatch):
-    def compile_anew(batch, tell):
-        tell("compiling the solver")
-
-    monkeypatch.setattr(cluster_module, "compile_solver", compile_anew)
-    told = []
-    with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
-    ) as here:
-        run_batch(
-            made_mooring(tmp_path), MadeRecord(20), tmp_path / "r.nc",
-            scheduler=here.scheduler_address, tell=told.append,
-        )  # fmt: skip
-        (address,) = here.scheduler_info["workers"]
-    assert told == [f"{address}: compiling the solver"]
+    assert counts["converged"] == 99
+    assert told == [f"the scheduler at {address} has no worker yet: waiting for the first"]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills a process as POSIX has it")
-def test_a_scheduler_killed_on_the_way_leaves_what_can_be_finished(tmp_path, started, monkeypatch):
+def test_a_scheduler_killed_on_the_way_leaves_nothing(tmp_path, started):
     scheduler = started(*SCHEDULER)
     address = address_of(scheduler)
     started(*worker_of(address))
@@ -147,15 +112,12 @@ def test_a_scheduler_killed_on_the_way_leaves_what_can_be_finished(tmp_path, sta
         if progress.done >= 64:
             scheduler.kill()
 
-    there, here = tmp_path / "there.nc", tmp_path / "here.nc"
-    with dask.config.set({"distributed.comm.timeouts.connect": "1s"}):
-        outcome = run_batch(mooring, record, there, block=16, scheduler=address, progress=kill)
-    assert not outcome.done
-    assert "lost" in outcome.reason
-    assert 64 <= sum(outcome.counts.values()) < 400
-    assert run_batch(mooring, record, there, block=16).done
-    run_batch(mooring, record, here, block=16)
-    assert content(there) == content(here)
+    with (
+        dask.config.set({"distributed.comm.timeouts.connect": "1s"}),
+        pytest.raises(UsageError, match="the scheduler or its workers were lost"),
+    ):
+        run_batch(mooring, record, tmp_path / "r.nc", block=16, scheduler=address, progress=kill)
+    assert not (tmp_path / "r.nc").exists()
 
 
 def test_calm_missing_there_is_told(tmp_path, started):
@@ -167,26 +129,26 @@ def test_calm_missing_there_is_told(tmp_path, started):
     mooring, record = made_mooring(tmp_path), MadeRecord(20)
     with pytest.raises(UsageError, match=r"calm-mooring \d.* is needed there too"):
         run_batch(mooring, record, tmp_path / "r.nc", scheduler=address)
-    assert not (tmp_path / "r.nc.part").exists()
+    assert [path.name for path in tmp_path.glob("*.nc*")] == []
 
 
 def test_nobody_at_the_address(tmp_path, monkeypatch):
-    monkeypatch.setattr("calm.batch.work.PATIENCE", "0.2s")
+    monkeypatch.setattr("calm.batch.cluster.PATIENCE", "0.2s")
     mooring, record = made_mooring(tmp_path), MadeRecord(20)
     for address in ("tcp://127.0.0.1:9", "nonsense"):
         with pytest.raises(UsageError, match="no scheduler answers"):
             run_batch(mooring, record, tmp_path / "r.nc", scheduler=address)
-        assert not (tmp_path / "r.nc.part").exists()
+        assert [path.name for path in tmp_path.glob("*.nc*")] == []
 
 
 def test_without_dask_it_says_what_to_install(tmp_path):
     program = (
         "import sys; sys.modules['distributed'] = None\n"
         "from pathlib import Path\n"
-        "from calm.batch.work import solved_on\n"
+        "from calm.batch.cluster import on_cluster\n"
         "from calm.errors import UsageError\n"
         "try:\n"
-        "    next(solved_on('tcp://127.0.0.1:9', None, iter(()), print, None))\n"
+        "    next(on_cluster('tcp://127.0.0.1:9', None, iter(()), print))\n"
         "except UsageError as error:\n"
         "    print(error)\n"
     )

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from calm.batch.profiles import STATUSES, solve_profiles
-from calm.case import Mooring
+from calm.case import Design
 from tests.unit.batch.alike import assert_as_run, shipped
 from tests.unit.batch.drawn_profiles import CHARACTERS, drawn
 from tests.unit.batch.made import made_mooring
@@ -79,7 +79,7 @@ def test_made_lines_agree_on_a_slope(tmp_path: Path, line: str) -> None:
 def test_shipped_lines_agree_from_slack_to_taut(name: str) -> None:
     mooring = shipped(name)
     solver = mooring.file.solver.model_copy(update={"angle_step": radians(0.4)})
-    mooring = Mooring(replace(mooring.file, solver=solver))
+    mooring = Design(replace(mooring.file, solver=solver))
     depth, u, v, w = drawn(21, 3 * CHARACTERS, mooring.water.depth)
     strength = np.geomspace(0.05, 3.0, len(u))[:, None]
     current = u * strength, v * strength, w * strength

@@ -16,7 +16,7 @@ from tests.unit.batch.made import MOORING, PLAIN, MadeRecord, made_mooring
 
 @pytest.fixture
 def file(tmp_path):
-    run_batch(made_mooring(tmp_path), MadeRecord(), tmp_path / "r.nc", block=16, shape=True)
+    run_batch(made_mooring(tmp_path), MadeRecord(), tmp_path / "r.nc", block=16)
     with h5netcdf.File(tmp_path / "r.nc") as opened:
         yield opened
 
@@ -61,7 +61,7 @@ def test_the_whole_input_is_in_the_result(file):
 
 
 def test_numbers_are_compressed_in_chunks_that_go_with_time(file):
-    for name in ("depth_top", "clamp_x", "anchor_vertical", "shape_depth"):
+    for name in ("depth_top", "clamp_x", "anchor_vertical"):
         assert file[name].dtype == np.float32
         assert file[name].chunks[0] == 16
         assert file[name].compression == "gzip"
@@ -89,7 +89,7 @@ OWN = {"summary", "calm", "input", "currents", "notes", "input_resolved", "input
 
 
 def test_attributes_are_of_the_types_and_in_the_places_of_the_conventions(tmp_path):
-    run_batch(made_mooring(tmp_path), MadeRecord(8), tmp_path / "r.nc", shape=True)
+    run_batch(made_mooring(tmp_path), MadeRecord(8), tmp_path / "r.nc")
     with xarray.open_dataset(tmp_path / "r.nc", engine="h5netcdf", decode_cf=False) as result:
         assert set(result.attrs) <= {*APPENDIX_A, *OWN}
         for name, value in result.attrs.items():
@@ -118,7 +118,7 @@ def test_attributes_are_of_the_types_and_in_the_places_of_the_conventions(tmp_pa
 
 @pytest.mark.skipif(shutil.which("ncdump") is None, reason="ncdump is not installed")
 def test_ncdump_reads_it(tmp_path):
-    run_batch(made_mooring(tmp_path), MadeRecord(8), tmp_path / "r.nc", shape=True)
+    run_batch(made_mooring(tmp_path), MadeRecord(8), tmp_path / "r.nc")
     done = subprocess.run(
         ["ncdump", "-t", tmp_path / "r.nc"], capture_output=True, text=True, check=False
     )
@@ -169,7 +169,7 @@ def test_times_are_whole_numbers_of_a_unit(tmp_path, step, unit):
 def test_history_has_a_date_only_where_it_is_given(tmp_path, monkeypatch):
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
     mooring, record = made_mooring(tmp_path), MadeRecord(8)
-    assert re.fullmatch(r"calm \S+ batch", layout_of(mooring, record, None).attributes["history"])
+    assert re.fullmatch(r"calm \S+ batch", layout_of(mooring, record).attributes["history"])
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
-    dated = layout_of(mooring, record, None).attributes["history"]
+    dated = layout_of(mooring, record).attributes["history"]
     assert dated.startswith("1970-01-02T00:00:00Z calm ")

@@ -9,7 +9,7 @@ import pytest
 import calm
 from calm.batch.statistics.limits import NOT_JUDGED, limits_of
 from calm.batch.statistics.series import ResultColumns
-from calm.case import Mooring
+from calm.case import Design
 from calm.checks.assess import RULES, STANDING
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
@@ -54,7 +54,7 @@ def judged_there(result):
         (rule.name, verdict.component): (verdict.state, verdict.value, verdict.limit)
         for rule in STANDING
         if rule.name not in NOT_JUDGED
-        for verdict in rule.judge(result)
+        for verdict in rule.judge(result.leg)
     }
 
 
@@ -63,13 +63,13 @@ def judged_there(result):
 def test_one_profile_is_judged_as_by_the_design_check(path: Path, checks):
     mooring = calm.load(path)
     if checks is not None:
-        mooring = Mooring(replace(mooring.file, checks=checks))
+        mooring = Design(replace(mooring.file, checks=checks))
     result = mooring.solve()
     here, there = judged_here(mooring, result), judged_there(result)
     # the rating of a float at the surface is asked for here, as another current may take it under
     more = {key for key, (state, *_) in here.items() if state is State.UNKNOWN and key not in there}
     assert here.keys() - more == there.keys()
-    assert len(more) <= reaches_the_surface(mooring)
+    assert len(more) <= reaches_the_surface(mooring.leg)
     for key, (state, value, limit) in there.items():
         assert here[key][0] is state, key
         # the anchor's rules are stated another way round: see below
@@ -98,7 +98,7 @@ def test_every_rule_is_judged_or_said_not_to_be():
     every = {
         limit.rule.name
         for path in MOORINGS
-        for limit in limits_of(Mooring(replace(calm.load(path).file, checks=STRICT)))
+        for limit in limits_of(Design(replace(calm.load(path).file, checks=STRICT)))
     }
     assert every | NOT_JUDGED.keys() | {"equilibrium"} == RULES.keys()
     assert not every & NOT_JUDGED.keys()
@@ -137,7 +137,7 @@ def test_a_clamp_bears_on_the_strength_of_its_piece():
 def test_what_a_line_is_known_to_be_meant_for_is_heeded(name):
     mooring = calm.load(shipped_folder("lines") / f"{name}.yaml")
     for meant in (True, False):
-        rules = {limit.rule.name for limit in limits_of(Mooring(mooring.file, meant))}
+        rules = {limit.rule.name for limit in limits_of(Design(mooring.file, meant))}
         assert ("reserve" in rules) is meant
 
 

@@ -202,24 +202,6 @@ def test_notes_tell_the_rules(tmp_path: Path) -> None:
         }
 
 
-def test_digest_is_that_of_what_is_read(tmp_path: Path) -> None:
-    def digest(path: Path, **choice) -> str:
-        with opened(path, **choice) as record:
-            return record.digest()
-
-    path = write("glorys", tmp_path)
-    first = digest(path)
-    assert first == digest(write("glorys", tmp_path, "zarr"))
-    assert first == digest(path.rename(tmp_path / "other.nc"))
-    assert first == digest(tmp_path / "other.nc", every=1, time=parse_period("2026/2027"))
-    assert first != digest(tmp_path / "other.nc", every=2)
-    backwards = tmp_path / "backwards.nc"
-    written = xr.open_dataset(tmp_path / "other.nc").load()
-    written.close()
-    written.isel(time=slice(None, None, -1)).to_netcdf(backwards, engine="h5netcdf")
-    assert first == digest(backwards)
-
-
 def test_period_and_every(tmp_path: Path) -> None:
     path = write("adcp", tmp_path)
     with opened(path) as record:
@@ -299,3 +281,10 @@ def test_no_record_at_all(tmp_path: Path, name: str) -> None:
     (tmp_path / "folder").mkdir()
     with pytest.raises(InputError, match=r"no such file|is a folder, and not a zarr store"):
         opened(tmp_path / name)
+
+
+def test_zarr_that_is_not_installed_is_named(tmp_path: Path, monkeypatch) -> None:
+    path = write("glorys", tmp_path, "zarr")
+    monkeypatch.setattr("calm.records.cf_files.find_spec", lambda name: None)
+    with pytest.raises(InputError, match=r"glorys.zarr: is zarr; to read it: pip install"):
+        opened(path)

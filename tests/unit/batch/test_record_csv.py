@@ -63,10 +63,8 @@ def test_how_much_is_read_together_does_not_matter(
     path = write(name, tmp_path, "csv")
     with open_record(path, Terms(SEABED)) as record:
         whole = record.profiles(0, COUNT)
-        digest = record.digest()
     monkeypatch.setattr(current_file, "AT_ONCE", 3)
     with open_record(path, Terms(SEABED)) as record:
-        assert record.digest() == digest
         for got, expected in zip(record.profiles(0, COUNT), whole, strict=True):
             assert got is expected is None or np.array_equal(got, expected, equal_nan=True)
 

@@ -1,23 +1,24 @@
-import errno
 import os
 import subprocess
 import sys
 from pathlib import Path
-from threading import Event, get_ident
+from threading import Event
 
+import h5netcdf
 import numpy as np
 import pytest
 
 import calm
-from calm.batch import run as run_module
+from calm.batch.blocks import AHEAD, in_order, in_threads
+from calm.batch.compiling import compile_solver
 from calm.batch.finished import open_result
 from calm.batch.profiles import Batch
-from calm.batch.run import LARGEST_BLOCK, run_batch
-from calm.batch.statuses import STATUSES, Ending
-from calm.batch.work import compile_solver, in_threads
-from calm.batch.work_store import identity_of, to_text
+from calm.batch.resolved import resolved_input
+from calm.batch.run import run_batch
+from calm.batch.statuses import STATUSES
 from calm.errors import UsageError
-from tests.unit.batch.made import MOORING, MadeRecord, content, made_mooring
+from tests.unit.batch.made import MOORING, MadeRecord, made_mooring
+from tests.unit.batch.records import write
 
 
 @pytest.fixture
@@ -30,24 +31,13 @@ def record():
     return MadeRecord()
 
 
-def test_waves_of_the_file_change_no_identity(tmp_path, mooring, record):
-    (tmp_path / "waves").mkdir()
-    waves = "environment:\n  waves: {significant_height: 3 m, peak_period: 8 s}"
-    wavy = made_mooring(tmp_path / "waves", MOORING.replace("environment:", waves))
-    assert wavy.file.environment.seas
-    texts = [to_text(identity_of(each, record, {}, Event())) for each in (mooring, wavy)]
-    assert texts[0] == texts[1]
-
-
-@pytest.mark.parametrize("ending", [".nc", ".zarr"])
-def test_the_result_is_what_solve_profiles_gives(tmp_path, mooring, record, ending):
-    output = tmp_path / f"r{ending}"
-    outcome = run_batch(mooring, record, output, workers=2, block=16)
+@pytest.mark.parametrize("block", [None, 16])
+def test_the_result_is_what_solve_profiles_gives(tmp_path, mooring, record, block):
+    output = tmp_path / "r.nc"
+    counts = run_batch(mooring, record, output, workers=2, block=block)
     solved = calm.solve_profiles(mooring, record.u, record.v, record.depth)
-    assert outcome.done
     assert int((solved.status == 0).sum()) == 39
-    assert outcome.counts == {"converged": 39, "no-current": 1}
-    assert outcome.endings[Ending.NO_DATA] == 1
+    assert counts == {"converged": 39, "no-current": 1}
     with open_result(output) as result:
         assert (result["time"].values == record.time).all()
         assert result["component_label"].values.tolist() == list(solved.component_label)
@@ -59,63 +49,64 @@ def test_the_result_is_what_solve_profiles_gives(tmp_path, mooring, record, endi
             assert given.dtype == (np.int8 if name == "status" else np.float32)
             np.testing.assert_array_equal(given, wanted.astype(given.dtype), err_msg=name)
         assert result["status"].values[4] == STATUSES.index("no-current")
-    assert not list(tmp_path.glob("*.part"))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["m.yaml", "r.nc"]
 
 
 @pytest.mark.thorough
-def test_neither_workers_nor_order_change_a_byte(tmp_path, mooring, record):
+def test_neither_workers_nor_what_was_there_change_a_byte(tmp_path, mooring, record):
     outputs = [tmp_path / "one.nc", tmp_path / "three.nc"]
+    outputs[1].write_text("another file")
     for output, workers in zip(outputs, (1, 3), strict=True):
-        run_batch(mooring, record, output, workers=workers, block=16)
-    assert content(outputs[0]) == content(outputs[1])
+        run_batch(mooring, record, output, workers=workers, block=4)
+    assert outputs[0].read_bytes() == outputs[1].read_bytes()
 
 
-@pytest.mark.thorough
-def test_the_shape_passes_through_the_components(tmp_path, mooring, record):
-    output, plain = tmp_path / "r.nc", tmp_path / "plain.nc"
-    run_batch(mooring, record, output, shape=True)
-    run_batch(mooring, record, plain)
-    with open_result(output) as result, open_result(plain) as without:
-        tops = np.flatnonzero(np.diff(result["node_component"].values, prepend=-1))
-        for name, top in (("shape_depth", "depth_top"), ("shape_x", "x_top")):
-            np.testing.assert_array_equal(result[name].values[:, tops], result[top].values)
-        good = result["status"].values == 0
-        drops = np.diff(result["shape_depth"].values[good], axis=1)
-        lengths = np.diff(result["node_distance"].values)
-        # stiff rope: no part is longer than it was cut, and the line leads down; a millimetre for
-        # depths in float32 and for bends between nodes
-        assert (drops > 0).all() and (drops < lengths + 1e-3).all()
-        # the nodes cut the line elsewhere, so that figures agree to their accuracy, 5e-5 of 100 m
-        for name in ("depth_top", "clamp_depth", "clamp_x"):
-            np.testing.assert_allclose(
-                result[name].values[good], without[name].values[good], atol=5e-3
-            )
-        assert result["clamp_label"].values.tolist() == ["Logger é"]
+def test_the_file_ends_where_hdf5_says(tmp_path, mooring, record):
+    """No room that was taken for blocks is left behind its end."""
+    run_batch(mooring, record, tmp_path / "r.nc", block=4)
+    with h5netcdf.File(tmp_path / "r.nc") as file:
+        assert file._h5file.id.get_filesize() == (tmp_path / "r.nc").stat().st_size
 
 
-def test_a_file_system_without_locks_is_told(tmp_path, mooring, record, monkeypatch):
-    fcntl, told = pytest.importorskip("fcntl"), []
-
-    def none(handle, how):
-        raise OSError(errno.ENOLCK, "no locks")
-
-    monkeypatch.setattr(fcntl, "flock", none)
-    assert run_batch(mooring, record, tmp_path / "r.nc", tell=told.append).done
-    assert any("does not support file locks" in text for text in told)
+def test_progress_counts_blocks_and_endings(tmp_path, mooring, record):
+    told = []
+    run_batch(mooring, record, tmp_path / "r.nc", block=16, progress=told.append)
+    assert [one.done for one in told] == [0, 16, 32, 40]
+    assert {one.total for one in told} == {40}
+    assert sum(told[-1].endings.values()) == 40
 
 
-def test_a_long_reading_is_told(tmp_path, mooring, record, monkeypatch):
-    monkeypatch.setattr(run_module, "LONG", 0.0)
-    told, heard = [], Event()
-    digest = record.digest
+def test_the_hash_is_of_the_input_and_the_currents_not_of_names(tmp_path, mooring, record):
+    def attributes(name, mooring, record):
+        run_batch(mooring, record, tmp_path / name)
+        with h5netcdf.File(tmp_path / name) as file:
+            return file.attrs["input_sha256"], file.attrs["input_resolved"]
 
-    def tell(text):
-        told.append(text)
-        heard.set()
+    first = attributes("a.nc", mooring, record)
+    again = tmp_path / "again"
+    again.mkdir()
+    assert attributes("b.nc", made_mooring(again), MadeRecord()) == first
+    currents = attributes("c.nc", mooring, MadeRecord(seed=2))
+    assert currents[0] != first[0] and currents[1] == first[1]
+    other = made_mooring(again, MOORING.replace("length: 40 m", "length: 45 m"))
+    assert attributes("d.nc", other, record)[0] not in (first[0], currents[0])
 
-    record.digest = lambda check: heard.wait(60) and digest()
-    assert run_batch(mooring, record, tmp_path / "r.nc", tell=tell).done
-    assert told == ["reading the whole record, to check that it is unchanged"]
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        MOORING + "checks: {anchor_factor: 2}\n# a word more\n",
+        MOORING.replace("current: {speed: 0.5 m/s", "current: {speed: 0.7 m/s"),
+        MOORING.replace(
+            "environment:",
+            "environment:\n  waves: {significant_height: 3 m, peak_period: 8 s}",
+        ),
+    ],
+    ids=["limits", "the file's own current", "waves"],
+)
+def test_what_changes_no_figure_is_no_other_input(tmp_path, mooring, record, other):
+    first = resolved_input(mooring, record.time, {})
+    assert resolved_input(made_mooring(tmp_path, other), record.time, {}) == first
 
 
 @pytest.mark.thorough
@@ -124,7 +115,7 @@ def test_compiling_is_told_when_it_takes_place(tmp_path, mooring):
     program = (
         "import sys\n"
         "from pathlib import Path\n"
-        "from calm.batch.work import compile_solver\n"
+        "from calm.batch.compiling import compile_solver\n"
         "from numba.core.dispatcher import _FunctionCompiler\n"
         "from calm.batch.profiles import Batch\n"
         "from tests.unit.batch.made import made_mooring\n"
@@ -147,9 +138,9 @@ def test_compiling_is_told_when_it_takes_place(tmp_path, mooring):
 
 @pytest.mark.thorough
 def test_memory_does_not_grow_with_the_record(tmp_path):
-    """Ten times the profiles: what is known of the blocks, of a thousand each, is some 6 bytes
-    more of each; the results alone would be 300. In a process of its own, since what other tests
-    leave running is counted, too."""
+    """Ten times the profiles: what HDF5 and the record keep of each is a few bytes; the results
+    alone would be 300. In a process of its own, since what other tests leave running is counted,
+    too."""
     program = (
         "import sys, tracemalloc\n"
         "from pathlib import Path\n"
@@ -160,7 +151,6 @@ def test_memory_does_not_grow_with_the_record(tmp_path):
         # first of all what is loaded once for any number of profiles
         "for number, count in enumerate((40_000, 4000, 40_000)):\n"
         "    record = MadeRecord(count)\n"
-        "    record.digest = lambda check: 'the same'\n"
         "    tracemalloc.start()\n"
         "    run_batch(mooring, record, folder / f'{number}.nc', workers=1, block=1000)\n"
         "    print(tracemalloc.get_traced_memory()[1])\n"
@@ -174,124 +164,78 @@ def test_memory_does_not_grow_with_the_record(tmp_path):
     assert peaks[2] < peaks[1] + 12 * 36_000
 
 
-def test_longer_records_have_larger_blocks():
-    assert [run_module._block_for(count) for count in (1, 262_980, 2**24, 2**24 + 1)] == [
-        8192, 8192, 8192, 16384,
-    ]  # fmt: skip
-    assert run_module._block_for(10**9) == LARGEST_BLOCK
+def test_no_profile_is_no_batch(tmp_path, mooring):
+    with pytest.raises(UsageError, match="no profile in the period"):
+        run_batch(mooring, MadeRecord(0), tmp_path / "r.nc")
 
 
-@pytest.mark.parametrize("finished", [False, True])
-def test_another_input_is_refused_and_told(tmp_path, mooring, record, finished):
-    output = tmp_path / "r.nc"
+@pytest.mark.parametrize("workers", [1, 3])
+def test_threads_take_no_more_than_is_ahead_and_keep_the_order(workers):
+    taken, finished = [], []
 
-    def stop(progress):
-        if not finished:
-            raise KeyboardInterrupt
+    def tasks():
+        for number in range(30):
+            assert number - len(finished) <= AHEAD * workers
+            taken.append(number)
+            yield number
 
-    run_batch(mooring, record, output, workers=1, block=8, progress=stop)
-    before = content(output if finished else tmp_path / "r.nc.part")
-    other = made_mooring(tmp_path, MOORING.replace("length: 40 m", "length: 45 m"))
-    with pytest.raises(UsageError, match=r"pieces\[1\]\.length was 40\.0, is now 45\.0"):
-        run_batch(other, record, output, block=8)
-    with pytest.raises(UsageError, match=r"record\.sha256 was"):
-        run_batch(mooring, MadeRecord(seed=2), output, block=8)
-    with pytest.raises(UsageError, match=r"options\.shape was False, is now True"):
-        run_batch(mooring, record, output, block=8, shape=True)
-    after = content(output if finished else tmp_path / "r.nc.part")
-    assert after == before
+    for done in in_threads(lambda number: number * number, tasks(), workers):
+        finished.append(done)
+    assert finished == [number * number for number in taken] and len(taken) == 30
 
 
-@pytest.mark.parametrize(
-    "other",
-    [
-        MOORING + "checks: {anchor_factor: 2}\n# a word more\n",
-        MOORING.replace("current: {speed: 0.5 m/s", "current: {speed: 0.7 m/s"),
-    ],
-    ids=["limits", "the file's own current"],
-)
-def test_what_changes_no_figure_is_no_other_input(tmp_path, mooring, record, other):
-    output = tmp_path / "r.nc"
-    first = run_batch(mooring, record, output)
-    before = content(output)
-    assert run_batch(made_mooring(tmp_path, other), record, output) == first
-    assert content(output) == before
+def test_workers_that_come_late_are_given_their_share():
+    """What is ahead is asked for with each task."""
+    begun, done, under_way = [], [], []
+
+    class Now:
+        def __init__(self, task):
+            begun.append(task)
+            self.result = lambda: task
+
+    for one in in_order(Now, range(8), lambda: 1 if len(done) < 3 else 3):
+        done.append(one)
+        under_way.append(len(begun) - len(done))
+    assert done == list(range(8))
+    assert under_way == [0, 0, 0, 2, 2, 2, 1, 0]
 
 
-def test_what_is_no_result_is_left_alone(tmp_path, mooring, record):
-    (tmp_path / "r.nc").write_text("mine")
-    (tmp_path / "r.zarr").mkdir()
-    (tmp_path / "s.nc.part").mkdir()
-    (tmp_path / "s.nc.part" / "mine").write_text("mine")
-    for name, words in (
-        ("r.nc", "not a readable result"),
-        ("r.zarr", "not a readable result"),
-        ("s.nc", "in the way"),
-    ):
-        with pytest.raises(UsageError, match=words):
-            run_batch(mooring, record, tmp_path / name)
-    assert (tmp_path / "r.nc").read_text() == (tmp_path / "s.nc.part" / "mine").read_text()
-    with pytest.raises(UsageError, match=r"must end in \.nc or \.zarr"):
-        run_batch(mooring, record, tmp_path / "r.txt")
-
-
-@pytest.mark.parametrize("ending", [".nc", ".zarr"])
-def test_a_finished_result_that_cannot_be_read_says_what_to_do(tmp_path, mooring, record, ending):
-    output = tmp_path / f"r{ending}"
-    run_batch(mooring, record, output, block=8)
-    if ending == ".nc":
-        output.write_bytes(output.read_bytes()[:2000])
-    else:
-        (output / "status" / "2").write_bytes(b"\0" * 40)
-    with pytest.raises(UsageError, match=r"remove it|Remove it"):
-        run_batch(mooring, record, output, block=8)
-
-
-def test_a_damaged_identity_says_what_to_do(tmp_path, mooring, record):
-    output, stop = tmp_path / "r.nc", Event()
-    outcome = run_batch(mooring, record, output, progress=lambda _: stop.set(), stop=stop)
-    assert (outcome.done, outcome.reason) == (False, "interrupted")
-    identity = tmp_path / "r.nc.part" / ".batch" / "identity"
-    for content_of_it in (b"", b"\0\0\xff", b'{"calm":'):
-        identity.write_bytes(content_of_it)
-        with pytest.raises(UsageError, match=r"r\.nc\.part is damaged.* Remove it"):
-            run_batch(mooring, record, output)
-
-
-def test_too_little_memory_is_said_and_can_be_resumed(tmp_path, mooring, record, monkeypatch):
-    def fail(*_, **__):
-        raise MemoryError
-
-    with monkeypatch.context() as patched:
-        patched.setattr(Batch, "_solve_block", fail)
-        outcome = run_batch(mooring, record, tmp_path / "r.nc", block=8)
-    assert not outcome.done
-    assert outcome.reason.startswith("not enough memory")
-    assert run_batch(mooring, record, tmp_path / "r.nc", block=8).done
-
-
-def test_two_batches_do_not_work_on_one_result(tmp_path, mooring, record):
-    output = tmp_path / "r.nc"
-    refused = []
-
-    def again(progress):
-        if not refused:
-            with pytest.raises(UsageError, match="another calm batch is working"):
-                run_batch(mooring, record, output)
-            refused.append(progress)
-
-    assert run_batch(mooring, record, output, workers=1, progress=again).done
-    assert refused
-
-
-def test_an_error_in_a_thread_stops_the_others_and_is_raised():
+def test_an_error_in_a_thread_ends_the_others_and_is_raised():
     seen = []
 
     def job(number):
-        seen.append((number, get_ident()))
+        seen.append(number)
         if number == 3:
             raise ValueError("three")
 
     with pytest.raises(ValueError, match="three"):
-        in_threads(job, range(10**6), 2, Event())
-    assert len(seen) < 10**6
+        list(in_threads(job, range(10**6), 2))
+    assert len(seen) < 100
+
+
+def test_left_early_nothing_goes_on(mooring):
+    going, done = Event(), []
+
+    def job(number):
+        going.wait(0.05)
+        done.append(number)
+
+    solved = in_threads(job, range(100), 2)
+    next(solved)
+    solved.close()
+    count = len(done)
+    going.wait(0.2)
+    assert len(done) == count <= 5
+
+
+@pytest.mark.thorough
+def test_a_record_of_any_kind_gives_the_same(tmp_path, mooring):
+    from tests.unit.batch.test_record import opened
+
+    results = []
+    for ending in ("nc", "zarr"):
+        with opened(write("glorys", tmp_path, ending)) as record:
+            run_batch(mooring, record, tmp_path / f"{ending}.nc")
+        with open_result(tmp_path / f"{ending}.nc") as result:
+            results.append((result["status"].values, result.attrs["input_sha256"]))
+    assert (results[0][0] == results[1][0]).all() and results[0][1] == results[1][1]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calm.batch.profiles import solve_profiles
-from calm.case import Mooring
+from calm.case import Design
 from calm.checks.criterion import parts_of
 from calm.checks.inventory import inventory_of
 from calm.drawing.schematic.shown_parts import levels_of
@@ -32,10 +32,10 @@ ON_IT = """, clamps: [
       {use: logger, at: 500 mm, label: foot}, {use: logger, at: 0, label: lid, volume: 15 L}]"""
 
 
-def mooring(folder: Path, clamps: str) -> Mooring:
+def mooring(folder: Path, clamps: str) -> Design:
     path = folder / "mooring.yaml"
     path.write_text(FILE % clamps)
-    return Mooring(read_mooring(path))
+    return Design(read_mooring(path))
 
 
 def test_by_hand(tmp_path: Path) -> None:
@@ -58,7 +58,7 @@ def test_by_hand(tmp_path: Path) -> None:
 def test_what_else_knows_them(tmp_path: Path) -> None:
     whole = mooring(tmp_path, ON_IT)
     result = whole.solve()
-    assert [(item.label, item.clamped_on) for item in inventory_of(whole)][-3:] == [
+    assert [(item.label, item.clamped_on) for item in inventory_of(whole.leg)][-3:] == [
         ("block", None),
         ("foot", "block"),
         ("lid", "block"),

@@ -39,7 +39,7 @@ def test_a_smooth_float_in_its_drag_crisis_has_a_third_of_the_drag(solve):
     constant, curve = solve(), solve(drag="reynolds")
     pulls = [result.components for result in (constant, curve)]
     assert pulls[0].reynolds[0] == pytest.approx(0.5 * 1.2 / 1.36e-6)
-    drags = [result.mooring.line.normal_drag[0] for result in (constant, curve)]
+    drags = [result.design.line.normal_drag[0] for result in (constant, curve)]
     assert drags[0] == drags[1] == pytest.approx(512.5 * 0.5 * pi / 4 * 1.2**2)
     assert curve.top.x < constant.top.x
     told = [" ".join(result.warnings) for result in (constant, curve)]

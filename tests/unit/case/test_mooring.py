@@ -127,7 +127,7 @@ def test_what_python_shows_of_a_result_is_short(solve):
     result = solve()
     shown = repr(result).splitlines()
     assert len(shown) == 4 and shown[1].startswith(f"top: depth {result.top.depth:.6g}, x ")
-    assessment = calm.check(result.mooring)
+    assessment = calm.check(result.design)
     assert repr(assessment).startswith(f"{assessment.name}: {assessment.state} (")
     assert max(len(repr(row.part)) for row in result.components) < 800
 
@@ -245,7 +245,7 @@ def test_the_watch_circle_is_that_of_the_line_above_the_anchor(solve):
     with pytest.raises(calm.NoEquilibrium) as caught:
         solve(text, speed="0 m/s")
     assert "watch circle has a radius of 15.5 m" in caught.value.message
-    verdict = next(watch_circle.judge(solve(text, speed="0.3 m/s")))
+    verdict = next(watch_circle.judge(solve(text, speed="0.3 m/s").leg))
     assert verdict.value == pytest.approx((100.2**2 - 99.0**2) ** 0.5, abs=0.02)
 
 
@@ -280,7 +280,7 @@ def test_density_and_current_levels_are_merged(solve):
         "  current:",
     )
     result = solve(layered)
-    water = result.mooring.water
+    water = result.design.water
     assert water.level.tolist() == [0, 100]
     assert water.density.tolist() == [1020, 1030]
     assert np.hypot(water.u, water.v) == pytest.approx([0.6, 0.6])

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from calm.case import load
-from calm.case.mooring import PLACES
+from calm.case.profilers import PLACES
 from calm.checks.arrangement import profiler
-from calm.checks.net_check import check
+from calm.checks.design_check import check
 from calm.errors import InputError
 from calm.physics.seawater import pressure_at
 
@@ -129,7 +129,7 @@ def test_a_profiler_in_the_line_is_refused(tmp_path):
     ],
 )  # fmt: skip
 def test_what_a_profiler_asks_of_its_wire(tmp_path, change, state, told):
-    assert {each.state for each in profiler.judge(mooring(tmp_path).solve())} == {"pass"}
+    assert {each.state for each in profiler.judge(mooring(tmp_path).solve().leg)} == {"pass"}
     stand = check(mooring(tmp_path, change=change)).stands[0]
     found = [each for each in stand.findings if each.rule == "profiler" and told in each.message]
     assert max(found, key=lambda each: each.state.severity).state == state

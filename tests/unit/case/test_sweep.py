@@ -10,9 +10,9 @@ SONAR = shipped_folder("lines") / "depressor-fit-depth.yaml"
 
 def test_one_outcome_for_each_speed_in_order_taken_one_at_a_time():
     tow = calm.load(SONAR)
-    speeds = iter([2.5, 0.5, tow.keys.speed])
+    speeds = iter([2.5, 0.5, tow.file.tow.speed])
     fast, slow, own = sweep(tow, speeds)
-    assert fast.speed == 2.5
+    assert fast.file.tow.speed == 2.5
     assert isinstance(slow, NoEquilibrium) and slow.status == "grounded"
     assert own.body == tow.solve().body
     # the fitted cable keeps its length

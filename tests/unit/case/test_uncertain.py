@@ -243,9 +243,9 @@ def test_a_sample_is_what_a_full_solution_gives(name):
     """Its cuts are those of the mooring as given; the promise of 5e-5 of the depth holds."""
     mooring = calm.load(LINES / f"{name}.yaml")
     draws = draws_of(mooring.file.uncertainty, normals_of(64, 1))[:6]
-    for one in drawn(mooring, draws):
+    for one in drawn(mooring.leg, draws):
         try:
-            quick = one.equilibrium(one.water)
+            quick = one.equilibrium()
         except NoEquilibrium as failure:
             with pytest.raises(NoEquilibrium) as again:
                 solve_mooring(one.line, one.water, one.settings)

@@ -3,7 +3,7 @@
 import pytest
 
 import calm
-from calm.checks.net_check import check
+from calm.checks.design_check import check
 
 FILE = """
 name: By hand
@@ -48,7 +48,7 @@ def load(tmp_path):
 def test_an_anchor_is_judged_where_what_it_weighs_in_water_is_known(load, figures, density, known):
     mooring = load(figures)
     weight = 5000.0 if density is None else 1000.0 * G * (1.0 - 1025.0 / density)
-    assert mooring.anchor_weight == pytest.approx(weight)
+    assert mooring.leg.anchor_weight == pytest.approx(weight)
     result = mooring.solve()
     warned = [each for each in result.warnings if "is taken as steel, 7850 kg/m³" in each]
     assert len(warned) == (not known)

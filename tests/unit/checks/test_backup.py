@@ -3,7 +3,7 @@
 import pytest
 
 import calm
-from calm.checks.net_check import check
+from calm.checks.design_check import check
 from calm.checks.recovery import breaks_of, losses_of
 
 FILE = """
@@ -33,7 +33,7 @@ def breaks(tmp_path):
     def of(text=FILE):
         path = tmp_path / "m.yaml"
         path.write_text(text)
-        return breaks_of(calm.load(path))
+        return breaks_of(calm.load(path).leg)
 
     return of
 
@@ -79,7 +79,7 @@ def test_the_loss_of_each_float_and_clamped_ball(load):
     balls = "{use: ball, at: 30 m, label: clamped, buoyancy: 1500 N}"
     text = FILE.replace("{use: logger, at: 10 m}", "{use: logger, at: 10 m}, " + balls)
     whole = 2000.0 + 1500.0 + 8000.0 - 3020.0 - 1500.0 - 900.0
-    losses = losses_of(load(text))
+    losses = losses_of(load(text).leg)
     assert [(each.index, each.label) for each in losses] == [
         (0, "top"), (1, "clamped"), (2, "back-up"),
     ]  # fmt: skip
@@ -92,12 +92,12 @@ def test_the_loss_of_each_float_and_clamped_ball(load):
 
 def test_a_float_that_floods_weighs_what_its_shell_does(load):
     figures = "label: top, mass: 20 kg, material: borosilicate glass"
-    lost, *_ = losses_of(load(FILE.replace("label: top", figures)))
+    lost, *_ = losses_of(load(FILE.replace("label: top", figures)).leg)
     shell = 20.0 * 9.80665 * (1.0 - 1025.0 / 2230.0)
     assert lost.margin == pytest.approx(8000.0 - 3020.0 - 1500.0 - 900.0 - shell)
     assert lost.weight_lifted == pytest.approx(3020.0 + 1500.0 + 900.0 + shell)
     foam, *_ = losses_of(
-        load(FILE.replace("label: top", "label: top, mass: 20 kg, material: foam"))
+        load(FILE.replace("label: top", "label: top, mass: 20 kg, material: foam")).leg
     )
     assert foam.margin == pytest.approx(8000.0 - 3020.0 - 1500.0 - 900.0)
 

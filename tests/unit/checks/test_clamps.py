@@ -8,7 +8,7 @@ import pytest
 import calm
 from calm.assemble import axial_drag_of, with_axial_clamps
 from calm.checks.arrangement import clamp_grip, clamp_place
-from calm.checks.net_check import check
+from calm.checks.design_check import check
 from calm.checks.recovery import recovery_of
 from calm.drop.launch import launch_of
 from calm.shipped import shipped_folder
@@ -48,7 +48,7 @@ def load(tmp_path):
 
 def test_the_pull_is_that_of_weight_and_drag(load):
     mooring = load("{use: logger, at: 50 m, label: a}, {use: box, at: 10 m, label: b, grip: 41 N}")
-    found = {one.component: one for one in clamp_grip.judge(mooring.solve())}
+    found = {one.component: one for one in clamp_grip.judge(mooring.solve().leg)}
     # ½ρ Cn D L V² = 0.5·1025·1.2·0.1·0.5·0.25 N across, 40 N down
     drag = 0.5 * 1025.0 * 1.2 * 0.1 * 0.5 * 0.25
     assert found["a"].value == pytest.approx(hypot(drag, 40.0), rel=1e-9)
@@ -59,7 +59,7 @@ def test_the_pull_is_that_of_weight_and_drag(load):
 
 def test_the_drag_of_a_clamp_is_that_of_the_water_there(load):
     heavy = {"depth: 500 m": "depth: 500 m\n  density: 1200 kg/m^3"}
-    (found,) = clamp_grip.judge(load("{use: logger, at: 50 m}", **heavy).solve())
+    (found,) = clamp_grip.judge(load("{use: logger, at: 50 m}", **heavy).solve().leg)
     drag = 0.5 * 1200.0 * 1.2 * 0.1 * 0.5 * 0.25
     assert found.value == pytest.approx(hypot(drag, 40.0), rel=1e-9)
 
@@ -67,7 +67,7 @@ def test_the_drag_of_a_clamp_is_that_of_the_water_there(load):
 @pytest.mark.parametrize(("at", "fails"), [(0.0, False), (0.1, True), (0.3, False)])
 def test_half_of_what_is_clamped_at_an_end_may_stick_out(load, at, fails):
     """A logger of 0.5 m at the very end of a wire hangs beside what is above it."""
-    handling = SimpleNamespace(mooring=load(f"{{use: logger, at: {at} m}}"))
+    handling = SimpleNamespace(leg=load(f"{{use: logger, at: {at} m}}").leg)
     assert any(one.state == "fail" for one in clamp_place.judge(handling)) == fails
 
 
@@ -83,14 +83,14 @@ def test_half_of_what_is_clamped_at_an_end_may_stick_out(load, at, fails):
 )
 def test_a_grip_comes_before_a_breaking_load(load, figures, limit, state):
     mooring = load(f"{{use: box, at: 10 m, label: b, {figures}}}")
-    (found,) = clamp_grip.judge(mooring.solve())
+    (found,) = clamp_grip.judge(mooring.solve().leg)
     assert (found.limit, found.state) == (limit, state)
 
 
 def test_the_fall_and_the_rise_pull_along_the_line(load):
     mooring = load("{use: logger, at: 50 m, label: a}")
     result = mooring.solve()
-    fall, rise = launch_of(mooring).fall_speed, recovery_of(mooring, result).rise_speed
+    fall, rise = launch_of(mooring.leg).fall_speed, recovery_of(mooring.leg, result.leg).rise_speed
     end = 0.5 * 1025.0 * 0.8 * pi * 0.1**2 / 4.0
     pulls = [abs(end * fall**2 - 40.0), 40.0 + end * rise**2]
     (found,) = (one for one in check(mooring).findings if one.rule == "clamp-grip")
@@ -107,15 +107,16 @@ def test_clamps_in_the_fall_and_the_rise_have_their_drag_along_the_line(load):
     end, ball = 0.5 * 1025.0 * 0.8 * pi * 0.1**2 / 4.0, 0.5 * 1025.0 * 0.5 * pi / 4.0
     net = 3000.0 - 39 * 40.0 - 400.0 - 300.0
     drag = ball + 39 * end + 9.0
-    assert recovery_of(mooring, result).rise_speed == pytest.approx((net / drag) ** 0.5, rel=1e-4)
+    rise = recovery_of(mooring.leg, result.leg).rise_speed
+    assert rise == pytest.approx((net / drag) ** 0.5, rel=1e-4)
     falls = ((20_000.0 - net) / (drag + 600.0)) ** 0.5
-    assert launch_of(mooring).fall_speed == pytest.approx(falls, rel=1e-4)
+    assert launch_of(mooring.leg).fall_speed == pytest.approx(falls, rel=1e-4)
 
 
 def test_loggers_on_a_wire_below_a_buoy_fall_with_it_taut():
     """Free, they would fall faster than their wire; the drag of the buoy keeps the line taut."""
     mooring = calm.load(shipped_folder("lines") / "taut-nylon-surface.yaml")
-    launch = launch_of(mooring)
+    launch = launch_of(mooring.leg)
     assert launch.tangles == ()
     assert launch.greatest_tension.min() > 5000.0
     assessment = check(mooring)

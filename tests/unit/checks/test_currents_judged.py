@@ -3,7 +3,7 @@
 import pytest
 
 from calm.case import load
-from calm.checks.assess import assessment_of, stand_of
+from calm.checks.design_check import assessment_of, stands_of
 from calm.checks.situations import currents
 from calm.errors import InputError
 from calm.files.strumming_keys import StrummingFactor
@@ -91,13 +91,13 @@ def test_a_profile_that_does_not_cover_the_line_is_told(current, tmp_path):
 def test_a_mooring_deployed_elsewhere_is_unknown(tmp_path):
     where = "deployed: {position: {latitude: 21 deg, longitude: -10 deg}}\n"
     mooring = of(tmp_path, more=where)
-    assessment = assessment_of("m", [stand_of(mooring, "m")])
+    assessment = assessment_of("m", stands_of(mooring, "m"))
     (found,) = (one for one in assessment.findings if one.rule == "as-deployed")
     assert found.state == "unknown"
     assert found.message.startswith("Deployed 3002 km from the planned position")
     near = of(tmp_path, more=where.replace("21", "48.1"))
     assert not [
-        one for one in assessment_of("m", [stand_of(near, "m")]).findings
+        one for one in assessment_of("m", stands_of(near, "m")).findings
         if one.rule == "as-deployed"
     ]  # fmt: skip
 
@@ -124,7 +124,7 @@ def test_a_rope_that_floats_below_the_release_is_told(tmp_path):
         "  rope:", "  tail: {kind: cable, diameter: 10 mm, buoyancy: 0.05 N/m}\n  rope:"
     )
     mooring = load(tmp_path / "m.yaml", text=text.replace("CURRENT", HALF))
-    found = assessment_of("m", [stand_of(mooring, "m")]).findings
+    found = assessment_of("m", stands_of(mooring, "m")).findings
     assert "tail floats, but below the release: it stays on the anchor." in (
         one.message for one in found if one.rule == "release-present"
     )
@@ -144,7 +144,7 @@ def test_an_accept_by_nobody_is_told(tmp_path):
         thin = SOUND.replace("weight: 0.2 N/m", "weight: 0.2 N/m, cn: 0.001")
         thin = thin.replace("CURRENT", HALF)
         judged = load(tmp_path / "m.yaml", text=thin + text.replace(" MORE", more))
-        notices = assessment_of("m", [stand_of(judged, "m")]).notices
+        notices = assessment_of("m", stands_of(judged, "m")).notices
         assert (
             notices.count(
                 "1 of 1 `accept` names nobody (`by`) or no end (`until`): accepted is not passed"

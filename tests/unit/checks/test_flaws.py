@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from calm.case import Mooring, load
-from calm.checks.assess import ONCE, RULES, assessment_of, stand_of
+from calm.case import load
+from calm.checks.assess import ONCE, RULES
+from calm.checks.design_check import assessment_of, stands_of
 from calm.checks.finding import Finding
 from calm.shipped import shipped_folder
 
@@ -906,8 +907,7 @@ def _findings(flaw: Flaw, folder: Path) -> Iterable[Finding]:
     path = folder / "flawed.yaml"
     path.write_text(text, encoding="utf-8")
     mooring = load(path)
-    assert isinstance(mooring, Mooring)
-    stand = stand_of(mooring, "flawed")
+    (stand,) = stands_of(mooring, "flawed")
     if flaw.rule in {"current", "missing", *(rule.name for rule in ONCE)}:
         return assessment_of("flawed", [stand]).all_findings()
     return stand.findings  # no launch and no recovery need be computed

@@ -35,7 +35,7 @@ def inventory(tmp_path):
     def of(text=FILE):
         path = tmp_path / "m.yaml"
         path.write_text(text)
-        return inventory_of(calm.load(path))
+        return inventory_of(calm.load(path).leg)
 
     return of
 

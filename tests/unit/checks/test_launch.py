@@ -40,7 +40,7 @@ def launched(tmp_path):
         path = tmp_path / "m.yaml"
         path.write_text(text.replace("CT", ct))
         mooring = calm.load(path)
-        return launch_of(mooring)
+        return launch_of(mooring.leg)
 
     return of
 
@@ -93,13 +93,13 @@ def test_components_are_named_figures(launched):
 def test_a_float_at_the_surface_is_drawn_over_the_anchor():
     """The anchor lands while the float is still on its way: its drag holds the line taut."""
     mooring = calm.load(shipped_folder("lines") / "chain-and-rope-surface.yaml")
-    launch = launch_of(mooring)
+    launch = launch_of(mooring.leg)
     assert launch.tangles == ()
-    assert launch.greatest_tension.min() > 0.7 * mooring.anchor_weight
-    assert launch.anchor_tension < mooring.anchor_weight
+    assert launch.greatest_tension.min() > 0.7 * mooring.leg.anchor_weight
+    assert launch.anchor_tension < mooring.leg.anchor_weight
     drag = mooring.file.anchor.kt * launch.fall_speed**2
     # it moves sideways as well
-    assert mooring.anchor_weight - launch.anchor_tension == pytest.approx(drag, rel=0.1)
+    assert mooring.leg.anchor_weight - launch.anchor_tension == pytest.approx(drag, rel=0.1)
 
 
 def test_a_fall_that_nothing_limits_has_no_speed(launched):

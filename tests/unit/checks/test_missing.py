@@ -4,8 +4,8 @@ from pathlib import Path
 
 import calm
 from calm.checks.assessment import Assessment
+from calm.checks.design_check import check
 from calm.checks.finding import State
-from calm.checks.net_check import check
 
 CLAMPS = "\n".join(f"      - {{use: logger, label: T {at}, at: {at} m}}" for at in (5, 15, 25, 35))
 LINE = f"""\

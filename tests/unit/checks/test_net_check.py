@@ -6,12 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from calm.case import Mooring, load
-from calm.case.net import Net
-from calm.checks.assess import assessment_of, stand_of
+from calm.case import Design, load
 from calm.checks.assessment import Assessment
+from calm.checks.design_check import assessment_of, stands_of
 from calm.checks.finding import State
-from calm.checks.net_check import NetGraph, assessment_of_net, stands_of_net
+from calm.checks.leg_graph import LegGraph
 from calm.checks.recovery import breaks_of, losses_of
 
 WATER = """\
@@ -43,21 +42,20 @@ TWO_LEGS = (
 )  # fmt: skip
 
 
-def line(text: str) -> Mooring:
+def line(text: str) -> Design:
     found = load(Path("line.yaml"), text=text)
-    assert isinstance(found, Mooring)
     return found
 
 
-def judged(net: Net) -> Assessment:
-    return assessment_of_net("n", stands_of_net(net, "n"))
+def judged(net: Design) -> Assessment:
+    return assessment_of("n", stands_of(net, "n"))
 
 
 @pytest.mark.parametrize("text", [ONE_LEG, TWO_LEGS])
 def test_a_line_cut_into_legs_is_judged_as_the_line(text: str) -> None:
     """Every situation and rule; 1e-3 is what the stated errors of both allow of a tension."""
     single, net = line(LINE), judged(load(Path("net.yaml"), text=text))
-    whole = assessment_of("n", [stand_of(single, "n")])
+    whole = assessment_of("n", stands_of(single, "n"))
     # what runs from piece to piece is seen within a leg alone
     of_neighbours = {"strength-steps", "swivel", "metals", "release-present"}
     handled = {"launch-strength", "launch-speed", "recovery", "tangling", "missing"}
@@ -82,7 +80,7 @@ def test_a_line_cut_into_legs_is_judged_as_the_line(text: str) -> None:
 def test_its_breaks_and_losses_are_those_of_the_line(text: str) -> None:
     """Lifts are taken where the line stands, not upright: a metre of depth is 1e-5 of them."""
     single, net = line(LINE), judged(load(Path("net.yaml"), text=text))
-    for mine, its in ((breaks_of(single), net.backup), (losses_of(single), net.losses)):
+    for mine, its in ((breaks_of(single.leg), net.backup), (losses_of(single.leg), net.losses)):
         assert [each.label for each in mine] == [each.label for each in its]
         for one, other in zip(mine, its, strict=True):
             for name in ("margin", "weight_lifted", "required", "judged", "loose"):
@@ -135,7 +133,7 @@ def test_each_anchor_is_judged_by_its_own_rules(y: Assessment) -> None:
 
 def test_a_break_of_any_leg_says_what_is_left_and_what_drifts(y: Assessment) -> None:
     result = load(Path("y.yaml"), text=Y).solve()
-    graph = NetGraph(result.legs)
+    graph = LegGraph(result.legs)
     lift = dict(zip([piece.label for piece in graph.pieces], graph.lifts.tolist(), strict=True))
     breaks = {each.label: each for each in y.backup}
     assert list(breaks) == ["top", "upper wire", "west wire", "east wire"]

@@ -38,7 +38,7 @@ def recovered(tmp_path):
         path = tmp_path / "m.yaml"
         path.write_text(text)
         mooring = calm.load(path)
-        return recovery_of(mooring, mooring.solve())
+        return recovery_of(mooring.leg, mooring.solve().leg)
 
     return of
 
@@ -164,7 +164,7 @@ def test_components_are_plain_figures(recovered):
 
 def test_floats_at_the_surface_are_there_at_once():
     mooring = calm.load(shipped_folder("lines") / "taut-nylon-surface.yaml")
-    recovery = recovery_of(mooring, mooring.solve())
+    recovery = recovery_of(mooring.leg, mooring.solve().leg)
     assert recovery.time_to_surface == 0.0
     assert recovery.order[0] == 0
 
@@ -184,7 +184,7 @@ def test_the_first_float_alone_rises_as_with_the_others(tmp_path, recovered):
     for text in (FILE, FILE.replace("buoyancy: 2000 N", "buoyancy: 1200 N")):
         whole = recovered(text)
         mooring = calm.load(tmp_path / "m.yaml")
-        first = recovery_of(mooring, mooring.solve(), first_only=True)
+        first = recovery_of(mooring.leg, mooring.solve().leg, first_only=True)
         assert first.rise_speed == whole.rise_speed
         assert first.time_to_surface == whole.time_to_surface
         assert first.order == whole.order[:1]

@@ -105,7 +105,7 @@ def test_what_shares_a_row_on_paper(tmp_path, deck):
     assert (shared.name, shared.joined) == ("3 × pack", "2 × 13 shackle, 16 shackle")
     # nothing is lost, nothing counted twice; the other way round the same clusters
     for order in Order:
-        listed = deck_of([sheets.result.mooring], order).deployment
+        listed = deck_of([sheets.result.design], order).deployment
         assert sum(len(_parts_of(row)) for row in rows_on_paper(listed)) == len(sheets.parts)
 
 
@@ -199,7 +199,7 @@ def test_what_hangs_at_each_stage(deck):
     assert (lifts["top float"].mass, lifts["top float"].hanging) == (250.0, -2500.0)
     assert deck.lifts.heaviest is not None and deck.lifts.heaviest.label == "weight"
     # what hangs in the end is all that the line weighs in water
-    weights = [one.wet_weight for one in calm.check(deck.result.mooring).inventory]
+    weights = [one.wet_weight for one in calm.check(deck.result.design).inventory]
     assert deck.lifts.deployment[-1].hanging == pytest.approx(sum(weights))
     # hauled in from the top, the release hangs alone at last, and nothing of what stays is lifted
     assert deck.lifts.recovery[-1].label == "release"
@@ -238,8 +238,8 @@ def test_instruments_in_all_environments(moorings, deck):
     assert high.item.depth == depths["own"]
     tilts = [row.tilt for one in results.values() for row in one.clamps if row.label == "high"]
     assert high.greatest_tilt == max(tilts)
-    still = deck.result.mooring.water.still()
-    rope = deck.result.mooring.equilibrium(still).position
+    still = deck.result.design.water.still()
+    rope = deck.result.design.leg.equilibrium(still).position
     top = float(-rope[0, 2])
     # still water leaves the line upright: the clamp is as far below the top as its lengths say
     above = 1.0 + sum(one.stretched for one in deck.parts[1:4]) + 20.0

@@ -9,7 +9,7 @@ import yaml
 
 from calm.case import load
 from calm.errors import InputError, UsageError
-from calm.exchange.cable_formulas import constant
+from calm.exchange.cbl.formulas import constant
 from calm.exchange.importing import import_file
 from calm.exchange.model import ImportOptions
 

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from calm.errors import InputError
-from calm.exchange import foreign_process, list_cells, mat_file
+from calm.exchange import foreign_process, mat_file
 from calm.exchange.foreign_process import read_apart
-from calm.exchange.list_cells import read_sheets
 from calm.exchange.mat_file import read_variables
+from calm.exchange.table import cells
+from calm.exchange.table.cells import read_sheets
 
 
 class Panic(BaseException):
@@ -54,7 +55,7 @@ def test_a_reader_that_fails_is_told(reader, message, tmp_path, monkeypatch, cap
     monkeypatch.setattr(foreign_process, "MOST_MEMORY", 500_000_000)
     monkeypatch.setattr(foreign_process, "MOST_SECONDS", 0.5)
     monkeypatch.setattr(mat_file, "_matlab", reader)
-    monkeypatch.setattr(list_cells, "_sheets", reader)
+    monkeypatch.setattr(cells, "_sheets", reader)
     mat = tmp_path / "design.mat"
     mat.write_bytes(b"MATLAB 5.0 MAT-file" + bytes(200))
     book = tmp_path / "list.xlsx"

@@ -12,7 +12,7 @@ from calm.case import load
 from calm.errors import InputError
 from calm.exchange.importing import import_file
 from calm.exchange.mat_file import read_octave_text
-from calm.exchange.mdd_file import read_mdd
+from calm.exchange.mdd.reader import read_mdd
 from tests.unit.exchange.mat_files import (
     HEIGHT,
     NAMES,

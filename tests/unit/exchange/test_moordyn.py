@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from calm.case.net import load
+from calm.case import load
 from calm.errors import InputError
 from calm.exchange.importing import import_file
 

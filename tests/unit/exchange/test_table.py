@@ -8,8 +8,8 @@ import pytest
 from calm.case import load
 from calm.errors import InputError
 from calm.exchange.importing import import_file
-from calm.exchange.list_cells import number
 from calm.exchange.model import ImportOptions
+from calm.exchange.table.cells import number
 
 SITE = """\
 environment:

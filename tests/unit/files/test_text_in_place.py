@@ -7,7 +7,7 @@ import pytest
 import calm
 from calm.errors import InputError
 from calm.files import read_mooring
-from calm.files.mooring_file import STAND_IN
+from calm.files.pieces import STAND_IN
 
 LINES = Path(__file__).resolve().parents[3] / "lines"
 LINE = """

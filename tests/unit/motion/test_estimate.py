@@ -9,7 +9,8 @@ import pytest
 
 import calm.motion.estimate as module
 from calm.motion.common_unknowns import Common
-from calm.motion.estimate import Linear, _tried, best_state, estimated, posterior
+from calm.motion.currents_law import Linear
+from calm.motion.estimate import _tried, best_state, estimated, posterior
 from calm.motion.line_response import LineResponse
 from calm.motion.measurements import MooringMeasurements
 

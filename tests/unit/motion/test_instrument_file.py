@@ -49,10 +49,9 @@ def result():
 
 
 @pytest.mark.parametrize("engine", ["h5netcdf", "scipy"])
-@pytest.mark.parametrize("there", [(), ("depth", "depth_sd")])
-def test_the_copy_has_all_that_was_there_and_the_depths_at_its_own_times(tmp_path, engine, there):
-    path = own(tmp_path / "own.nc", engine=engine, there=there)
-    (read,), _ = read_instruments(path, LINE, replacing=bool(there))
+def test_the_copy_has_all_that_was_there_and_the_depths_at_its_own_times(tmp_path, engine):
+    path = own(tmp_path / "own.nc", engine=engine)
+    (read,), _ = read_instruments(path, LINE)
     assert (read.clock, read.dimension, read.along) == ("TIME", "TIME", "INSTRUMENT")
     lost = write_depths(read, result(), GAP, tmp_path / "copy.nc")
     assert lost == ["elsewhere"]
@@ -80,7 +79,7 @@ def test_text_of_an_instrument_becomes_a_dataset(tmp_path):
     path = tmp_path / "a.use"
     path.write_text("SerialNumber = 22\nInstrDepth = 150\nColumns = YY:MM:DD:HH:T:C:P\n"
                     "2026 3 1 0.5 4.5 33.1 152.0\n2026 3 1 1.0 4.6 33.2 -9999\n")  # fmt: skip
-    (read,), _ = read_instruments(path, LINE, replacing=False)
+    (read,), _ = read_instruments(path, LINE)
     assert not write_depths(read, result(), GAP, tmp_path / "copy.nc")
     with xarray.open_dataset(tmp_path / "copy.nc", engine="h5netcdf") as copy:
         assert copy["DEPTH"].values == pytest.approx([150.5, 151.0])
@@ -117,22 +116,22 @@ def text(path):
 
 
 @pytest.mark.parametrize(
-    ("file", "replace", "said"),
+    ("file", "said"),
     [
-        (lambda path: path, False, "no such file"),
-        (text, False, "is not NetCDF, RODB, .cnv or RBR's table"),
-        (without_times, False, "has no times"),
-        (without_labels, False, "has no labels of instruments"),
-        (grouped, False, "has groups, which a copy would lack: extra"),
-        (counted, True, "`depth` is a dimension of"),
-        (lambda path: own(path, there=("depth",)), False, "has `depth` already"),
-        (lambda path: own(path, there=("depth_sd",)), False, "has `depth_sd` already"),
-        (lambda path: own(path, labels=("a", "b")), False, "no instrument of"),
+        (lambda path: path, "no such file"),
+        (text, "is not NetCDF, RODB, .cnv or RBR's table"),
+        (without_times, "has no times"),
+        (without_labels, "has no labels of instruments"),
+        (grouped, "has groups, which a copy would lack: extra"),
+        (counted, "`depth` is a dimension of"),
+        (lambda path: own(path, there=("depth",)), "has `depth` already"),
+        (lambda path: own(path, there=("depth_sd",)), "has `depth_sd` already"),
+        (lambda path: own(path, labels=("a", "b")), "no instrument of"),
     ],
 )
-def test_what_no_depths_can_be_added_to_is_refused(tmp_path, file, replace, said):
+def test_what_no_depths_can_be_added_to_is_refused(tmp_path, file, said):
     with pytest.raises((InputError, UsageError)) as refused:
-        read_instruments(file(tmp_path / "own.nc"), LINE, replacing=replace)
+        read_instruments(file(tmp_path / "own.nc"), LINE)
     assert said in str(refused.value)
 
 
@@ -155,7 +154,7 @@ def test_a_file_of_oceansites_has_its_depth_in_place_of_the_nominal_one(tmp_path
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")
     attrs = {"instrument_serial_number": "22", "geospatial_vertical_min": 152.0}
     path = single(tmp_path / "OS.nc", dims=("TIME", "DEPTH"), **NOMINAL, attrs=attrs)
-    (read,), _ = read_instruments(path, LINE, replacing=False)
+    (read,), _ = read_instruments(path, LINE)
     assert read.point == (1,)
     columns = result().assign(
         clamp_label=("clamp", ["upper", "middle"]), sensor_label=("sensor", ["middle"]),
@@ -175,24 +174,17 @@ def test_a_file_of_oceansites_has_its_depth_in_place_of_the_nominal_one(tmp_path
         assert copy.attrs["geospatial_vertical_min"] == 150.0
 
 
-def test_a_file_of_imos_says_who_it_is_and_keeps_its_own_depth_unless_asked(tmp_path):
+def test_a_file_of_imos_says_who_it_is_and_keeps_its_own_depth(tmp_path):
     own_depth = {"DEPTH": ("TIME", [1.0, 2.0, 3.0]), "NOMINAL_DEPTH": ((), 61.0, {"units": "m"}),
                  "DEPTH_quality_control": ("TIME", np.array([1, 1, 1], "i1"))}  # fmt: skip
     path = single(tmp_path / "IMOS.nc", attrs={"instrument_serial_number": "21"}, **own_depth)
     with pytest.raises(UsageError, match="has `DEPTH` already"):
-        read_instruments(path, LINE, replacing=False)
-    (read,), _ = read_instruments(path, LINE, replacing=True)
-    write_depths(read, result(), GAP, tmp_path / "copy.nc")
-    with xarray.open_dataset(tmp_path / "copy.nc", engine="h5netcdf") as copy:
-        assert copy["DEPTH"].values.tolist() == [60.0, 61.0, 62.0]
-        assert copy["DEPTH_QC"].values.tolist() == [8, 8, 8]
-        assert copy["NOMINAL_DEPTH"].item() == 61.0
-        assert "DEPTH_quality_control" not in copy
+        read_instruments(path, LINE)
 
 
 def test_a_folder_is_matched_as_a_whole(tmp_path):
     for name, place in (("a", 70.0), ("b", 163.0)):
         single(tmp_path / f"{name}.nc", NOMINAL_DEPTH=((), place, {"units": "m"}))
-    read, said = read_instruments(tmp_path, LINE, replacing=False)
+    read, said = read_instruments(tmp_path, LINE)
     assert [one.point for one in read] == [(0,), (1,)]
     assert said == ["by nominal depths, in their order: a.nc is `upper`; b.nc is `middle`"]

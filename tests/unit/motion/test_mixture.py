@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from calm.motion import common_unknowns
+from calm.motion.currents_law import ReadCurrents
 from calm.motion.estimate import Mixture, Posterior, _odds, _sets
-from calm.motion.line_response import ReadCurrents
 
 GROUP = np.array([0, 1])
 

@@ -8,8 +8,9 @@ import pytest
 
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
+from calm.motion.currents_law import Linear
 from calm.motion.estimate import posterior
-from calm.motion.line_response import Linear, LineResponse, between, own_errors
+from calm.motion.line_response import LineResponse, between, own_errors
 from calm.motion.measurements import MooringMeasurements
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from calm.physics import seawater
-from calm.physics.line import REFERENCE_VISCOSITY
+from calm.physics.seawater import REFERENCE_VISCOSITY
 
 TEMPERATURES = (0, 5, 10, 15, 20, 25, 30)
 

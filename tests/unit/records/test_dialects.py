@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from calm.errors import InputError
-from calm.exchange.list_cells import read_sheets
+from calm.exchange.table.cells import read_sheets
 from calm.motion.measurements import read_currents
 from calm.motion.sensors import depth_of, read_sea_level, read_sensors
 from calm.ranging.ranges import read_ranges, read_sound

@@ -5,7 +5,6 @@ from types import SimpleNamespace as Record
 import numpy as np
 import pytest
 
-from calm.case import TowResult
 from calm.case.strumming import StrummingBand
 from calm.files import Place
 from calm.files.strumming_keys import BourgetMarichalKeys
@@ -37,6 +36,14 @@ def _of_the_file(components, clamps, pieces):
         row.upper = row.depth_top, row.x_top, row.y_top
     for row, clamp in zip(clamps, [c for piece in pieces for c in piece.clamps], strict=True):
         row.part, row.upper = clamp, (row.depth, row.x, row.y)
+
+
+def _solved(leg, fields):
+    """A result of one leg, whose figures are its own as well."""
+    shared = dict(several=False, towed=leg.towed, water=leg.water)
+    own = Record(leg=leg, **shared, **fields)
+    own.legs = (own,)
+    return Record(design=leg, leg=own, legs=(own,), **shared, **fields)
 
 
 def build_result(**changes):
@@ -84,8 +91,9 @@ def build_result(**changes):
     _of_the_file(components, clamps, pieces)
     limits = Record(steel=3.0, synthetic=5.0, surface=5.0)
     file = Record(
-        pieces=pieces, checks=Record(safety_factor=limits), environment=Record(depth=1100.0),
-        solver=Record(strumming=None), legs=(),
+        name="Iroise 2026", pieces=pieces, checks=Record(safety_factor=limits),
+        environment=Record(depth=1100.0),
+        solver=Record(strumming=None), legs=(), tow=None,
     )  # fmt: skip
     water = Record(
         depth=1100.0,
@@ -107,11 +115,11 @@ def build_result(**changes):
                       required_weight=10300.0, weight=9800.0, grounded_length=0.0),
         components=components, clamps=clamps, shape=shape, still_shape=still,
         warnings=("adcp leans 16.0°, its warning is at 15°",),
-        mooring=Record(file=file, water=water), file=file, strumming=None,
-        profilers=(),
+        file=file, strumming=None, profilers=(), tow_point=None, body=None,
         strumming_band=StrummingBand(1.5, "converged", 118.0, 13.05, 5333.3),
     )  # fmt: skip
-    result = Record(**(fields | changes))
+    leg = Record(file=file, water=water, towed=False, anchored=True, for_surface=False)
+    result = _solved(leg, fields | changes)
     result.to_dict = lambda: {"name": result.name, "status": result.status, "miss": result.miss}
     return result
 
@@ -154,23 +162,23 @@ def build_tow_result(**changes):
         name="Survey", pieces=pieces, environment=Record(depth=300.0, fluid="water"),
         checks=Record(safety_factor=Record(steel=3.0, synthetic=5.0, surface=5.0)),
         solver=Record(strumming=BourgetMarichalKeys()), legs=(),
+        tow=Record(speed=1.0289, toward=90.0, height=3.0),
     )  # fmt: skip
     water = Record(level=np.array([0.0, 100.0]), u=np.array([0.5, 0.0]), v=np.array([0.0, 0.0]))
     along = np.linspace(1.0, 0.0, 12)
     shape = Record(depth=-3.0 + 124.5 * along, x=-140.5 * along, y=10.0 * along * (1.0 - along))
     fields = dict(
-        tow=Record(file=file, water=water, keys=Record(height=3.0)),
-        name="Survey", type="tow", status="converged", iterations=7, segments=90, miss=2e-9,
+        file=file, name="Survey", type="tow", status="converged",
+        iterations=7, segments=90, miss=2e-9,
         closure=3e-13, accuracy=Record(depth=0.002, tension=0.3, anchor=None),
-        speed=1.0289, toward=90.0,
         tow_point=Record(tension=3000.4, angle=35.26, vertical=1732.0, horizontal=2450.0),
         body=Record(depth=120.0, layback=140.0, tension=1500.0, angle=71.6),
         strumming=Record(frequency=3.559, cn_min=1.2504, cn_max=3.0),
         components=components, clamps=clamps, shape=shape, warnings=("fish is loose",),
+        strumming_band=None,
     )  # fmt: skip
-    result = TowResult(**(fields | changes))
-    result.__dict__["strumming_band"] = None  # which would be solved
-    return result
+    leg = Record(file=file, water=water, towed=True, anchored=False)
+    return _solved(leg, fields | changes)
 
 
 @pytest.fixture

@@ -12,7 +12,8 @@ from rich.console import Console
 
 import calm
 from calm.batch.statistics.summary import RANKED, RESPONSES, summarize
-from calm.case import Mooring
+from calm.case import Design
+from calm.errors import UsageError
 from calm.report import folder
 from calm.report.batch_page import summary_html, summary_part, summary_paths, write_summary
 from calm.report.batch_summary import percent, summary_document
@@ -187,7 +188,7 @@ def test_nothing_solved_can_be_shown(nothing):
 def test_a_label_is_shown_as_it_is_written(mooring):
     first, *others = mooring.file.pieces
     pieces = (replace(first, label="[red]top[/red]"), *others)
-    marked = Mooring(replace(mooring.file, pieces=pieces))
+    marked = Design(replace(mooring.file, pieces=pieces))
     assert "[red]top[/red]" in table(summarize(stormy(marked, 5), marked))
 
 
@@ -254,6 +255,6 @@ def test_a_full_disk_leaves_no_part_of_a_file(made, mooring, tmp_path, monkeypat
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(folder.os, "replace", full)
-    with pytest.raises(OSError, match="No space left"):
+    with pytest.raises(UsageError, match="No space left"):
         write_summary(result, mooring)
     assert [path.name for path in tmp_path.iterdir()] == [result.name]

@@ -33,7 +33,7 @@ def test_labels_of_ones_own_are_never_merged(make_result):
 
 def test_clamped_floats_are_floats(make_result):
     result = make_result()
-    clamp = result.mooring.file.pieces[2].clamps[0]
+    clamp = result.design.file.pieces[2].clamps[0]
     clamp.component = type(clamp)(role="float")
     assert named_parts(result)[1].role == "float"
 

@@ -1,7 +1,6 @@
 """A result as a drawing, read back from its SVG; the same on axes of matplotlib."""
 
 import sys
-from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -34,7 +33,7 @@ def test_no_text_of_a_shipped_line_covers_another(path):
 @pytest.mark.thorough
 def test_many_names_at_one_depth_do_not_overlap(make_result):
     result = make_result()
-    wire = result.mooring.file.pieces[2]
+    wire = result.design.file.pieces[2]
     for number in range(60):
         clamp = type(wire)(**vars(result.clamps[0]))
         clamp.label, clamp.depth = f"{number} °C", 120.0 + 0.01 * number
@@ -172,14 +171,9 @@ def test_names_stand_beside_their_parts_and_need_no_formula(make_tow_result):
 
 
 def test_a_bare_cable_is_drawn(make_tow_result):
-    result = make_tow_result()
-    result = replace(
-        result,
-        components=type(result.components)(result.components[:1]),
-        clamps=[],
-        shape=result.shape,
-    )
-    result.tow.file.pieces = (result.file.pieces[0],)
+    whole = make_tow_result()
+    result = make_tow_result(components=type(whole.components)(whole.components[:1]), clamps=[])
+    result.file.pieces = (result.file.pieces[0],)
     assert image(line_drawing(result), ".png").startswith(b"\x89PNG")
 
 

@@ -4,8 +4,8 @@ import pypdfium2
 import pytest
 
 import calm
-from calm.report.blocks import Prose, Report, ReportPart, Section
-from calm.report.check_report import check_report, mooring_section
+from calm.report.blocks import Prose, Report, ReportPart
+from calm.report.check_report import CheckedSection, check_report, mooring_section
 from calm.report.folder import pdf_leaf, printed
 from calm.report.result_report import result_report
 from tests.judged import FORMULA, LINES, judged, judged_hostile
@@ -96,7 +96,7 @@ def test_a_single_result_has_pages(name, pages):
 
 def test_what_is_accepted_can_be_printed():
     """Findings of a section hold dates and models, which no printer looks at."""
-    accepted = Section("M", (ReportPart("Said", (Prose(("plain",)),)),), facts=object())
+    accepted = CheckedSection("M", (ReportPart("Said", (Prose(("plain",)),)),), facts=object())
     report = Report("T", "S", (), (accepted,))
     assert printed(report).startswith(b"%PDF")
 

@@ -69,7 +69,7 @@ def test_unknown_knockdown_is_told(make_result):
 
 
 def test_tilt_marks(result):
-    meter = result.mooring.file.pieces[3].component
+    meter = result.design.file.pieces[3].component
     assert tilt_state(meter, 27.0) is None
     assert tilt_state(meter, 27.1) is State.FAIL
 

@@ -34,7 +34,7 @@ def swept(make_tow_result):
         make_tow_result(),
         make_tow_result(warnings=(common, "too fast")),
     ]
-    return by_speed(results[1].tow, [0.5144, 1.0289, 2.0578], results)
+    return by_speed(results[1].design, [0.5144, 1.0289, 2.0578], results)
 
 
 def test_a_row_for_each_speed_in_both_units(swept):
@@ -50,7 +50,7 @@ def test_a_row_for_each_speed_in_both_units(swept):
 
 def test_frequency_only_where_something_strums(make_tow_result):
     still = make_tow_result(strumming=None)
-    tabulation = by_speed(still.tow, [1.0], [still])
+    tabulation = by_speed(still.design, [1.0], [still])
     assert "frequency" not in "".join(text(tabulation))
     assert "frequency" not in to_document(tabulation)["speeds"][0]
 
@@ -58,7 +58,7 @@ def test_frequency_only_where_something_strums(make_tow_result):
 def test_a_small_tow_has_digits_enough(make_tow_result):
     small = make_tow_result()
     small.body.depth, small.tow_point.tension = 1.65294, 16.1298
-    row = text(by_speed(small.tow, [1.3], [small]))[5]
+    row = text(by_speed(small.design, [1.3], [small]))[5]
     assert "1.653" in row and "16.13" in row
 
 
@@ -96,6 +96,6 @@ def test_drawing_leaves_a_gap_where_there_is_no_equilibrium(swept):
 
 def test_one_speed_can_be_drawn(make_tow_result):
     result = make_tow_result()
-    tabulation = by_speed(result.tow, [1.0], [result])
+    tabulation = by_speed(result.design, [1.0], [result])
     assert tabulation.title == "Survey: tow at 1 speed"
     assert_none_overlap(sweep_drawing(tabulation))

@@ -69,7 +69,7 @@ def test_csv_has_tows_beside_moorings(result, tow_result):
 
 
 def test_what_strumming_would_do(make_tow_result):
-    result = make_tow_result(strumming=None)
-    result.__dict__["strumming_band"] = StrummingBand(1.5, "converged", 95.0, None, 2900.0)
+    band = StrummingBand(1.5, "converged", 95.0, None, 2900.0)
+    result = make_tow_result(strumming=None, strumming_band=band)
     told = "If the cables strum, Cn × 1.5: body 95.0 m deep, tow point 2900 N\n"
     assert told in text(result)

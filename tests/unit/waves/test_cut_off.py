@@ -52,7 +52,7 @@ def taut():
 
 @pytest.fixture(scope="module")
 def state(taut):
-    return analyse(taut, [SEA], 300.0).states[0]
+    return analyse(taut.leg, [SEA], 300.0).states[0]
 
 
 @pytest.mark.parametrize(("name", "factor"), [("half_cut_off", 0.5), ("twice_cut_off", 2.0)])
@@ -60,7 +60,7 @@ def test_another_cut_off_as_if_it_were_solved_for(taut, state, monkeypatch, name
     """Within 3 %: the drag stays that of the cut-off itself, elements and frequencies are fewer."""
     monkeypatch.setattr(sea_states, "BETWEEN", (0.5, 1e9))
     monkeypatch.setattr(sea_states, "LARGEST_FREQUENCY", factor * state.cut_off)
-    (solved,) = analyse(taut, [SEA], 300.0).states
+    (solved,) = analyse(taut.leg, [SEA], 300.0).states
     assert solved.cut_off == pytest.approx(factor * state.cut_off)
     for quick, row in zip(state.components, solved.components, strict=True):
         loads = getattr(quick, name)
@@ -71,7 +71,7 @@ def test_another_cut_off_as_if_it_were_solved_for(taut, state, monkeypatch, name
 
 
 def test_lives_follow_the_cut_off(taut):
-    (wire,) = [one for one in analyse(taut, [SEA], 300.0).fatigue if one.label == "wire"]
+    (wire,) = [one for one in analyse(taut.leg, [SEA], 300.0).fatigue if one.label == "wire"]
     assert wire.life_twice_cut_off < wire.life < wire.life_half_cut_off
     assert wire.life_half_cut_off > 1.5 * wire.life  # by the fourth power of the range
 
@@ -108,10 +108,10 @@ def test_low_seas_and_high_seas_have_bands_of_their_own():
 
 def test_no_band_below_the_surface_nor_of_a_response_that_is_given(taut):
     below = load(f"{shipped_folder('lines')}/tidal-adcp.yaml")
-    (state,) = analyse(below, [SEA], 90.0).states
+    (state,) = analyse(below.leg, [SEA], 90.0).states
     assert state.band is None
     assert {(row.measured_low, row.measured_high) for row in state.components} == {(None, None)}
     given = 'rao: {"0.1": [1, 0 deg], "12": [1, 0 deg]}'
     own = load(TAUT, text=Path(TAUT).read_text().replace("heave: follows", given))
-    (state,) = analyse(own, [SEA], 300.0).states
+    (state,) = analyse(own.leg, [SEA], 300.0).states
     assert state.band is None

@@ -118,7 +118,7 @@ def test_the_swing_of_a_shipped_mooring_by_hand():
     either end, and the chain is not quite straight.
     """
     mooring = load(f"{shipped_folder('lines')}/tidal-adcp.yaml")
-    line = lumped_line(mooring, mooring.equilibrium(mooring.water), 1.0)
+    line = lumped_line(mooring.leg, mooring.leg.equilibrium(), 1.0)
     water = 1025.0 * pi * 1.42**3 / 6.0
     # half of the float is at its upper end, and half of its water goes with it in every direction
     assert [line.added_along[0], line.added_across[0]] == pytest.approx([0.25 * water] * 2)
@@ -142,10 +142,10 @@ def test_the_swing_of_a_shipped_mooring_by_hand():
 def test_a_short_element_adds_no_more_than_its_length():
     """The chain above the release has elements of 2 cm: they added the mass of a metre each."""
     mooring = load(f"{shipped_folder('lines')}/tidal-adcp.yaml")
-    solution = mooring.equilibrium(mooring.water)
+    solution = mooring.leg.equilibrium()
     span = np.linalg.norm(np.diff(solution.position, axis=0), axis=1)
     assert (span[solution.element_clamp < 0] < SHORTEST).any()
-    line = lumped_line(mooring, solution, 1.0)
+    line = lumped_line(mooring.leg, solution, 1.0)
     mass = 1025.0 * pi * 1.42**3 / 6.0 - 4511.0 / 9.80665  # of the float, from its lift
     drag = 0.0
     for piece in mooring.file.pieces[:-1]:
@@ -159,7 +159,7 @@ def test_a_short_element_adds_no_more_than_its_length():
 def test_a_sea_that_is_all_but_flat_leaves_the_static_line():
     mooring = load(f"{shipped_folder('lines')}/tidal-adcp.yaml")
     flat = sea_states.spectrum_of("bretschneider", 1e-6, 8.0, 3.3)
-    (state,) = analyse(mooring, [flat], 90.0).states
+    (state,) = analyse(mooring.leg, [flat], 90.0).states
     result = mooring.solve()
     for piece, row in zip(result.components, state.components, strict=False):
         assert row.tension_std < 1e-3
@@ -171,7 +171,7 @@ def test_a_sea_that_is_all_but_flat_leaves_the_static_line():
 def test_the_spectrum_of_the_tension_holds_its_variance_and_a_piece_what_its_elements_reach():
     mooring = load(f"{shipped_folder('lines')}/tidal-adcp.yaml")
     (state,) = analyse(
-        mooring, [sea_states.spectrum_of("bretschneider", 2.0, 9.0, 3.3)], 90.0
+        mooring.leg, [sea_states.spectrum_of("bretschneider", 2.0, 9.0, 3.3)], 90.0
     ).states
     omega, density = state.spectrum
     _, mean, deviation, reached = state.along
@@ -560,14 +560,14 @@ def test_the_end_of_a_heavy_chain_rests_on_no_element(tmp_path):
     """Below a float the tension varies fast along a chain; coarse and fine elements agree."""
     (tmp_path / "buoy.yaml").write_text(HEAVY)
     mooring = load(tmp_path / "buoy.yaml")
-    solution = mooring.equilibrium(mooring.water)
+    solution = mooring.leg.equilibrium()
     sea, buoy = (
         sea_states.spectrum_of("bretschneider", 0.5, 3.0, 3.3),
-        buoy_of(mooring, solution, False),
+        buoy_of(mooring.leg, solution, False),
     )
     found = []
     for longest in (1.6, 0.1):
-        line = lumped_line(mooring, solution, longest)
+        line = lumped_line(mooring.leg, solution, longest)
         response, _ = respond(line, buoy, waves(sea.frequencies(32), 80.0), sea)
         found.append(response.moments(line.upper_ends(response.pull))[0])
     assert found[0] == pytest.approx(found[1], rel=0.01)
@@ -594,7 +594,7 @@ def test_a_float_displaces_what_it_weighs_and_what_pulls_it_down(tmp_path):
     """700 kg and the line's pull, 2.56 kN: as much as the cylinder does at its draft."""
     (tmp_path / "buoy.yaml").write_text(HEAVY)
     mooring = load(tmp_path / "buoy.yaml")
-    buoy = buoy_of(mooring, mooring.equilibrium(mooring.water), False)
+    buoy = buoy_of(mooring.leg, mooring.leg.equilibrium(), False)
     assert buoy.displaced == pytest.approx(1025.0 * pi * 0.8**2 * buoy.draft, rel=1e-3)
 
 
@@ -613,13 +613,13 @@ def test_drag_goes_with_the_density_and_a_rope_that_floats_is_slackest_on_top(tm
         text = floats.replace("depth: 80 m", f"depth: 80 m, density: {density} kg/m^3")
         (tmp_path / "buoy.yaml").write_text(text)
         mooring = load(tmp_path / "buoy.yaml")
-        lines.append(lumped_line(mooring, mooring.equilibrium(mooring.water), 1.0))
+        lines.append(lumped_line(mooring.leg, mooring.leg.equilibrium(), 1.0))
     nylon = 0.5 * 1000.0 * 1.2 * 0.02 * 60.0
     below = lines[0].piece_node[2] + 1
     assert lines[0].across_drag[below:].sum() == pytest.approx(nylon, rel=0.02)
     assert lines[1].across_drag[below:].sum() == pytest.approx(1.1 * nylon, rel=0.02)
     sea = sea_states.spectrum_of("bretschneider", 0.5, 4.0, 3.3)
-    (state,) = analyse(mooring, [sea], 90.0).states
+    (state,) = analyse(mooring.leg, [sea], 90.0).states
     rope = state.components[2]
     assert rope.least == rope.tension_min < rope.tension_mean
     # its lower end is pulled by 5 N/m over 60 m more, and by what the waves move below the middle

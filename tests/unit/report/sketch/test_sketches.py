@@ -27,7 +27,7 @@ def rows(texts) -> list[str]:
 
 
 def water_of(result):
-    return (result.mooring if hasattr(result, "mooring") else result.tow).water
+    return result.water
 
 
 @pytest.mark.parametrize("name", ALL)

@@ -1,0 +1,153 @@
+"""Solve blocks of times in threads, and write the blocks one after another."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.batch.dataset import laid_out
+from calm.batch.profiles import Batch, processors
+from calm.batch.statuses import STATUSES, Ending, endings
+from calm.dataset.netcdf import Chunks, ResultLayout, packed, write_netcdf
+from calm.records.record import Levels
+
+AHEAD = 2
+"""Blocks in progress for each worker. This bounds the memory of a batch."""
+
+Task = TypeVar("Task")
+Done = TypeVar("Done", covariant=True)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Count the profiles that a batch has solved.
+
+    Attributes
+    ----------
+    done, total : solved profiles, and all profiles
+    endings : number of solved profiles by ending
+    """
+
+    done: int
+    total: int
+    endings: Mapping[Ending, int]
+
+
+class SolvedBlock(NamedTuple):
+    """Hold a solved block: its chunks for the file, and the status (n,) of each profile."""
+
+    status: NDArray[np.int8]
+    chunks: Chunks
+
+
+class BlockTask(NamedTuple):
+    """Hold the profiles of a block and the layout of their result.
+
+    Attributes
+    ----------
+    layout, block : see `calm.dataset.netcdf.packed`
+    time : (n,) of the profiles
+    levels : their currents, see `calm.records.record.Record.profiles`
+    """
+
+    layout: ResultLayout
+    block: int
+    time: NDArray[np.datetime64]
+    levels: Levels
+
+
+def solve_block(batch: Batch, task: BlockTask) -> SolvedBlock:
+    """Solve the profiles of a block by one thread."""
+    depth, u, v, w = task.levels
+    profiles = batch.solve(u, v, depth, w, workers=1)
+    arrays = laid_out(task.layout, task.time, vars(profiles))
+    return SolvedBlock(profiles.status, packed(task.layout, task.block, arrays))
+
+
+class Promise(Protocol[Done]):
+    """Stand for work in progress, in a thread or on another machine."""
+
+    def result(self) -> Done:
+        """Wait for the work, and return its result."""
+        ...
+
+
+def in_order(
+    submit: Callable[[Task], Promise[Done]], tasks: Iterable[Task], ahead: Callable[[], int]
+) -> Iterator[Done]:
+    """Yield the results of tasks, in the order of the tasks.
+
+    Parameters
+    ----------
+    submit : starts a task
+    ahead : returns the number of tasks that may be in progress
+    """
+    under_way: deque[Promise[Done]] = deque()
+    for task in tasks:
+        under_way.append(submit(task))
+        while len(under_way) >= max(ahead(), 1):
+            yield under_way.popleft().result()
+    while under_way:
+        yield under_way.popleft().result()
+
+
+def in_threads(
+    solve: Callable[[Task], Done], tasks: Iterable[Task], workers: int | None
+) -> Generator[Done]:
+    """Solve tasks in threads, and yield the results in the order of the tasks.
+
+    A consumer that stops early cancels the waiting tasks and waits for the running ones.
+
+    Parameters
+    ----------
+    workers : number of threads; by default one for each processor
+    """
+    count = workers or processors()
+    pool = ThreadPoolExecutor(count)
+    try:
+        yield from in_order(lambda task: pool.submit(solve, task), tasks, lambda: AHEAD * count)
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def write_solved(
+    layout: ResultLayout,
+    block: int,
+    solved: Iterator[SolvedBlock],
+    output: Path,
+    progress: Callable[[Progress], None] | None = None,
+    last: Callable[[], Mapping[str, str]] = dict,
+) -> dict[str, int]:
+    """Write solved blocks to a file, and return the number of profiles with each status.
+
+    Parameters
+    ----------
+    layout, block, output, last : see `calm.dataset.netcdf.write_netcdf`
+    progress : called before the first block, and after each
+    """
+    counts = np.zeros(len(STATUSES), np.int64)
+    total = layout.sizes["time"]
+
+    def named() -> dict[str, int]:
+        return {STATUSES[i]: int(counts[i]) for i in np.flatnonzero(counts)}
+
+    def tell() -> None:
+        if progress is not None:
+            progress(Progress(int(counts.sum()), total, endings(named())))
+
+    def chunks() -> Iterator[Chunks]:
+        tell()
+        for one in solved:
+            counts[:] += np.bincount(one.status, minlength=len(STATUSES))
+            yield one.chunks
+            tell()
+
+    write_netcdf(layout, block, chunks(), output, last)
+    return named()

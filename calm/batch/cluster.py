@@ -1,0 +1,86 @@
+"""Solve the blocks of a batch on the workers of a dask scheduler, on one machine or many."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator
+from functools import lru_cache
+
+from calm.batch.blocks import AHEAD, BlockTask, Promise, SolvedBlock, in_order, solve_block
+from calm.batch.profiles import Batch
+from calm.case import Design
+from calm.errors import UsageError
+from calm.version import __version__
+
+PATIENCE = "20s"
+"""How long the scheduler may take to answer."""
+
+
+def on_cluster(
+    address: str,
+    mooring: Design,
+    tasks: Iterator[BlockTask],
+    tell: Callable[[str], None],
+) -> Generator[SolvedBlock]:
+    """Solve blocks on the workers of a scheduler, and yield the results in order.
+
+    Workers may join and leave. Another worker solves the blocks of a lost one, and the call waits
+    for the first worker.
+
+    Parameters
+    ----------
+    address : of the scheduler, such as ``tcp://10.0.0.1:8786``
+    tell : called with a message when the scheduler has no worker
+
+    Raises
+    ------
+    UsageError
+        `distributed` is not installed; no scheduler answers; the workers have no CALM; the
+        scheduler is lost, or one block loses its worker again and again.
+    """
+    try:
+        from distributed import CancelledError, Client, KilledWorker
+    except ImportError:
+        raise UsageError(
+            "--scheduler needs dask: pip install 'calm-mooring[cluster]', here, for the scheduler "
+            "and on the workers"
+        ) from None
+    try:
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise UsageError(f"no scheduler answers at {address}: {error}") from None
+
+    def submit(task: BlockTask) -> Promise[SolvedBlock]:
+        # the task carries its block, so that any worker can solve it again
+        promise: Promise[SolvedBlock] = client.submit(
+            solve_there, mooring, task, pure=False, retries=3
+        )
+        return promise
+
+    def ahead() -> int:
+        threads: dict[str, int] = client.nthreads()
+        return AHEAD * sum(threads.values())
+
+    with client:
+        if not client.nthreads():
+            tell(f"the scheduler at {address} has no worker yet: waiting for the first")
+        try:
+            yield from in_order(submit, tasks, ahead)
+        except (CancelledError, KilledWorker, OSError) as error:
+            raise UsageError(f"the scheduler or its workers were lost: {error}") from None
+        except (ImportError, AttributeError, RuntimeError) as error:
+            # what dask makes of modules that are not there
+            raise UsageError(
+                f"the scheduler or a worker cannot take the work: {error}; "
+                f"calm-mooring {__version__} is needed there too"
+            ) from None
+
+
+def solve_there(mooring: Design, task: BlockTask) -> SolvedBlock:
+    """Solve a block on a worker."""
+    return solve_block(_ready(mooring), task)
+
+
+@lru_cache(maxsize=2)
+def _ready(mooring: Design) -> Batch:
+    """Return the batch of a mooring, which every block brings: a batch is slow to make."""
+    return Batch(mooring)

@@ -1,0 +1,42 @@
+"""Compile the solver of many profiles before the first profile, and report it."""
+
+from collections.abc import Callable
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numba.core import event
+
+from calm.batch.profiles import Batch
+from calm.physics.compiled import cache_folder
+
+
+class _Notice(event.Listener):
+    """Reports when something is compiled that was not in the cache."""
+
+    def __init__(self, report: Callable[[str], None]) -> None:
+        self.report = report
+        self.reported = False
+
+    def on_start(self, event: Any) -> None:
+        if self.reported:
+            return
+        self.reported = True
+        self.report("compiling the solver for this machine, once only; this takes up to a minute")
+        if cache_folder() is None:
+            self.report(
+                "no writable folder was found to keep it in, so every run compiles again; set "
+                "NUMBA_CACHE_DIR to one"
+            )
+
+    def on_end(self, event: Any) -> None:
+        pass
+
+
+def compile_solver(batch: Batch, report: Callable[[str], None]) -> None:
+    """Compile the solver or load it from the cache; report only when it is compiled."""
+    notice, started = _Notice(report), perf_counter()
+    with event.install_listener("numba:compile", notice):
+        batch.solve(np.zeros((0, 1)), np.zeros((0, 1)), np.zeros(1), workers=1)
+    if notice.reported:
+        report(f"compiled in {perf_counter() - started:.0f} s")

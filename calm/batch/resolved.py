@@ -1,0 +1,86 @@
+"""Describe the complete input of a result as JSON, and hash it with the measured values."""
+
+import hashlib
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel
+
+from calm.case import Design
+from calm.dataset.netcdf import Attributes
+from calm.version import __version__
+
+RESOLVED, HASH = "input_resolved", "input_sha256"
+"""Attributes of a result: its input as JSON, and the SHA-256 of the input and the measurements."""
+
+_NO_MATTER = frozenset(
+    {"path", "line", "column", "checks", "notices", "variants", "description", "current"}
+    | {"sources", "searched", "prefer", "waves", "seas"}
+)
+"""What of a mooring file changes no figure of its results: every profile has its own current."""
+
+
+class InputHash:
+    """Compute the SHA-256 of an input: of its text, then of the measured values."""
+
+    def __init__(self, text: str) -> None:
+        self._digest = hashlib.sha256(text.encode("utf-8", "surrogateescape"))
+
+    def add(self, arrays: Iterable[NDArray[Any] | None]) -> None:
+        """Add measured values to the hash."""
+        for array in arrays:
+            if array is not None:
+                self._digest.update(str(array.shape).encode())
+                self._digest.update(array.tobytes())
+
+    def attributes(self) -> dict[str, str]:
+        """Return the attribute of a result with the hash."""
+        return {HASH: self._digest.hexdigest()}
+
+
+def resolved_input(
+    mooring: Design, time: NDArray[np.datetime64], options: Mapping[str, Any]
+) -> str:
+    """Return the input of a result as JSON, including catalogue components and defaults.
+
+    Parameters
+    ----------
+    time : (n,) of the record
+    options : options of the command that change figures
+    """
+    first, last = (str(one.astype("datetime64[s]")) for one in (time[0], time[-1]))
+    known = {
+        "calm": __version__,
+        "mooring": _plain(mooring.file),
+        "record": {"profiles": len(time), "from": first, "to": last},
+        **options,
+    }
+    return json.dumps(known, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+
+
+def with_input(text: str) -> Attributes:
+    """Return the attributes of an input; the hash keeps its length when it is completed."""
+    return {RESOLVED: text, **InputHash(text).attributes()}
+
+
+def _plain(value: Any) -> Any:
+    """A model as mappings, lists, text and numbers; without what is None or does not matter."""
+    if isinstance(value, BaseModel):
+        return _known({name: getattr(value, name) for name in type(value).model_fields})
+    if is_dataclass(value):
+        return _known({each.name: getattr(value, each.name) for each in fields(value)})
+    if isinstance(value, tuple | list):
+        return [_plain(member) for member in value]
+    return value
+
+
+def _known(members: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        name: _plain(member)
+        for name, member in members.items()
+        if member is not None and name not in _NO_MATTER
+    }

@@ -1,0 +1,681 @@
+"""Designs read from files, and their results.
+
+A mooring is one leg with a free top and an anchor, a tow is one leg held at the ship, a net has
+several legs that join at nodes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
+from itertools import combinations
+from math import dist
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+
+import numpy as np
+
+from calm.assemble import assemble_water
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult, leg_result_of
+from calm.case.memory import Forgetful, Memory
+from calm.case.parts import Origin, OtherEnvironment
+from calm.case.profilers import ProfilerTravel, profilers_of
+from calm.case.result_tables import (
+    MOORED_ENDS,
+    Accuracy,
+    AnchorLoad,
+    Clamps,
+    Components,
+    EndLoad,
+    NodePlace,
+    Shape,
+    Top,
+    TowedBody,
+    TowPoint,
+    documents,
+)
+from calm.case.strumming import Strumming, StrummingBand
+from calm.case.warnings import warnings_of
+from calm.errors import InputError, NoEquilibrium, Problem, UsageError
+from calm.files import MooringFile, Piece
+from calm.files.environment import Environment
+from calm.files.legs import FileLeg, nodes_of
+from calm.files.mooring_file import (
+    leg_numbers,
+    legs_of,
+    refuse_all_but_moorings,
+    refuse_several,
+)
+from calm.files.pieces import STAND_IN
+from calm.files.reader import MooringReader
+from calm.physics.hull import AIR_DENSITY
+from calm.physics.line import Floats, Line, Water
+from calm.quantities import say
+from calm.records.grids import SeabedGrid
+from calm.solve import Settings, Solution, Status
+
+if TYPE_CHECKING:
+    from calm.solve.net import NetSolution
+
+_SKIN = 1e-3  # m above the surface, in which water turns into air
+
+
+@dataclass(frozen=True)
+class Design:
+    """A mooring, a tow or a net of legs.
+
+    Attributes
+    ----------
+    file : the file of the design
+    for_surface, memory : see `Leg`
+    lines, given_water : replacements for the lines and the water of the file
+    near : an equilibrium near which the search for that of several legs begins
+    origin : path, environment and catalogues of the file; None for a design made in Python
+    """
+
+    file: MooringFile
+    for_surface: bool | None = None
+    memory: Memory = field(default_factory=Forgetful, repr=False, compare=False)
+    lines: tuple[Line, ...] | None = field(default=None, repr=False, compare=False)
+    given_water: Water | None = field(default=None, repr=False, compare=False)
+    near: NetSolution | None = field(default=None, repr=False, compare=False)
+    origin: Origin | None = field(default=None, repr=False, compare=False)
+
+    def __reduce__(self) -> tuple[type[Design], tuple[object, ...]]:
+        """Pickle the fields and the cut lines; all other attributes are recomputed."""
+        legs = vars(self).get("legs", ())
+        known = tuple(leg.line for leg in legs if "line" in vars(leg))
+        lines = known if known and len(known) == len(legs) else self.lines
+        water = vars(self).get("water", self.given_water)
+        given = self.file, self.for_surface, self.memory, lines, water, self.near, self.origin
+        return Design, given
+
+    @cached_property
+    def legs(self) -> tuple[Leg, ...]:
+        """The legs in the order of the file."""
+        keys = legs_of(self.file)
+        # each of several legs has the water depth at its own anchor
+        water = None if self.several else self.given_water
+        return tuple(
+            Leg(self.file.leg_alone(each), self.for_surface, self.memory, line, water)
+            for each, line in zip(keys, self.lines or (None,) * len(keys), strict=True)
+        )
+
+    @property
+    def several(self) -> bool:
+        """Whether the file lists named legs, which are solved together."""
+        return bool(self.file.legs)
+
+    @property
+    def leg(self) -> Leg:
+        """The leg of a mooring or a tow; UsageError for several legs."""
+        refuse_several(self.file)
+        return self.legs[0]
+
+    @property
+    def moored(self) -> Leg:
+        """The leg of a mooring; UsageError for a tow and for several legs."""
+        refuse_all_but_moorings(self.file)
+        return self.legs[0]
+
+    @property
+    def line(self) -> Line:
+        """The line of a mooring or a tow as arrays."""
+        return self.leg.line
+
+    @property
+    def towed(self) -> bool:
+        """Whether a ship or an aircraft tows the design."""
+        return any(leg.towed for leg in self.legs)
+
+    @property
+    def environment(self) -> Environment:
+        """Water, current and wind of the file."""
+        return self.file.environment
+
+    @property
+    def settings(self) -> Settings:
+        """Settings of the solver."""
+        return self.legs[0].settings
+
+    @cached_property
+    def water(self) -> Water:
+        """Depth, current and density by level."""
+        if self.given_water is not None:
+            return self.given_water
+        return self.water_of(self.environment) if self.several else self.legs[0].water
+
+    def water_of(self, environment: Environment) -> Water:
+        """Water of an environment, with still air above the surface if a leg is held there."""
+        if not self.several:
+            return assemble_water(environment)
+        if isinstance(environment.seabed, SeabedGrid):  # its plane is that of one place
+            environment = replace(environment, seabed=None)
+        water, ends = assemble_water(environment), [e for leg in self.file.legs for e in leg.ends]
+        if all(end.held is None or end.held.depth >= 0.0 for end in ends):
+            return water
+        below, surface = water.level > 0.0, np.zeros(())
+        level = np.array([-_SKIN, 0.0, *water.level[below]])
+        u, v, w = (
+            np.array([0.0, speed, *column[below]])
+            for speed, column in zip(
+                water.current_at(surface), (water.u, water.v, water.w), strict=True
+            )
+        )
+        density = np.array([AIR_DENSITY, water.density_at(surface), *water.density[below]])
+        return replace(water, level=level, u=u, v=v, w=w, density=density)
+
+    # with something changed
+
+    def with_(
+        self, label: str | None = None, /, environment: OtherEnvironment | None = None, **keys: Any
+    ) -> Design:
+        """Return the design with some values of its file changed, as `Origin.changed`.
+
+        Parameters
+        ----------
+        label : of the piece or clamp that has the keys; the keys are the file's where it is not
+            given: ``design.with_("wire 1", length="480 m")``,
+            ``design.with_(tow={"speed": "4 kn"})``
+        environment : name of one of its `environments`, an environment file, or keys of its own
+
+        Raises
+        ------
+        InputError
+            With the mistakes that the values make.
+        UsageError
+            No piece has the label, or it was not loaded from a file.
+        """
+        if self.origin is None:
+            raise UsageError("what was not loaded from a file has no values to change")
+        origin = self.origin.changed(self.file, label, environment, keys)
+        file = origin.read()
+        if (file.tow is None) != (self.file.tow is None):
+            raise UsageError("a mooring does not become a tow, nor a tow a mooring")
+        return Design(file, origin=origin)
+
+    def with_lines(self, lines: Sequence[Line], water: Water | None = None) -> Design:
+        """Return the design with other lines for its legs, and optionally other water."""
+        near = self.standing if self.several else None
+        return Design(self.file, lines=tuple(lines), given_water=water or self.water, near=near)
+
+    def with_length(self, index: int, length: float) -> Design:
+        """Return the design with another unstretched length [m] of one piece of the file."""
+        number, lines = leg_numbers(self.file)[index], [leg.line for leg in self.legs]
+        own = index - self.legs[number].keys.first
+        lines[number] = lines[number].with_length(own, length)
+        return self.with_lines(lines)
+
+    def with_pieces(self, pieces: Sequence[Sequence[Piece]]) -> Design:
+        """Return the design with other pieces in its legs, stand-ins for anchors included."""
+        if not self.several:
+            return Design(
+                replace(self.file, pieces=tuple(pieces[0])), self.for_surface, self.memory
+            )
+        legs: list[FileLeg] = []
+        listed: list[Piece] = []
+        for leg, own in zip(self.file.legs, pieces, strict=True):
+            first = len(listed)
+            listed += [piece for piece in own if piece.use != STAND_IN]
+            legs.append(replace(leg, first=first, end=len(listed)))
+        numbered = tuple(replace(piece, index=index) for index, piece in enumerate(listed))
+        return Design(replace(self.file, pieces=numbered, legs=tuple(legs)))
+
+    # solved
+
+    @cached_property
+    def standing(self) -> NetSolution:
+        """Equilibrium of several legs in the water of the file; raises NoEquilibrium."""
+        return self.together(self.water, self.near)
+
+    def together(self, water: Water, near: NetSolution | None = None) -> NetSolution:
+        """Solve several legs in some water, first near another solution; raises NoEquilibrium."""
+        from calm.case.net import solve_together
+
+        return solve_together(self.legs, water, self.settings, near)
+
+    @property
+    def solutions(self) -> tuple[Solution, ...]:
+        """Solutions of the legs in the water of the file; raises NoEquilibrium."""
+        if self.several:
+            return self.standing.legs
+        return (self.leg.equilibrium(self.water),)
+
+    @cached_property
+    def meant(self) -> tuple[Leg, ...]:
+        """The legs with `for_surface`: a leg is meant for the surface if it floats there in still
+        water.
+        """
+        if not self.several:
+            return self.legs
+        try:
+            afloat = [bool(leg.afloat) for leg in self.together(self.water.still()).legs]
+        except NoEquilibrium:
+            afloat = [False] * len(self.legs)
+        pairs = zip(self.legs, afloat, strict=True)
+        return tuple(replace(leg, for_surface=surface) for leg, surface in pairs)
+
+    def solve(self, environment: OtherEnvironment | None = None) -> Result:
+        """Find the static equilibrium, in another of its environments where one is given.
+
+        NoEquilibrium: with status, message and advice, where there is none that passes every check.
+        """
+        if environment is not None:
+            return self.with_(environment=environment).solve()
+        if not self.several:
+            return self._alone()
+        found = self.standing
+        still: Sequence[Solution | None] = found.legs
+        if self.water.moving:
+            try:
+                still = self.together(self.water.still()).legs
+            except NoEquilibrium:
+                still = [None] * len(found.legs)
+        return result_together(self, found, still)
+
+    def _alone(self) -> Result:
+        found = solved_alone(self.leg)
+        return Result(
+            design=self,
+            status=Status.CONVERGED.label,
+            iterations=found.iterations,
+            segments=found.segments,
+            miss=found.miss,
+            closure=found.closure,
+            accuracy=found.accuracy,
+            legs=(found,),
+            warnings=found.warnings,
+        )
+
+
+def solved_alone(leg: Leg) -> LegResult:
+    """Solve a leg by itself, with its profilers at all their places; raises NoEquilibrium."""
+    solution = leg.equilibrium()
+    found = leg_result_of(leg, solution, leg.still_beside(solution))
+    return replace(found, profilers=profilers_of(leg), warnings=warnings_of(found, solution))
+
+
+def result_together(design: Design, found: NetSolution, still: Sequence[Solution | None]) -> Result:
+    """Make the result of several legs.
+
+    NoEquilibrium: a leg lifts its anchor, or hangs into a slope.
+
+    Parameters
+    ----------
+    still : the legs in still water; None for an unknown shape
+    """
+    legs: list[LegResult] = []
+    for leg, solution, before in zip(design.legs, found.legs, still, strict=True):
+        leg.refuse_a_lifted_anchor(solution)
+        leg.refuse_in_the_slope(solution)
+        meant = replace(leg, for_surface=bool((before or solution).afloat))
+        result = leg_result_of(meant, solution, before)
+        legs.append(replace(result, warnings=warnings_of(result, solution)))
+    anchors = [end for leg in legs for end in leg.ends if end.weight is not None]
+    places = zip(nodes_of(design.file.legs), found.nodes, found.imbalance, strict=True)
+    return Result(
+        design=design,
+        status=Status.CONVERGED.label,
+        iterations=found.marches,
+        segments=sum(leg.segments for leg in legs),
+        miss=found.miss,
+        closure=max(leg.closure for leg in legs),
+        accuracy=Accuracy(found.depth_error, found.tension_error),
+        legs=tuple(legs),
+        nodes=tuple(
+            NodePlace(name, -float(at[2]), float(at[0]), float(at[1]), float(left))
+            for name, at, left in places
+        ),
+        warnings=(
+            *design.file.notices,
+            *(said for leg in legs for said in leg.warnings),
+            *(said for leg in legs if (said := _upside_down(leg))),
+            *(
+                f"The anchors of legs {one.leg} and {other.leg} stand in one place, and each is "
+                "judged for itself; where they are one anchor, join the legs at a node above it."
+                for one, other in combinations(anchors, 2)
+                if dist((one.x, one.y), (other.x, other.y)) < 1e-3
+            ),
+        ),
+    )
+
+
+def _upside_down(result: LegResult) -> str:
+    """Warn of a leg with a free end that is listed from its lower to its upper end."""
+    leg, rows = result.leg, result.components
+    top, bottom = float(rows.depth_top[0]), float(rows.depth_bottom[len(rows) - 2])
+    if not (leg.top.free or leg.bottom.free) or top <= bottom:
+        return ""
+    return (
+        f"Leg {leg.name} is the other way round: its upper end is {say('length', top - bottom)} "
+        "deeper than its lower one. Legs are listed from their upper to their lower ends."
+    )
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Result:
+    """A converged design. Lengths and depths [m], forces [N], angles [degrees].
+
+    x and y are east and north of the anchor or the tow point, for several legs of the origin in the
+    file. A result with one leg has the attributes of this leg too, such as `top` and `anchor`.
+
+    Attributes
+    ----------
+    design : the solved design
+    status : ``converged``
+    iterations, segments : number of marches, and of segments of the final shape
+    miss : greatest distance of an end from its place; for one leg the distance in height [m]
+    closure : relative force residual, recomputed from the final coordinates
+    accuracy : error estimates of the solver
+    legs : results of the legs
+    nodes : places of the nodes
+    notebook_form, netcdf_form, plot_form : functions for HTML, NetCDF and pictures of a result, set
+        by the packages above
+    """
+
+    design: Design
+    status: str
+    iterations: int
+    segments: int
+    miss: float
+    closure: float
+    accuracy: Accuracy
+    legs: tuple[LegResult, ...]
+    nodes: tuple[NodePlace, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    notebook_form: ClassVar[Callable[[Any], str] | None] = None
+    netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
+    plot_form: ClassVar[Callable[[Any, Any], Any] | None] = None
+
+    @property
+    def anchors(self) -> tuple[EndLoad, ...]:
+        """Loads of the legs on their anchors."""
+        return tuple(end for leg in self.legs for end in leg.ends if end.weight is not None)
+
+    @property
+    def held(self) -> tuple[EndLoad, ...]:
+        """Loads of the legs on other fixed ends, such as a ship or a pier."""
+        return tuple(end for leg in self.legs for end in leg.ends if end.weight is None)
+
+    @property
+    def file(self) -> MooringFile:
+        """The file of the design."""
+        return self.design.file
+
+    @property
+    def name(self) -> str:
+        """The name of the design."""
+        return self.file.name
+
+    @property
+    def water(self) -> Water:
+        """Water of the design."""
+        return self.design.water
+
+    @property
+    def towed(self) -> bool:
+        """Whether a ship or an aircraft tows the design."""
+        return self.design.towed
+
+    @property
+    def type(self) -> str:
+        """Type of the design: ``subsurface``, ``surface``, ``tow`` or ``net``."""
+        return "net" if self.several else self.legs[0].type
+
+    @property
+    def several(self) -> bool:
+        """Whether the file lists named legs, which are solved together."""
+        return self.design.several
+
+    @property
+    def leg(self) -> LegResult:
+        """Result of the leg of a mooring or a tow; UsageError for several legs."""
+        if self.several:
+            raise UsageError(
+                f"{self.name} has several legs, each with its own ends and shape: see `legs`, "
+                "`nodes`, `anchors` and `held`"
+            )
+        return self.legs[0]
+
+    @property
+    def top(self) -> Top:
+        """Upper end of the leg."""
+        return self.leg.top
+
+    @property
+    def anchor(self) -> AnchorLoad:
+        """Load on the anchor of the leg."""
+        return self.leg.anchor
+
+    @property
+    def tow_point(self) -> TowPoint:
+        """Load of a tow on the ship."""
+        assert self.leg.tow_point is not None, "only a tow has a tow point"
+        return self.leg.tow_point
+
+    @property
+    def body(self) -> TowedBody:
+        """Towed body."""
+        assert self.leg.body is not None, "only a tow has a towed body"
+        return self.leg.body
+
+    @property
+    def shape(self) -> Shape:
+        """Shape of the leg, node by node."""
+        return self.leg.shape
+
+    @property
+    def still_shape(self) -> Shape | None:
+        """Shape of the leg in still water; None without a unique shape."""
+        return self.leg.still_shape
+
+    @property
+    def profilers(self) -> tuple[ProfilerTravel, ...]:
+        """Profilers of the leg at their places."""
+        return self.leg.profilers
+
+    @property
+    def strumming(self) -> Strumming | None:
+        """Strumming of the cables; None without a law of strumming."""
+        return self.leg.strumming
+
+    @property
+    def strumming_band(self) -> StrummingBand | None:
+        """The leg with more drag on its cables; solved on first use."""
+        return self.leg.strumming_band
+
+    @property
+    def other_equilibrium(self) -> dict[str, float] | None:
+        """Another equilibrium of the leg; None if none was found."""
+        return self.leg.other_equilibrium
+
+    @cached_property
+    def components(self) -> Components:
+        """The pieces of the file, leg by leg."""
+        if not self.several:
+            return self.leg.components
+        tables = [leg.components.head(len(leg.leg.pieces)) for leg in self.legs]
+        pieces = self.file.pieces
+        whole = Components.joined(tables)
+        return whole.with_columns(part=list(pieces), index=np.arange(len(pieces)))
+
+    @cached_property
+    def clamps(self) -> Clamps:
+        """The clamps of the file, leg by leg."""
+        if not self.several:
+            return self.leg.clamps
+        tables = [
+            leg.clamps.with_columns(index=leg.clamps.index + leg.leg.keys.first)
+            for leg in self.legs
+        ]
+        return Clamps.joined(tables)
+
+    @property
+    def ends(self) -> dict[str, Floats]:
+        """Columns of the ends, one value for each leg; see `MOORED_ENDS`."""
+        return {
+            one.name: np.array([one.found(leg) for leg in self.legs])
+            for one in MOORED_ENDS
+            if one.found
+        }
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the line from the side on axes of matplotlib, and return them.
+
+        Without `ax` the axes are those of a new figure. UsageError: matplotlib is not installed.
+        """
+        form = type(self).plot_form
+        assert form is not None, "a design is read by calm.load"
+        return form(self, ax)
+
+    def to_pandas(self) -> Any:
+        """Return the components as a pandas data frame."""
+        return self.components.to_pandas()
+
+    def to_xarray(self) -> Any:
+        """The dataset that `calm run --netcdf` writes: components, clamps and shape, with units."""
+        from io import BytesIO
+
+        from xarray import load_dataset
+
+        form = type(self).netcdf_form
+        assert form is not None, "a design is read by calm.load"
+        return load_dataset(BytesIO(form(self)))
+
+    def _repr_html_(self) -> str | None:
+        """The table of the line, for notebooks; None where nothing makes it."""
+        form = type(self).notebook_form
+        return None if form is None else form(self)
+
+    def __repr__(self) -> str:
+        """Return the figures of its ends, of several legs also of the nodes; SI and degrees."""
+        if self.several:
+            lines = [f"{self.name}: {self.type} of {len(self.legs)} legs, {self.status}"]
+            lines += [f"node {one.name}: depth {one.depth:.6g}" for one in self.nodes]
+            lines += [
+                f"{what} of leg {one.leg}: tension {one.tension:.6g}, angle {one.angle:.3g}"
+                for what, ends in (("anchor", self.anchors), ("held end", self.held))
+                for one in ends
+            ]
+            return "\n".join([*lines[:9], f"{len(self.warnings)} warnings"])
+        lines = [f"{self.name}: {self.type}, {self.status}"]
+        for name, end in self._ends().items():
+            known = [f"{key} {value:.6g}" for key, value in end.items() if value is not None]
+            lines.append(f"{name}: {', '.join(known)}")
+        tables = f"{len(self.components)} components, {len(self.clamps)} clamps"
+        return "\n".join([*lines, f"{tables}, {len(self.warnings)} warnings"])
+
+    def _ends(self) -> dict[str, dict[str, Any]]:
+        """Figures of both ends of the leg, by name."""
+        if self.towed:
+            return {"tow_point": asdict(self.tow_point), "body": asdict(self.body)}
+        return {"top": asdict(self.top), "anchor": asdict(self.anchor)}
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON object of the result format; None stands where a figure is unknown."""
+        from calm.version import __version__
+
+        document = self.file.document
+        told = ("type", "status", "iterations", "segments", "miss", "closure")
+        return {
+            "calm": __version__,
+            "name": self.name,
+            **({} if document is None else {"document": document.to_dict()}),
+            **{name: getattr(self, name) for name in told},
+            "accuracy": {k: v for k, v in asdict(self.accuracy).items() if v is not None},
+            **(self._document_of_legs() if self.several else self._document_of_leg()),
+            "components": documents(self.components, self.file),
+            "clamps": documents(self.clamps, self.file),
+            **({} if self.several else {"shape": self.shape.to_dict()}),
+            "warnings": list(self.warnings),
+        }
+
+    def _document_of_leg(self) -> dict[str, Any]:
+        leg, keys = self.leg, self.file.tow
+        return {
+            **({} if keys is None else {"speed": keys.speed, "toward": keys.toward}),
+            **self._ends(),
+            **({"profilers": [asdict(one) for one in leg.profilers]} if leg.profilers else {}),
+            "strumming": None if leg.strumming is None else asdict(leg.strumming),
+            "strumming_band": None if (band := leg.strumming_band) is None else asdict(band),
+            "other_equilibrium": leg.other_equilibrium,
+        }
+
+    def _document_of_legs(self) -> dict[str, Any]:
+        anchors = [asdict(each) for each in self.anchors]
+        of_anchors = ("required_weight", "weight", "grounded_length", "slack_length")
+        return {
+            **({"anchor": anchors[0]} if len(anchors) == 1 else {}),
+            "anchors": anchors,
+            "held": [
+                {k: v for k, v in asdict(each).items() if k not in of_anchors} for each in self.held
+            ],
+            "nodes": [asdict(each) for each in self.nodes],
+            "legs": [
+                {
+                    "name": leg.name,
+                    "closure": leg.closure,
+                    "used_buoyancy": leg.top.used_buoyancy,
+                    "reserve": leg.top.reserve,
+                    "shape": leg.shape.to_dict(),
+                }
+                for leg in self.legs
+            ],
+        }
+
+
+AnyResult: TypeAlias = Result | LegResult
+"""The result of a design, or of one of its legs."""
+
+
+def load(
+    path: str | Path,
+    environment: str | Path | None = None,
+    catalogs: Sequence[str | Path] = (),
+    text: str | None = None,
+) -> Design:
+    """Read the file of a mooring, a tow or a net of legs.
+
+    Parameters
+    ----------
+    path : the YAML file
+    environment : name of one of its `environments`, or an environment file
+    catalogs : catalogue files of your own, whose definitions come before the shipped ones
+    text : in place of the file's content; files that it names are still looked for beside the file
+
+    Raises
+    ------
+    InputError
+        With every mistake of the file, each with its line and column.
+    """
+    return load_in(path, (environment,), catalogs, text)[0]
+
+
+def load_in(
+    path: str | Path,
+    environments: Sequence[str | Path | None] | None,
+    catalogs: Sequence[str | Path] = (),
+    text: str | None = None,
+) -> list[Design]:
+    """Read a file as `load` does in several environments; None is its own and all that it names.
+
+    InputError: with the mistakes of all.
+    """
+    reader = MooringReader(path, catalogs=catalogs, text=text)
+    asked, read = [*(environments or (None,))], []
+    problems: dict[Problem, None] = {}
+    for name in asked:
+        try:
+            file = reader.in_environment(name)
+        except InputError as error:
+            problems |= dict.fromkeys(error.problems)
+            continue
+        if environments is None and name is None and file.tow is None:
+            asked += file.variants
+        read.append(Design(file, origin=Origin(path, name, tuple(map(Path, catalogs)), text)))
+    if problems:
+        raise InputError(list(problems))
+    return read

@@ -1,0 +1,297 @@
+"""A leg of a design: its pieces from the upper to the lower end, and the supports of both ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from calm.assemble import assemble_floating, assemble_line, assemble_water, net_buoyancy
+from calm.case import parts
+from calm.case.memory import Forgetful, Memory
+from calm.errors import NoEquilibrium
+from calm.files import MooringFile, Piece
+from calm.files.legs import EndKeys, FileLeg
+from calm.files.mooring_file import legs_of
+from calm.files.pieces import STAND_IN, parts_of
+from calm.physics.drag import BLOCK_CD, area_drag
+from calm.physics.line import Line, Water
+from calm.physics.materials import STEEL_DENSITY
+from calm.physics.seawater import REFERENCE_DENSITY
+from calm.records.profile_tables import components
+from calm.solve import (
+    Settings,
+    Solution,
+    Status,
+    Towing,
+    fit_length,
+    fit_tow_length,
+    solve_mooring,
+    solve_tow,
+)
+from calm.solve.problem import COARSE_STEP
+from calm.solve.solution import standing_lift, too_heavy
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A leg, with its line and its water as arrays for the solver.
+
+    Attributes
+    ----------
+    file : file of this leg alone, its pieces counted from the upper end. A leg without an anchor,
+        other than a tow, has a stand-in of the id `STAND_IN` as its last piece
+    for_surface : whether the leg is meant to reach the surface; None if the leg itself decides. A
+        leg that is judged with a change keeps its purpose
+    memory : cache of solutions for other states of the file and other environments
+    given_line, given_water : replacements for the line and the water of the file
+    """
+
+    file: MooringFile
+    for_surface: bool | None = None
+    memory: Memory = field(default_factory=Forgetful, repr=False, compare=False)
+    given_line: Line | None = field(default=None, repr=False, compare=False)
+    given_water: Water | None = field(default=None, repr=False, compare=False)
+
+    def __reduce__(self) -> tuple[type[Leg], tuple[object, ...]]:
+        """Pickle the fields and the cut line; all other attributes are recomputed."""
+        known = vars(self)
+        line, water = (known.get(name, known[f"given_{name}"]) for name in ("line", "water"))
+        return Leg, (self.file, self.for_surface, self.memory, line, water)
+
+    @property
+    def name(self) -> str:
+        """Name of the leg; for a mooring or a tow the name of the design."""
+        return self.file.name
+
+    @property
+    def keys(self) -> FileLeg:
+        """Entry of the leg in the file of the design."""
+        return legs_of(self.file)[0]
+
+    @property
+    def of_several(self) -> bool:
+        """Whether the leg belongs to a net, with which it is solved."""
+        return bool(self.file.legs)
+
+    @property
+    def top(self) -> EndKeys:
+        """Support of the upper end."""
+        return self.keys.top
+
+    @property
+    def bottom(self) -> EndKeys:
+        """Support of the lower end."""
+        return self.keys.bottom
+
+    @property
+    def towed(self) -> bool:
+        """Whether a ship or an aircraft tows the leg."""
+        return self.file.tow is not None
+
+    @property
+    def anchored(self) -> bool:
+        """Whether the leg ends in an anchor."""
+        return self.bottom.anchor is not None
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """Pieces of the leg, without a stand-in for an anchor."""
+        return tuple(piece for piece in self.file.pieces if piece.use != STAND_IN)
+
+    @cached_property
+    def water(self) -> Water:
+        """Current over the ground and density by level; water depth at the anchor."""
+        return self.given_water or assemble_water(self.file.environment)
+
+    @property
+    def settings(self) -> Settings:
+        """Settings of the solver."""
+        solver = self.file.solver
+        friction = 0.0 if self.towed else solver.seabed_friction
+        return Settings(solver.angle_step, solver.tolerance, friction)
+
+    @property
+    def towing(self) -> Towing:
+        """Velocity of the ship, height of the sheave, and wind."""
+        keys, wind = self.file.tow, self.file.environment.wind
+        assert keys is not None
+        return Towing(
+            *components(keys.speed, keys.toward),
+            height=keys.height,
+            wind=(0.0, 0.0) if wind is None else components(wind.speed, wind.toward),
+            in_air=self.file.environment.fluid == "air",
+        )
+
+    @cached_property
+    def line(self) -> Line:
+        """Pieces above the anchor as arrays, a fitted piece at its cut length.
+
+        NoEquilibrium: no length fits.
+        """
+        if self.given_line is not None:
+            return self.given_line
+        pieces, solver = self.file.pieces, self.file.solver
+        line = assemble_line(pieces, solver, self.water.gravity)
+        if self.top.free and solver.buoy_drag == "immersed":
+            floating = assemble_floating(pieces, self.file.environment, self.water)
+            line = replace(line, floating=floating)
+        for piece in pieces:
+            if piece.length is None:
+                with parts.naming_the_piece(pieces):
+                    return line.with_length(piece.index, self._fitting(line, piece))
+        return line
+
+    def _fitting(self, line: Line, piece: Piece) -> float:
+        if piece.fit_body_depth is not None:
+            return self.memory.of(
+                fit_tow_length, line, self.water, self.towing, piece.index, piece.fit_body_depth,
+                self.settings,
+            )  # fmt: skip
+        assert piece.fit_top_depth is not None
+        return self.memory.of(
+            fit_length, line, self.water, piece.index, piece.fit_top_depth, self.settings
+        )
+
+    def cut(self, file: MooringFile) -> MooringFile:
+        """Return a file with the fitted piece at the cut length of this leg.
+
+        NoEquilibrium: no length fits.
+        """
+        pieces = tuple(
+            piece
+            if piece.length is not None
+            else replace(
+                piece,
+                length=float(self.line.length[piece.index]),
+                fit_top_depth=None,
+                fit_body_depth=None,
+            )
+            for piece in file.pieces
+        )
+        return replace(file, pieces=pieces)
+
+    @cached_property
+    def anchor_weight(self) -> float:
+        """Weight of the anchor and its clamps in the water at the seabed [N]."""
+        density = self.water.density_at(np.array(self.water.depth))
+        excess = (float(density) - REFERENCE_DENSITY) * self.water.gravity
+        return -sum(
+            net_buoyancy(part.component, self.water.gravity)
+            + excess * (part.component.displaced_volume or 0.0)
+            for part in parts_of(self.file.pieces[-1:])
+        )
+
+    @cached_property
+    def anchor_drag(self) -> float:
+        """Drag of the falling anchor at 1 m/s [N/(m/s)²]; by default the drag of a cube.
+
+        The cube has the displaced volume of the anchor, or the volume of steel of its weight.
+        """
+        anchor = self.file.anchor
+        if anchor.kt is not None:
+            return anchor.kt
+        volume = anchor.displaced_volume
+        if not volume:
+            density = anchor.material_density or STEEL_DENSITY
+            volume = self.anchor_weight / ((density - REFERENCE_DENSITY) * self.water.gravity)
+        return area_drag(max(volume, 0.0) ** (2.0 / 3.0), BLOCK_CD)
+
+    def equilibrium(self, water: Water | None = None) -> Solution:
+        """Solve the leg by itself, in its own or in other water.
+
+        NoEquilibrium: there is none that passes every check, or the leg lifts its anchor, lies on
+        the seabed in a heap, or hangs into a slope.
+        """
+        water = water or self.water
+        with parts.naming_the_piece(self.file.pieces, towed=self.towed):
+            if self.towed:
+                return self.memory.of(solve_tow, self.line, water, self.towing, self.settings)
+            solution = self.memory.of(solve_mooring, self.line, water, self.settings)
+        self.refuse_a_lifted_anchor(solution)
+        self._refuse_a_heap(solution)
+        self.refuse_in_the_slope(solution)
+        return solution
+
+    def refuse_a_lifted_anchor(self, solution: Solution) -> None:
+        """Refuse a leg that lifts its anchor."""
+        pull, weight = float(solution.force[-1, 2]), self.anchor_weight
+        if pull > weight:
+            line, its = "the line", "the anchor"
+            if self.of_several:
+                line, its = f"leg {self.name}", "its anchor"
+            raise Status.ANCHOR_LIFTS.because(
+                f"The vertical pull of {line} is {pull:.0f} N; {its} weighs {weight:.0f} N "
+                "in water."
+            )
+
+    def _refuse_a_heap(self, solution: Solution) -> None:
+        """Refuse a sub-surface line with more than chain on the seabed."""
+        if solution.surface:
+            return
+        pieces = self.file.pieces
+        for lying in sorted(set(solution.element_piece[solution.hanging :].tolist())):
+            if pieces[lying].component.kind != "chain":
+                raise self.heaped(pieces[lying].label)
+
+    def heaped(self, label: str) -> NoEquilibrium:
+        """Explain the refusal of a sub-surface line with a piece other than chain on the seabed."""
+        lift, length = standing_lift(self.line, self.water), np.cumsum(self.line.length)
+        height = self.water.depth - self.line.anchor_height
+        hung = float(np.interp(height, length, np.cumsum(lift)))
+        floats_at_rest = length[-1] > height and hung > 0.0
+        if float(lift.sum()) <= 0.0 and not floats_at_rest:
+            return too_heavy(lift)
+        pulls = "pulls the line's top under water and " if floats_at_rest else ""
+        return Status.GROUNDED.because(
+            f"The current {pulls}lays {label} on the seabed: only the chain of a sub-surface "
+            "line may lie there."
+        )
+
+    def refuse_in_the_slope(self, solution: Solution) -> None:
+        """Refuse a line that hangs into a seabed from a grid; the solver knows only its plane.
+
+        The tolerance is the greatest depth of the grounded part below the grid.
+        """
+        depth = self.water.depth
+        if self.file.environment.seabed is None:
+            return
+        below = np.nan_to_num(parts.below_the_seabed(self.file, solution, depth), nan=-np.inf)
+        lying = max(0.0, *below[solution.hanging :].tolist())
+        worst = int(np.argmax(below[: solution.hanging + 1]))
+        if below[worst] > lying + solution.depth_error + 1e-6 * depth:
+            number = solution.piece_at(worst)
+            count = len(self.file.pieces) - 1
+            piece = self.file.pieces[count - 1 - number if solution.line.towed else number]
+            raise Status.GROUNDED.because(
+                f"{piece.label} comes {below[worst]:.2f} m below the sloping seabed.",
+                advice="Raise it, or move it down the slope.",
+            )
+
+    def solved(self, line: Line) -> Solution:
+        """Solve another line in place of that of the leg; raises NoEquilibrium."""
+        if self.towed:
+            return solve_tow(line, self.water, self.towing, self.settings)
+        return solve_mooring(line, self.water, self.settings)
+
+    def still_beside(self, solution: Solution) -> Solution | None:
+        """The line in still water; None for a tow, or without a unique shape."""
+        if self.towed:
+            return None
+        floating = self.line.floating
+        blown = solution.riding is not None and floating is not None and floating.blown
+        return self.at_rest if self.water.moving or blown else solution
+
+    @cached_property
+    def at_rest(self) -> Solution | None:
+        """The line without current and wind; None without a unique shape."""
+        line, floating = self.line, self.line.floating
+        if floating is not None:
+            line = replace(line, floating=replace(floating, wind=(0.0, 0.0)))
+        # a plumb line is exact with long segments
+        settings = replace(self.settings, angle_step=max(self.settings.angle_step, COARSE_STEP))
+        try:
+            return self.memory.of(solve_mooring, line, self.water.still(), settings)
+        except NoEquilibrium:
+            return None

@@ -1,0 +1,110 @@
+"""Profilers at and between their stops."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import isinf
+
+import numpy as np
+
+from calm.case.leg import Leg
+from calm.case.measure import clamps_of
+from calm.errors import NoEquilibrium
+from calm.files import Clamp, MooringFile, Place, Profiler
+from calm.files.pieces import clamps_in
+
+PLACES = 11
+"""Where on its way a profiler is solved for, its two stops among them."""
+
+
+@dataclass(frozen=True)
+class ProfilerPlace:
+    """Hold what a profiler finds at a place on its way: depth [m], tension [N], tilt [degrees].
+
+    `at` is the distance from the top of its wire, without load [m].
+    """
+
+    at: float
+    depth: float
+    tension: float
+    tilt: float
+
+
+@dataclass(frozen=True)
+class ProfilerTravel:
+    """Hold a profiler at its upper and its lower stop, and where its wire leans most.
+
+    `distance` is between its stops, without load [m], `time` what a profile takes [s], `profiles`
+    how many its batteries last for; None where its speed or its endurance is not given.
+    """
+
+    label: str
+    upper: ProfilerPlace
+    lower: ProfilerPlace
+    worst: ProfilerPlace
+    distance: float
+    time: float | None
+    profiles: int | None
+
+
+def profilers_of(leg: Leg) -> tuple[ProfilerTravel, ...]:
+    """Return every profiler of a line on its way; the others stay at their upper stops.
+
+    NoEquilibrium: the line does not stand with a profiler at one of its `PLACES`.
+    """
+    return tuple(_travel(leg, clamp) for clamp in profilers_in(leg))
+
+
+def profilers_in(leg: Leg) -> list[Clamp]:
+    """Return the profilers that travel on a line."""
+    return [clamp for clamp in clamps_in(leg.file.pieces) if clamp.travel is not None]
+
+
+def _travel(leg: Leg, clamp: Clamp) -> ProfilerTravel:
+    assert clamp.travel is not None
+    upper, lower = clamp.travel
+    if isinf(lower):  # the end of its wire
+        on = next(piece.index for piece in leg.file.pieces if clamp in piece.clamps)
+        lower = float(leg.line.length[on])
+    places = [_found(leg, clamp, float(at)) for at in np.linspace(upper, lower, PLACES)]
+    component, distance = clamp.component, lower - upper
+    assert isinstance(component, Profiler)
+    return ProfilerTravel(
+        label=clamp.label,
+        upper=places[0],
+        lower=places[-1],
+        worst=max(places, key=lambda place: place.tilt),
+        distance=distance,
+        time=None if component.speed is None else distance / component.speed,
+        profiles=None if component.endurance is None else int(component.endurance // distance),
+    )
+
+
+def _found(leg: Leg, clamp: Clamp, at: float) -> ProfilerPlace:
+    try:
+        file = held(leg.cut(leg.file), clamp.place, at)
+        other = Leg(file, leg.for_surface, leg.memory, given_water=leg.water)
+        clamps = clamps_of(file.pieces[:-1], other.equilibrium())
+    except NoEquilibrium as failure:
+        message = f"With {clamp.label} {at:.0f} m down its wire: {failure.message}"
+        raise NoEquilibrium(failure.status, message, failure.advice) from None
+    row = clamps.label.index(clamp.label)
+    return ProfilerPlace(
+        at, float(clamps.depth[row]), float(clamps.tension[row]), float(clamps.tilt[row])
+    )
+
+
+def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> MooringFile:
+    """Return a file whose profilers stay where they are, one of them at another place.
+
+    Parameters
+    ----------
+    place : of that profiler in the line; None where all stay
+    at : distance from the top of its wire, without load [m]
+    """
+
+    def stays(clamp: Clamp) -> Clamp:
+        return replace(clamp, at=at if clamp.place == place else clamp.at, travel=None)
+
+    pieces = (piece.with_clamps(stays) if piece.clamps else piece for piece in file.pieces)
+    return replace(file, pieces=tuple(pieces))

@@ -1,0 +1,162 @@
+"""The design check: each leg in each environment, then handling, breaks and composition.
+
+Waves, launch and recovery are solved and judged for a single line only, breaks for nets as well.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import date
+
+import numpy as np
+
+from calm.case.design import Design
+from calm.case.leg import Leg
+from calm.checks import assess, assessment, situations
+from calm.checks.arrangement import clamp_place, hardware, metals, release_present, swivel
+from calm.checks.assessment import (
+    Assessment,
+    Handling,
+    MooringInEnvironment,
+    Situation,
+    estimated,
+)
+from calm.checks.catalogue_rules import figures
+from calm.checks.criterion import limits_used
+from calm.checks.finding import AS_GIVEN, OWN
+from calm.checks.handling import backup
+from calm.checks.inventory import inventory_of
+from calm.checks.leg_graph import LegGraph
+from calm.checks.missing import with_missing
+from calm.errors import NoEquilibrium
+from calm.files.legs import stand_in_anchor
+from calm.files.mooring_file import refuse_tow
+from calm.files.pieces import STAND_IN
+from calm.solve import Status, expect_many
+
+NOT_HANDLED = (
+    "a net of legs: each leg is judged by the rules of a line; launch, recovery and "
+    "waves are not judged"
+)
+_NOT_SOLVED = Status.NOT_CONVERGED.because("The launch and the recovery of a net are not solved.")
+
+
+def check(*designs: Design, day: date | None = None) -> Assessment:
+    """Judge a mooring, or a net of legs, by every rule of the design check.
+
+    Parameters
+    ----------
+    designs : the design in each of its environments
+    day : date for the validity of accepts; today by default
+
+    Raises
+    ------
+    UsageError
+        The design is a tow.
+    """
+    for each in designs:
+        refuse_tow(each.file)
+    name = designs[0].file.name
+    expect_many(situations.SOLVES * len(designs))
+    stands = [stand for each in designs for stand in stands_of(each, name, day)]
+    return assessment_of(name, stands, day)
+
+
+def stands_of(design: Design, name: str, day: date | None = None) -> list[MooringInEnvironment]:
+    """Solve a design in its environment, in every situation, and judge each leg.
+
+    A design without equilibrium has one stand, with the reason.
+
+    Parameters
+    ----------
+    name : name of the design in its findings
+    day : date for the validity of accepts; today by default
+    """
+    environment = design.environment.name or OWN
+    given, *changed = situations.situations_of(design)
+    if given[0].failure is not None:
+        return [failed_stand(design, name, given[0].failure)]
+    return [
+        assess.judged_stand(
+            # a failure of a net is the failure of each leg
+            (given[number], *(each[number if len(each) > 1 else 0] for each in changed)),
+            leg,
+            name,
+            f"{environment}: {leg.name}" if design.several else environment,
+            day,
+        )
+        for number, leg in enumerate(design.legs)
+    ]
+
+
+def failed_stand(design: Design, name: str, failure: NoEquilibrium) -> MooringInEnvironment:
+    """Stand of a design without equilibrium, or of one that CALM failed to judge."""
+    environment, situation = design.environment.name or OWN, Situation(AS_GIVEN, None, failure)
+    return assess.judged_stand((situation,), design.legs[0], name, environment)
+
+
+def assessment_of(
+    name: str, stands: Sequence[MooringInEnvironment], day: date | None = None
+) -> Assessment:
+    """Judge the composition, the breaks and the handling of a design.
+
+    Parameters
+    ----------
+    stands : results of `stands_of`, one environment after the other
+    day : date for the validity of accepts
+    """
+    if not stands[0].leg.of_several:
+        return assess.assessment_of(name, stands, day)
+    own: dict[str, MooringInEnvironment] = {}
+    for stand in stands:
+        if stand.result is not None:
+            own.setdefault(stand.leg.name, stand)
+    found = [stand.result for stand in own.values() if stand.result is not None]
+    legs = [each.leg for each in found] or [stands[0].leg]
+    whole = _whole(legs, any(each.type == "surface" for each in found))
+    acceptance = assessment.Acceptance.of_file(whole.file, day)
+    graph = LegGraph(found)
+    breaks, losses = graph.breaks(whole), graph.losses(whole)
+    handling = Handling(estimated(whole), _NOT_SOLVED, _NOT_SOLVED, breaks, losses)
+    first = whole.file.environment.name or OWN
+    once = [(hardware, hardware.judge(handling), first), (figures, figures.judge(handling), first)]
+    if graph.anchored:
+        once.append((release_present, graph.release_verdicts(), first))
+        once.append((backup, backup.judge(handling), first))
+    for stand in own.values():
+        alone = Handling(estimated(stand.leg), _NOT_SOLVED, _NOT_SOLVED, ())
+        once += [(each, each.judge(alone), stand.environment)
+                 for each in (swivel, clamp_place, metals)]  # fmt: skip
+    waters = {stand.leg.file.environment.name: stand.leg for stand in stands}
+    findings = list(assess.findings_of_currents(list(waters.values()), name, acceptance))
+    for rule, verdicts, environment in once:
+        findings += acceptance.findings(rule, verdicts, name, environment)
+    lacking = [one for stand in stands for one in stand.lacking]
+    findings = with_missing((*lacking, *findings), acceptance.parts, name, first)
+    fast = (float(np.hypot(each.water.u, each.water.v).max()) for each in waters.values())
+    if found and max(fast) < situations.LEAST_CURRENT:
+        findings.insert(
+            0, situations.equilibrium.find(situations.STILL_ONLY, name, first, AS_GIVEN)
+        )
+    surface = bool(whole.for_surface)
+    accepted = [*(one for stand in stands for one in stand.accepted), *findings]
+    return Assessment(
+        name=name,
+        stands=tuple(stands),
+        launch=None,
+        recovery=None,
+        backup=breaks,
+        losses=losses,
+        limits=tuple(dict.fromkeys(k for each in legs for k in limits_used(each.file, surface))),
+        inventory=tuple(item for item in inventory_of(whole) if item.use != STAND_IN),
+        findings=tuple(findings),
+        notices=(NOT_HANDLED, *acceptance.notices(accepted)),
+    )
+
+
+def _whole(legs: Sequence[Leg], surface: bool) -> Leg:
+    """Join the pieces of all legs to one leg, with a stand-in for an anchor as the last piece."""
+    pieces = [piece for leg in legs for piece in leg.pieces]
+    pieces.append(stand_in_anchor(0, len(pieces)))
+    listed = tuple(replace(piece, index=index) for index, piece in enumerate(pieces))
+    file = replace(legs[0].file, pieces=listed, legs=())
+    return Leg(file, surface, given_water=legs[0].water)

@@ -1,0 +1,170 @@
+"""Connections between the pieces of a net, and the parts that remain after a break."""
+
+from collections.abc import Collection, Hashable, Iterator, Sequence
+from itertools import pairwise, takewhile
+
+import numpy as np
+
+from calm.case.leg import Leg
+from calm.case.leg_result import LegResult
+from calm.checks.finding import State, Verdict, unknown, verdict_on
+from calm.checks.recovery import Break, Loss, lifts_of, losses_among, required_margin
+from calm.files import Flexible, Piece
+from calm.physics.line import Floats
+
+_SEABED, _HELD = object(), object()
+
+
+class LegGraph:
+    """Connections of a net between pieces, by their index in the file, nodes, and fixed ends.
+
+    Parameters
+    ----------
+    legs : results of the legs; empty for a net without equilibrium
+    """
+
+    def __init__(self, legs: Sequence[LegResult]) -> None:
+        self.pieces: list[Piece] = []
+        self.chains: list[list[Hashable]] = []
+        lifts: list[Floats] = []
+        for leg in legs:
+            own, above = leg.leg, leg.leg.pieces
+            upper, lower = (
+                _HELD if end.held else end.join for end in (leg.leg.top, leg.leg.bottom)
+            )
+            first = len(self.pieces)
+            chain: list[Hashable] = [upper, *range(first, first + len(above)), lower]
+            if own.anchored:
+                chain[-2:] = [_SEABED]
+            self.pieces += above
+            self.chains.append(chain)
+            force = lifts_of(own.line, own.water, leg)  # an anchor lifts nothing
+            lifts.append(np.append(force, 0.0)[: len(above)])
+        self.lifts = np.concatenate(lifts) if lifts else np.zeros(0)
+        self.opened = {
+            (number, at)
+            for number, chain in enumerate(self.chains)
+            for at, one in enumerate(chain)
+            if isinstance(one, int) and self.pieces[one].component.role == "release"
+        }
+
+    @property
+    def anchored(self) -> bool:
+        """Whether the net has an anchor."""
+        return any(_SEABED in chain for chain in self.chains)
+
+    def parts(self, cut: Collection[tuple[int, int]]) -> list[set[Hashable]]:
+        """Connected parts of the net after it parts below some places of its chains, `cut`."""
+        parts: list[set[Hashable]] = []
+        for number, chain in enumerate(self.chains):
+            for at, one in enumerate(chain):
+                if one is None:
+                    continue
+                goes_on = at + 1 < len(chain) and (number, at) not in cut
+                own = {one, chain[at + 1]} - {None} if goes_on else {one}
+                touched = [part for part in parts if part & own]
+                parts = [part for part in parts if not part & own]
+                parts.append(own.union(*touched))
+        return parts
+
+    def _free(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
+        """Pieces of each part without a fixed end, in the order of the file."""
+        return [
+            sorted(one for one in part if isinstance(one, int))
+            for part in self.parts(cut)
+            if not part & {_SEABED, _HELD}
+        ]
+
+    def _rising(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
+        """Free parts with a release, after all releases open."""
+        return [
+            part
+            for part in self._free(self.opened | set(cut))
+            if any(self.pieces[one].component.role == "release" for one in part)
+        ]
+
+    @property
+    def coming_up(self) -> set[int]:
+        """Pieces that come up after all releases open; without a release all pieces but anchors."""
+        parts = self._rising(()) if self.opened else self.chains
+        return {one for part in parts for one in part if isinstance(one, int)}
+
+    def breaks(self, whole: Leg) -> tuple[Break, ...]:
+        """Return the breaks below every piece that comes up, down the file.
+
+        Of each it is judged what is left with a release, all releases being opened; `loose` is what
+        comes off before that.
+        """
+        rising = {one for part in self._rising(()) for one in part}
+        before = {one for part in self._free(()) for one in part}
+        found = []
+        for number, chain in enumerate(self.chains):
+            for at, (one, below) in enumerate(pairwise(chain)):
+                # nothing breaks below an end that hangs free, nor is a release's own end a break
+                opened = (number, at) in self.opened
+                if below is None or opened or not isinstance(one, int) or one not in rising:
+                    continue
+                cut = {(number, at)}
+                off = [each for part in self._free(cut) for each in part if each not in before]
+                margins = [(*self._margin(part, whole), part) for part in self._rising(cut)]
+                if not margins:
+                    continue
+                margin, weight, required, part = min(margins, key=lambda each: each[0] - each[2])
+                label, loose = self.pieces[one].label, float(self.lifts[off].sum())
+                judged = not self._beyond_help(chain, at, part)
+                found.append(Break(one, label, margin, weight, required, judged, loose))
+        return tuple(found)
+
+    def _margin(self, part: list[int], whole: Leg) -> tuple[float, float, float]:
+        lift = self.lifts[part]
+        weight = float(-lift[lift < 0.0].sum())
+        return float(lift.sum()), weight, required_margin(whole, weight)
+
+    def _beyond_help(self, chain: Sequence[Hashable], at: int, part: list[int]) -> bool:
+        """Return whether it parts the cluster of all floats that are left, or what leads from it to
+        the release: as of a single line.
+        """
+        floats = {one for one in part if self._floats(one)}
+        if not floats:
+            return all(self._is(one, "connector", "chain", "release") for one in part)
+        below = list(takewhile(self._in_a_cluster, chain[at:]))
+        return floats <= set(below[1:])
+
+    def _in_a_cluster(self, one: Hashable) -> bool:
+        return isinstance(one, int) and (self._floats(one) or self._is(one, "connector", "chain"))
+
+    def _floats(self, one: int) -> bool:
+        return bool(self.lifts[one] > 0.0) and not self._is(one, "cable")
+
+    def _is(self, one: int, *what: str) -> bool:
+        component = self.pieces[one].component
+        return component.kind in what or component.role in what
+
+    def losses(self, whole: Leg) -> tuple[Loss, ...]:
+        """Return the loss of each buoyant piece or clamp of what comes up."""
+        return tuple(
+            loss
+            for part in self._rising(())
+            for loss in losses_among(
+                whole, [whole.file.pieces[one] for one in part], self.lifts[part]
+            )
+        )
+
+    def release_verdicts(self) -> Iterator[Verdict]:
+        """Return which floats no release frees from their anchors."""
+        held = [
+            self.pieces[one]
+            for part in self.parts(self.opened)
+            if _SEABED in part
+            for one in sorted(each for each in part if isinstance(each, int))
+            if self.lifts[one] > 0.0 and not isinstance(self.pieces[one].component, Flexible)
+        ]
+        for piece in held:
+            message = f"No release lies between {piece.label} and an anchor that holds it."
+            yield unknown(piece, message, "Give the release `role: release`.")
+        if not held and self.opened:
+            number, at = min(self.opened)
+            one = self.chains[number][at]
+            assert isinstance(one, int)
+            told = "The releases free all that floats from its anchors."
+            yield verdict_on(self.pieces[one], State.PASS, told)

@@ -1,0 +1,66 @@
+"""Give the anchors of an imported design weights that hold its line."""
+
+from pathlib import Path
+
+from calm.case import load
+from calm.errors import CalmError
+from calm.exchange import model
+from calm.exchange.design_writer import mooring_text
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+from calm.physics.materials import STEEL_DENSITY
+from calm.quantities import rounded
+
+_HOLDS = 1e8  # N: holds whatever is tied to it
+_IN_WATER = (1.0 - CATALOGUE_DENSITY / STEEL_DENSITY) * STANDARD_GRAVITY  # N of a kilogram of steel
+_DIGITS = 2  # that a guessed weight keeps
+_LEAST = 100.0  # N of a guessed weight
+
+
+def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
+    """Give each anchor a weight where the file gives none, or one that the line would lift.
+
+    The shape of the line does not depend on it. The weight is what `calm check` asks for in this
+    current. A line without an equilibrium is left to `calm run`, which says so. The mooring file is
+    to stand at `output`.
+    """
+    last = design.items if design.legs else design.items[-1:]
+    anchors = [item.component for item in last if item.component.kind == "anchor"]
+    if design.tow is not None or not anchors:
+        return
+    for anchor, pull, required in _pulls(design, anchors, output):
+        mass, weight = anchor.figures.get("mass"), anchor.figures.get("weight")
+        given = weight if weight is not None or mass is None else _IN_WATER * float(mass)
+        if isinstance(given, float) and (pull is None or pull <= given):
+            continue
+        anchor.figures.pop("mass", None)
+        anchor.guesses.pop("mass", None)
+        reason = "the file gives no weight; 1.5 × (V + H/0.6) in this current"
+        anchor.figures["weight"] = rounded(max(required, _LEAST), _DIGITS, up=True)
+        if pull is None:
+            reason = "the file gives no weight; this holds anything"
+            anchor.figures["weight"] = _HOLDS
+        elif given is not None:
+            reason = (
+                f"the file's {given:.5g} N would be lifted: the line pulls up with {pull:.5g} N"
+            )
+        anchor.guesses["weight"] = reason
+
+
+def _pulls(
+    design: model.ImportedDesign, anchors: list[model.ImportedComponent], output: Path
+) -> list[tuple[model.ImportedComponent, float | None, float]]:
+    """Return each anchor, the upward pull of the line on it and the weight that holds it [N]."""
+    before = [anchor.figures for anchor in anchors]
+    for anchor in anchors:
+        anchor.figures = {k: one for k, one in anchor.figures.items() if k != "mass"}
+        anchor.figures["weight"] = _HOLDS
+    try:
+        read = load(output, text=mooring_text(design, "")[0])
+        loads = read.solve().anchors
+    except CalmError:
+        return [(anchor, None, 0.0) for anchor in anchors]
+    finally:
+        for anchor, figures in zip(anchors, before, strict=True):
+            anchor.figures = figures
+    pairs = zip(anchors, loads, strict=True)
+    return [(anchor, load.vertical, load.required_weight or 0.0) for anchor, load in pairs]

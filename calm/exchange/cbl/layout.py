@@ -1,0 +1,293 @@
+"""Lay the layout of a WHOI Cable problem as a mooring, a tow, or a net of legs."""
+
+import math
+from dataclasses import dataclass, replace
+from itertools import zip_longest
+
+from calm.errors import refused
+from calm.exchange import model
+from calm.exchange.cbl import grammar
+from calm.exchange.cbl.components import ComponentMaker, counts_on_depth, varies
+from calm.exchange.cbl.words import Token
+from calm.quantities import bearing_of
+
+_REACHES = 0.97  # of the depth: a line as long reaches the surface
+_PARTS = 12  # lengths of a segment whose drag changes with depth
+_CHANGE = 0.02  # of a drag that is worth two lengths
+_MOST_NODES = 1_000_000
+_ON_THE_BED = 0.05
+"""Share of the depth: an anchor no higher above the seabed stands on it."""
+
+
+_End = grammar.CableTerminal | str
+"""Where a leg of the layout begins or ends: a terminal, or the name of a node."""
+
+
+@dataclass
+class CableLayout:
+    """Lays the line of a problem.
+
+    Attributes
+    ----------
+    problem : whose line it is
+    makers : of components
+    design : to which pieces and legs are added, and whose water counts for drags by depth
+    nodes : where legs of a net join, so far; legs begin where the layout has their first segment
+    """
+
+    problem: grammar.CableProblem
+    makers: ComponentMaker
+    design: model.ImportedDesign
+    nodes: int = 0
+
+    @property
+    def water(self) -> model.ImportedWater:
+        """The water of the design."""
+        assert self.design.water is not None
+        return self.design.water
+
+    @property
+    def depth(self) -> float:
+        """The depth of the water [m]; InputError where the file has none."""
+        if self.water.depth is None:
+            raise refused(self.problem.path, "the environment has no `depth`")
+        return self.water.depth
+
+    def lay_mooring(self) -> None:
+        """Lay the line from the buoy down to the anchor."""
+        items = self._pieces_of(self.problem.segments)
+        lower, upper = self.problem.terminals
+        if "anchor" in upper.values:
+            raise upper.token.refuse("the layout must lead from the anchor up")
+        depth, anchor = self.depth, self._anchor(lower)
+        if upper.buoy is None:
+            raise upper.token.refuse("the upper end is not a buoy")
+        reaches = self.problem.kind == "general" and self.problem.length >= _REACHES * depth
+        buoy = self._buoy(upper, afloat=reaches or self.problem.kind == "surface")
+        self.design.items = [buoy, *reversed(items), model.ImportedPiece(anchor)]
+
+    def lay_tow(self) -> None:
+        """Lay the line from the ship down; a ship at rest in a current moves against it."""
+        items = self._pieces_of(self.problem.segments)
+        body, ship = self.problem.terminals
+        if body.buoy is None or "anchor" in ship.values:
+            raise body.token.refuse("a tow leads from a towed body up to a ship")
+        speeds = (ship.values.get(key) for key in ("x-speed", "y-speed"))
+        east, north = (0.0 if value is None else value.at(0.0) for value in speeds)
+        if not east and not north and self.water.current:
+            _, drift_east, drift_north, _ = self.water.current[0]
+            east, north = 0.0 - drift_east, 0.0 - drift_north
+            moved = [(d, u + east, v + north, w) for d, u, v, w in self.water.current]
+            self.water.current = tuple(moved) if any(any(row[1:]) for row in moved) else ()
+            note = "The ship lay in a current: here it moves, and the water with it."
+            self.design.notes.append(note)
+        speed = math.hypot(east, north)
+        if speed == 0.0:
+            raise ship.token.refuse("the ship of this tow does not move")
+        self.design.tow = model.ImportedTow(speed, bearing_of(east, north))
+        self.design.items = [*items[::-1], self._buoy(body, afloat=False)]
+
+    def lay_net(self) -> None:
+        """Lay a line that has branches, or an anchor at each end, as legs that join.
+
+        InputError: a branch has no end, or nothing stands between two anchors.
+        """
+        first, *others = self.problem.layout
+        assert isinstance(first, grammar.CableTerminal)
+        self._lay(others, first)
+
+    def _anchor(self, end: grammar.CableTerminal) -> model.ImportedComponent:
+        """Return the anchor of an end, as high as that stands."""
+        name = end.values["anchor"].text
+        known, height = self.problem.anchors.get(name), end.values.number("z")
+        anchor = self.makers.anchor(known, name, end.values.number("mu"))
+        if height > 0.0:
+            anchor.figures["length"] = height
+        return anchor
+
+    def _buoy(self, end: grammar.CableTerminal, *, afloat: bool) -> model.ImportedPiece:
+        found = _defined(self.problem.buoys, end.buoy, end.token)
+        return model.ImportedPiece(self.makers.buoy(found, afloat=afloat))
+
+    def _pieces_of(self, segments: list[grammar.CableSegment]) -> list[model.ImportedPiece]:
+        """Return the pieces of segments and their connectors, from the lower one up."""
+        items: list[model.ImportedPiece] = []
+        below, seabed = 0.0, self.water.depth or self.problem.length
+        for segment in segments:
+            length = segment.values.number("length")
+            if length <= 0.0:
+                raise segment.token.refuse("a segment has no length")
+            named = segment.values.get("material")
+            material = _defined(self.problem.materials, named, segment.token)
+            items += self._pieces(segment, material, length, seabed - below)
+            below += length
+            for key in ("top-spool-length", "bottom-spool-length"):
+                if segment.values.number(key) > 0.0:
+                    remark = model.Remark(f"segment of {material.name}", f"{key}: on a winch")
+                    self.design.dropped.append(remark)
+            joint = segment.connector
+            if joint is not None and joint.text.lower() not in ("pinned", "spliced"):
+                items.append(model.ImportedPiece(self._connector(joint)))
+        return items
+
+    def _pieces(
+        self,
+        segment: grammar.CableSegment,
+        material: grammar.CableDefinition,
+        length: float,
+        lower: float,
+    ) -> list[model.ImportedPiece]:
+        """Return a segment, whose lower end is at a depth standing upright, as pieces from below.
+
+        They are several where its drag changes with depth.
+        """
+        clamps = self._clamps(segment, length)
+        count = _PARTS if varies(material) else 1
+        made: list[model.ImportedPiece] = []
+        for part in range(count):
+            depth = max(lower - length * (part + 0.5) / count, 0.0)
+            component = self.makers.material(material, length, depth, self._speed(depth))
+            if made and _alike(made[-1].component, component):
+                made[-1].length = made[-1].extent + length / count
+            else:
+                made.append(model.ImportedPiece(component, length / count))
+        start = 0.0
+        for item in made:
+            end = start + item.extent
+            for height, clamped in clamps:
+                if start <= height < end or (item is made[-1] and height >= end):
+                    item.clamp(clamped, min(max(end - height, 0.0), item.extent))
+            item.guess = "its drag at the depth where it stands upright" if len(made) > 1 else ""
+            start = end
+        for key in ("cdn", "cdt"):
+            value = material.values.get(key)
+            if value is not None and value.rows and not counts_on_depth(value):
+                speed = f"{self._speed(lower - length / 2.0):.3g} m/s"
+                for item in made:
+                    item.guess = item.guess or f"{key} is a table by speed: its value at {speed}"
+        return made
+
+    def _speed(self, depth: float) -> float:
+        """Return the speed of the current at the level next to a depth [m/s]."""
+        levels = self.water.current or ((0.0, 0.0, 0.0, 0.0),)
+        row = min(levels, key=lambda each: abs(each[0] - depth))
+        return math.hypot(row[1], row[2])
+
+    def _clamps(
+        self, segment: grammar.CableSegment, length: float
+    ) -> list[tuple[float, model.ImportedComponent]]:
+        """Return what hangs on the nodes of a segment, with the height above its lower end."""
+        heights = _heights(segment, length) if segment.attachments else []
+        found = []
+        for token, nodes in segment.attachments:
+            component = self._connector(token)
+            for node in nodes:
+                if not 1 <= node <= len(heights):
+                    raise token.refuse(f"node {node}: the segment has nodes 1 to {len(heights)}")
+                found.append((heights[node - 1], component))
+        return found
+
+    def _connector(self, token: Token) -> model.ImportedComponent:
+        found = self.problem.connectors.get(token.text)
+        if found is None:
+            raise token.refuse(f"the connector `{token.text}` is defined nowhere")
+        return self.makers.connector(found)
+
+    def _lay(self, layout: grammar.CableItems, start: _End) -> None:
+        """Lay what follows a terminal or a node, and the branches at the nodes on the way."""
+        segments: list[grammar.CableSegment] = []
+        branched = any(isinstance(each, grammar.CableBranch) for each in layout)
+        last = layout[-1] if layout else None
+        anchored = (
+            isinstance(end, grammar.CableTerminal) and "anchor" in end.values
+            for end in (start, last)
+        )
+        # a line from anchor to anchor is cut where it first can be
+        whole = not branched and all(anchored)
+        for each, following in zip_longest(layout, layout[1:]):
+            if isinstance(each, grammar.CableTerminal):
+                self._leg(start, segments, each)
+                segments = []
+            elif isinstance(each, grammar.CableBranch):
+                self._lay(each.layout, start)
+            else:
+                segments.append(each)
+                cut = whole and not isinstance(start, str) and each.connector is not None
+                if isinstance(following, grammar.CableBranch) or cut:
+                    self.nodes += 1
+                    node = f"node-{self.nodes}"
+                    self._leg(start, segments, node)
+                    start, segments = node, []
+        if segments or not isinstance(last, grammar.CableTerminal):
+            message = "the layout has no `terminal` at the end of a line"
+            raise last.token.refuse(message) if last else refused(self.problem.path, message)
+
+    def _leg(self, start: _End, segments: list[grammar.CableSegment], end: _End) -> None:
+        """Add a leg, turned where what the layout has last is its lower end."""
+        items = self._pieces_of(segments)[::-1]
+        first, lower, low = self._end(start)
+        last, upper, high = self._end(end)
+        if not segments or (low and high):
+            where = start if isinstance(end, str) else end
+            assert not isinstance(where, str)
+            raise where.token.refuse("nothing stands between its two ends, which both go down")
+        if high:
+            items = [_turned(each) for each in items[::-1]]
+            first, lower, last, upper = last, upper, first, lower
+        self.design.lay([*last, *items, *first], upper, lower)
+
+    def _end(self, at: _End) -> tuple[list[model.ImportedPiece], str, bool]:
+        """Return what stands at an end, what holds it, and whether it is a lower one."""
+        if isinstance(at, str):
+            return [], model.joined_at(at), False
+        values, token = at.values, at.token
+        if "node" in values:
+            raise token.refuse("a loop: its end is tied to a node of the line")
+        x, y, z = (values.number(key) for key in ("x", "y", "z"))
+        if "anchor" not in values:
+            buoy = self._buoy(at, afloat=self.problem.kind == "surface")
+            return [buoy], "free", buoy.component.figures.get("role") != "float"
+        if z > _ON_THE_BED * self.depth:
+            return [], model.held_at(self.depth - z, x, y), False
+        return [model.ImportedPiece(self._anchor(at))], model.anchored_at(x, y), True
+
+
+def _turned(item: model.ImportedPiece) -> model.ImportedPiece:
+    """Return a piece with its clamps counted from the other end."""
+    clamps = [replace(each, at=item.extent - each.at) for each in item.clamps[::-1]]
+    return replace(item, clamps=clamps)
+
+
+def _alike(one: model.ImportedComponent, other: model.ImportedComponent) -> bool:
+    pairs = ((one.number(key), other.number(key)) for key in ("cn", "ct"))
+    return all(abs(a - b) <= _CHANGE * max(abs(a), abs(b)) for a, b in pairs)
+
+
+def _heights(segment: grammar.CableSegment, length: float) -> list[float]:
+    """Return the heights of the nodes of a segment above its lower end [m]."""
+    nodes = segment.values.get("nodes")
+    if nodes is None or not nodes.rows or any(len(row) != 2 for row in nodes.rows):
+        raise segment.token.refuse("attachments need `nodes = (count, share)`")
+    heights = [0.0]
+    for count, share in nodes.rows:
+        whole, part, start = round(count.at()), share.at() * length, heights[-1]
+        if not 2 <= whole <= _MOST_NODES:
+            raise nodes.token.refuse("a segment needs two nodes at least")
+        heights += [start + part * k / (whole - 1) for k in range(1, whole)]
+    if abs(heights[-1] - length) > 1e-3 * length:
+        raise nodes.token.refuse(f"the nodes reach over {heights[-1]:g} m of {length:g} m")
+    return heights
+
+
+def _defined(
+    definitions: dict[str, grammar.CableDefinition],
+    value: grammar.KeyValue | None,
+    token: Token,
+) -> grammar.CableDefinition:
+    """Return the definition that a value names; a problem stands at the value, or at `token`."""
+    if value is None or not value.text:
+        raise token.refuse("a name is missing: a material, or a buoy")
+    found = definitions.get(value.text)
+    if found is None:
+        raise value.token.refuse(f"`{value.text}` is defined nowhere")
+    return found

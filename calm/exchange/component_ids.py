@@ -1,0 +1,47 @@
+"""Make ids of the mooring file from the names that other programs give their parts."""
+
+import re
+import unicodedata
+from collections.abc import Iterable
+
+from calm.exchange.model import ImportedComponent
+
+_LONGEST = 40
+_NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
+_SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
+
+
+def _kebab(name: str) -> str:
+    """Return a name as an id: ``3/8" wire rope`` becomes ``3-8in-wire-rope``."""
+    text = "".join(_SIGNS.get(sign, sign) for sign in name)
+    text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
+    text = re.sub(r"(?<=\d)\.(?=\d)", "p", text)
+    return re.sub(r"[^a-z0-9]+", "-", text)[:_LONGEST].strip("-")
+
+
+def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
+    """Return the id of every component, by its `id()`; those with the same figures share one.
+
+    None is one that is `taken` by something else.
+    """
+    components = list(components)
+    ids: dict[int, str] = {}
+    known_ids: dict[tuple[object, ...], str] = {}
+    known = {*taken, *(component.entry for component in components)}
+    for component in components:
+        if component.entry:
+            ids[id(component)] = component.entry
+            continue
+        identity = component.identity()
+        if identity not in known_ids:
+            base = _kebab(component.name)
+            if base in _NO_IDS or not any(sign.isalpha() for sign in base):
+                base = f"{component.kind}-{base}".rstrip("-")
+            chosen, number = base, 1
+            while chosen in known:
+                number += 1
+                chosen = f"{base}-v{number}"
+            known.add(chosen)
+            known_ids[identity] = chosen
+        ids[id(component)] = known_ids[identity]
+    return ids

@@ -1,0 +1,276 @@
+"""Make components of the elements of Mooring Design & Dynamics, with that program's drag."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from calm.exchange import model
+from calm.exchange.mat_file import MatVariables, RealArray, names
+from calm.exchange.part_names import role_of
+from calm.files.definition import CATALOGUE_DENSITY
+from calm.units import KILOGRAM_FORCE
+
+_SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
+_FLAT = 1e-3  # m: height of a float that the file gives none
+_SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
+_HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
+_LARGEST = 1e9  # m, kg: of no piece
+_ROWS = ("B", "Cd", "ME", "Wt")
+GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
+"""The variables of a library that hold elements."""
+
+MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
+"""Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
+polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
+
+
+def piece_of(element: MddElement) -> model.ImportedPiece:
+    """Return the piece of an element that is not the anchor."""
+    if element.is_line:
+        return model.ImportedPiece(_flexible(element), element.length)
+    return model.ImportedPiece(rigid(element))
+
+
+def rigid(element: MddElement) -> model.ImportedComponent:
+    """Return the definition of a rigid element, or of one clamped on.
+
+    That program takes an element with a diameter for a sphere of that diameter, whatever its
+    length, and one with a width alone for a cylinder, whose Cd is for flow across it, without end
+    faces.
+    """
+    lift = element.lift * KILOGRAM_FORCE
+    role = role_of(element.name, lift, fastener=element.is_fastener)
+    figures: dict[str, model.FigureOrWord]
+    if element.diameter > 0.0:
+        kind = "sphere"
+        figures = {"diameter": element.diameter, "length": element.length, "cx": element.cd}
+    elif element.width > 0.0 and element.length > 0.0:
+        kind = "cylinder"
+        figures = {"diameter": element.width, "length": element.length, "cn": element.cd, "ct": 0.0}
+    else:
+        kind = "body"
+        figures = {"length": element.length, "drag_area": 0.0, "cd": element.cd}
+    figures["buoyancy"] = lift
+    if lift > 0.0 and element.mass is not None:
+        figures["mass"] = element.mass
+        volume = (element.mass + element.lift) / element.density
+        figures["buoyancy"] = (CATALOGUE_DENSITY * volume - element.mass) * KILOGRAM_FORCE
+    component = model.ImportedComponent(element.name, kind, {**figures, "role": role})
+    if kind == "body":
+        component.comment = "The file gives it no size, so it has no drag."
+    elif _is_too_small(element):
+        component.guesses["diameter"] = (
+            f"kept as it is, a placeholder: nothing of this size lifts {element.lift:g} kgf, "
+            "so its drag is missing"
+        )
+    return component
+
+
+def rides_by_buoyancy(component: model.ImportedComponent) -> None:
+    """Let a float ride as in that program: its draft and drag follow the buoyancy it uses.
+
+    Its hull displaces, in proportion to the draft, no more than its net buoyancy needs.
+    """
+    lift, height = component.number("buoyancy"), component.number("length")
+    if component.kind not in ("sphere", "cylinder", "body") or lift <= 0.0:
+        return
+    across = component.number("diameter")
+    shown = {
+        "sphere": math.pi / 4.0 * across**2,
+        "cylinder": across * height,
+        "body": component.number("drag_area"),
+    }
+    volume = (1.0 + _SLIGHT) * lift / (CATALOGUE_DENSITY * KILOGRAM_FORCE)
+    component.hull = ((0.0, 0.0, 0.0), (height or _FLAT, volume, shown[component.kind]))
+    component.comment = "At the surface it sinks, and drags, in proportion to the buoyancy it uses."
+
+
+def _is_too_small(element: MddElement) -> bool:
+    """Return whether a float of this size cannot displace enough water for its buoyancy."""
+    if element.diameter > 0.0:
+        volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
+    else:
+        volume = math.pi * element.width**2 * element.length / 4.0
+    return element.lift > CATALOGUE_DENSITY * volume
+
+
+def _flexible(element: MddElement) -> model.ImportedComponent:
+    """Return the definition of a wire, rope or chain; its Cd is of its width."""
+    figures: dict[str, model.FigureOrWord] = {
+        "diameter": element.across,
+        "cn": element.cd,
+        "ct": 0.0,
+    }
+    weight = 0.0 - element.lift * KILOGRAM_FORCE
+    component = model.ImportedComponent.of_line(element.name, weight, figures)
+    modulus = element.modulus
+    if modulus is not None and math.isfinite(modulus):
+        component.figures["stiffness"] = modulus * math.pi / 4.0 * element.across**2
+        if _HARD.search(element.name) and modulus < _SOFT:
+            component.guesses["stiffness"] = (
+                f"the file's modulus of {modulus / 1e9:g} GPa is that of a rope; is it a remnant "
+                "of an edit?"
+            )
+    if component.kind == "chain":
+        component.comment = (
+            "The width in the file is used as the diameter; it is not that of the bar, but "
+            "Cd refers to it."
+        )
+    if element.width > 0.0 and element.diameter > 0.0:
+        component.guesses["diameter"] = "the file gives a width and a diameter of a sphere"
+    return component
+
+
+def anchor_of(element: MddElement) -> model.ImportedComponent:
+    """Return the definition of the lowest element; files give its weight with either sign."""
+    figures: dict[str, model.FigureOrWord] = {
+        "weight": abs(element.lift) * KILOGRAM_FORCE,
+        "length": element.length,
+    }
+    return model.ImportedComponent(element.name, "anchor", figures)
+
+
+@dataclass(frozen=True)
+class MddElement:
+    """One column of ``H``, and the figures that go with it.
+
+    Attributes
+    ----------
+    length, width, diameter : [m]; a sphere has a diameter, all else a width
+    is_line : whether its figures are per metre: wire, rope or chain
+    is_fastener : shackles, links, swivels
+    lift : net buoyancy, of a line per metre [kg]
+    mass : in air, where that version of the program has it [kg]
+    modulus : of a line [Pa]; None where it is not known, inf where it does not stretch
+    number : its column, from 1
+    density : of the water in which it lifts as much [kg/m³]
+    """
+
+    name: str
+    length: float
+    width: float
+    diameter: float
+    is_line: bool
+    is_fastener: bool
+    lift: float
+    cd: float
+    mass: float | None
+    modulus: float | None
+    number: int
+    density: float = CATALOGUE_DENSITY
+
+    @property
+    def across(self) -> float:
+        """Width, or the diameter where there is none [m]."""
+        return self.width or self.diameter
+
+
+def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement], list[str]]:
+    """Return the elements of a line in the order of the file, and what is wrong with them.
+
+    The suffix is ``t`` for the matrices of a tow, ``CO`` for what is clamped on, or nothing.
+    """
+    problems: list[str] = []
+    size = _matrix(variables, f"H{suffix}", problems)
+    count = size.shape[1]
+    for name in (f"B{suffix}", f"Cd{suffix}"):
+        try:
+            if (given := variables.reals(name).size) != count:
+                problems.append(f"`{name}` has {given} values for {count} elements")
+        except ValueError as error:
+            problems.append(str(error))
+    if count > model.MOST_PIECES:
+        problems.append(
+            f"`H{suffix}` has {count} elements; more than {model.MOST_PIECES} are not read"
+        )
+    if problems or not count:
+        return [], problems
+    lift, drag, modulus, mass = (variables.row(f"{name}{suffix}") for name in _ROWS)
+    density = _densities(variables, size[0])
+    elements = []
+    for i, name in enumerate(_names(variables, f"moorele{suffix}", count)):
+        length, width, diameter, flag = (float(value) for value in size[:, i])
+        elements.append(
+            MddElement(
+                name=name,
+                length=length,
+                width=width,
+                diameter=diameter,
+                is_line=round(flag) == 1,
+                is_fastener=round(flag) == 2,
+                lift=float(lift[i]),
+                cd=float(drag[i]),
+                mass=float(mass[i]) if mass.size == count and mass[i] > 0.0 else None,
+                modulus=_modulus(float(modulus[i])) if modulus.size == count else None,
+                number=i + 1,
+                density=float(density[i]),
+            )
+        )
+        problems += mistakes_of(elements[-1], f"element {i + 1}, {name}")
+    return elements, problems
+
+
+def mistakes_of(element: MddElement, where: str) -> list[str]:
+    """Return the figures of an element that no piece of a mooring can have."""
+    sizes = {
+        "length": element.length, "width": element.width, "diameter": element.diameter,
+        "drag coefficient": element.cd,
+    }  # fmt: skip
+    wrong = [
+        f"{where}: its {what} is {value:g}"
+        for what, value in sizes.items()
+        if not 0.0 <= value <= _LARGEST
+    ]
+    if not abs(element.lift) <= _LARGEST:
+        wrong.append(f"{where}: its buoyancy is {element.lift:g}")
+    return wrong
+
+
+def _matrix(variables: MatVariables, name: str, problems: list[str]) -> RealArray:
+    """Return ``H``: four rows, one column an element; the flag is 0 where a row is missing."""
+    try:
+        size = variables.reals(name)
+    except ValueError as error:
+        problems.append(str(error))
+        return np.zeros((4, 0))
+    if size.size == 0:
+        return np.zeros((4, 0))
+    size = np.atleast_2d(size)
+    if size.ndim == 2 and size.shape[0] not in (3, 4) and size.shape[1] in (3, 4):
+        size = size.T
+    if size.ndim != 2 or size.shape[0] not in (3, 4):
+        shape = "×".join(str(length) for length in size.shape)
+        problems.append(f"`{name}` is {shape}; it must have 4 rows, one column an element")
+        return np.zeros((4, 0))
+    return size if size.shape[0] == 4 else np.vstack([size, np.zeros(size.shape[1])])
+
+
+def _densities(variables: MatVariables, length: RealArray) -> RealArray:
+    """Return the density of the water at every element of a line that stands upright [kg/m³]."""
+    levels, density = variables.row("z"), variables.row("rho")
+    if not density.size == levels.size > 0 or not density.min() > 0.0:
+        return np.full(length.size, CATALOGUE_DENSITY)
+    order = np.argsort(levels)
+    heights = np.cumsum(length[::-1])[::-1]
+    return np.interp(heights, levels[order], density[order])
+
+
+def _names(variables: MatVariables, name: str, count: int) -> list[str]:
+    """Return a name for every element, also where the file has none."""
+    value = variables.get(name)
+    found = names(value)
+    if len(found) != count and isinstance(value, np.ndarray) and value.ndim == 2:
+        found = names(value.T)
+    found = (found + [""] * count)[:count]
+    return [each or f"element {i}" for i, each in enumerate(found, 1)]
+
+
+def _modulus(value: float) -> float | None:
+    """Return a modulus of elasticity [Pa]; small whole numbers stand for a material."""
+    if not value > 0.0:
+        return None
+    return MODULI[int(value) - 1] if value in range(1, len(MODULI) + 1) else value

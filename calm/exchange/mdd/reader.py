@@ -1,0 +1,151 @@
+"""Read a `.mat` file of Mooring Design & Dynamics as a design."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+from calm.errors import refused
+from calm.exchange import model
+from calm.exchange.mat_file import MatVariables, read_variables
+from calm.exchange.mdd.elements import (
+    GROUPS,
+    MddElement,
+    anchor_of,
+    piece_of,
+    read_elements,
+    rides_by_buoyancy,
+    rigid,
+)
+from calm.exchange.mdd.water import read_water
+from calm.quantities import bearing_of
+
+_WANTED = frozenset(
+    ["U", "V", "W", "z", "rho", "time", "ZCO", "Jobj", "Pobj", "mooreleCO", "HCO", "BCO", "CdCO"]
+    + [f"{name}{end}" for name in ("H", "B", "Wt", "Cd", "ME", "moorele") for end in ("", "t")]
+    + ["Usp", "Vsp", "afh", *GROUPS]
+)
+_STRETCHED = 1.2  # times its length, a line may reach the surface
+_APART = 0.02  # m and share of the piece by which the two places of a clamp may differ
+_NOTE = (
+    "cn and cx are its Cd. In that program drag along a line or cylinder is negligible, so ct is "
+    "0. See `calm docs import-mdd`."
+)
+
+
+def read_mdd(path: Path) -> model.ImportedDesign:
+    """Read a mooring or a tow.
+
+    InputError: the file is damaged, is none of that program, or holds what CALM cannot represent.
+    """
+    variables = read_variables(path, _WANTED)
+    sized = [name for name in ("H", "Ht") if variables.row(name).size]
+    if not sized and any(group in variables for group in GROUPS):
+        raise refused(
+            path,
+            "is the element library of that program, not a mooring; a list takes its "
+            "figures: --elements FILE",
+        )
+    if not sized:
+        raise refused(path, "holds no mooring (`H`) and no tow (`Ht`) of that program")
+    towed = sized[0] == "Ht"
+    elements, problems = read_elements(variables, "t" if towed else "")
+    clamped, more = read_elements(variables, "CO")
+    if problems := [*problems, *more]:
+        raise refused(path, *problems)
+    program = "Mooring Design & Dynamics"
+    design = model.ImportedDesign(program, path.stem, [], None, notes=[_NOTE], in_kilograms=True)
+    try:
+        design.water, design.record = read_water(variables, towed, design.guessed)
+    except ValueError as error:
+        raise refused(path, str(error)) from None
+    if design.record is not None:
+        design.notes.append("The current is the first profile of the record beside this file.")
+    if towed:
+        _lay_tow(design, elements, variables, path)
+    else:
+        _lay_mooring(design, elements, path)
+    if clamped:
+        _clamp(design, clamped, variables, path)
+    return design
+
+
+def _lay_mooring(design: model.ImportedDesign, elements: list[MddElement], path: Path) -> None:
+    last = elements[-1]
+    if last.is_line or len(elements) < 2 or last.lift == 0.0:
+        raise refused(path, f"element {last.number}, {last.name}, is not an anchor with a weight")
+    design.items = [piece_of(element) for element in elements[:-1]]
+    design.items.append(model.ImportedPiece(anchor_of(last)))
+    depth = design.water.depth if design.water is not None else None
+    if depth is None or _STRETCHED * sum(item.extent for item in design.items) >= depth:
+        design.items[0] = piece_of(replace(elements[0], mass=None))
+        rides_by_buoyancy(design.items[0].component)
+
+
+def _lay_tow(
+    design: model.ImportedDesign, elements: list[MddElement], variables: MatVariables, path: Path
+) -> None:
+    """Lay a tow: the file runs from the body up, and ends with a mark for the ship."""
+    end = elements[-1]
+    if not end.is_line and end.length <= 0.01 and abs(end.lift) <= 0.011 and len(elements) > 1:
+        elements = elements[:-1]
+    design.items = [piece_of(element) for element in reversed(elements)]
+    east, north = variables.first("Usp"), variables.first("Vsp")
+    speed = math.hypot(east, north)
+    if speed == 0.0:
+        raise refused(path, "the ship of this tow does not move (`Usp`, `Vsp`)")
+    design.tow = model.ImportedTow(speed, bearing_of(east, north))
+    height = variables.first("afh")
+    if height > 0.0:
+        what = f"an A-frame of {height:g} m is only drawn: the wire counts from the water"
+        design.dropped.append(model.Remark("afh", what))
+
+
+def _clamp(
+    design: model.ImportedDesign, clamped: list[MddElement], variables: MatVariables, path: Path
+) -> None:
+    """Hang what is clamped on: by element and share of its length, counted from its lower end."""
+    host, share, height = (variables.row(name).tolist() for name in ("Jobj", "Pobj", "ZCO"))
+    by_share = len(host) == len(share) == len(clamped)
+    by_height = len(height) == len(clamped)
+    if not by_share and not by_height:
+        counts = f"`Jobj` {len(host)}, `Pobj` {len(share)}, `ZCO` {len(height)}"
+        raise refused(path, f"{len(clamped)} clamps without their places: {counts}")
+    for i, element in enumerate(clamped):
+        above = _by_height(design.items, height[i]) if by_height else None
+        place, guess = above, "from its height alone"
+        if by_share:
+            place, guess = _by_share(design, host[i], share[i]), ""
+            if place is None:
+                raise refused(path, f"{element.name} is clamped on element {host[i]:g}: none")
+            if above is not None and not _agree(place, above):
+                guess = f"`ZCO` has it at {height[i]:g} m, elsewhere than `Jobj` and `Pobj`"
+        if place is None:
+            raise refused(path, f"{element.name} is clamped at {height[i]:g} m, off the line")
+        design.items[place[0]].clamp(rigid(element), place[1], guess)
+
+
+def _by_share(design: model.ImportedDesign, host: float, share: float) -> tuple[int, float] | None:
+    """Return the piece that an element became, and how far below its upper end a share of it is."""
+    count, number = len(design.items), round(host) - 1
+    if design.tow is not None:
+        number = count - 1 - number
+    if not (0 <= number < count) or not -1e-6 <= share <= 1.0 + 1e-6:
+        return None
+    # in a tow the program counts from the body up: from the lower end, too
+    length = design.items[number].extent
+    return number, min(max((1.0 - share) * length, 0.0), length)
+
+
+def _by_height(items: list[model.ImportedPiece], height: float) -> tuple[int, float] | None:
+    """Return the piece at a height above the seabed (in a tow above the lower end of the body)."""
+    below = 0.0
+    for number in range(len(items) - 1, -1, -1):
+        length = items[number].extent
+        if below <= height <= below + length and length > 0.0:
+            return number, length - (height - below)
+        below += length
+    return None
+
+
+def _agree(one: tuple[int, float], other: tuple[int, float]) -> bool:
+    return one[0] == other[0] and abs(one[1] - other[1]) <= _APART + _APART * abs(one[1])

@@ -1,0 +1,102 @@
+"""Read the water of a file of Mooring Design & Dynamics: levels, and currents at several times."""
+
+import numpy as np
+
+from calm.exchange import model
+from calm.exchange.current_record import CurrentRecord
+from calm.exchange.mat_file import MatVariables, RealArray
+
+_MATLAB_EPOCH = 719529.0  # datenum of 1 January 1970
+_EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this age
+
+
+def read_water(
+    variables: MatVariables, towed: bool, guessed: list[model.Remark]
+) -> tuple[model.ImportedWater | None, CurrentRecord | None]:
+    """Return the environment of a file, and the record where it has several profiles.
+
+    In a mooring `z` is the height above the seabed and its greatest the depth of the water, in a
+    tow it is the depth. The current is the first profile of the record.
+
+    Parameters
+    ----------
+    variables : of the file
+    towed : whether it is a tow
+    guessed : to which what is guessed about times and density is added
+
+    Raises
+    ------
+    ValueError
+        The sizes of the variables do not go together.
+    """
+    levels = variables.reals("z").ravel()
+    if not np.any(levels > 0.0):
+        return None, None
+    if not np.all(np.isfinite(levels)) or np.any(levels < 0.0):
+        raise ValueError("`z` must be heights of 0 and more")
+    seabed = float(levels.max())
+    profiles = [_profiles(variables, name, levels.size) for name in "UVW"]
+    if profiles[0] is None and profiles[1] is None:
+        return None, None
+    times = max(each.shape[1] for each in profiles if each is not None)
+    u, v, w = (
+        _filled(each, name, levels.size, times) for each, name in zip(profiles, "UVW", strict=True)
+    )
+    densities = _profiles(variables, "rho", levels.size)
+    density = np.zeros(0) if densities is None else densities[:, 0]
+    if densities is not None and densities.shape[1] > 1:
+        if not np.all(np.isfinite(density)):
+            raise ValueError("`rho` has gaps in its first profile")
+        what = f"the first of {densities.shape[1]} profiles; a mooring has one density"
+        guessed.append(model.Remark("environment.density", what))
+    order = np.arange(levels.size) if towed else np.argsort(seabed - levels, kind="stable")
+    depth = np.sort(levels) if towed else (seabed - levels)[order]
+    u, v, w = u[order], v[order], w[order]
+    keep = np.append(True, np.diff(depth) > 0.0)
+    water = model.ImportedWater(None if towed else seabed)
+    if density.size:
+        rows = list(zip(depth[keep].tolist(), density[order][keep].tolist(), strict=True))
+        alike = all(row[1] == rows[0][1] for row in rows)
+        water.density = rows[0][1] if alike else tuple(rows)
+    first = np.column_stack([depth, u[:, 0], v[:, 0], w[:, 0]])[keep]
+    if np.any(first[:, 1:]) or times > 1:
+        water.current = tuple((float(d), float(e), float(n), float(up)) for d, e, n, up in first)
+    if times == 1:
+        return water, None
+    days, epoch = _days(variables.reals("time").ravel(), times, guessed)
+    return water, CurrentRecord(days, epoch, depth[keep], u[keep].T, v[keep].T, w[keep].T)
+
+
+def _profiles(variables: MatVariables, name: str, levels: int) -> RealArray | None:
+    """Speeds by level and time: one profile lies down or stands, several have a row a level."""
+    values = variables.reals(name)
+    if values.size == 0:
+        return None
+    values = np.atleast_2d(values)
+    if values.ndim == 2 and values.shape[0] == levels:
+        return values
+    if values.ndim == 2 and values.shape[1] == levels:
+        return values.T
+    shape = "×".join(str(length) for length in values.shape)
+    raise ValueError(f"`{name}` is {shape} for {levels} values of `z`")
+
+
+def _filled(values: RealArray | None, name: str, levels: int, times: int) -> RealArray:
+    if values is None:
+        return np.zeros((levels, times))
+    if values.shape[1] not in (1, times):
+        raise ValueError(f"`{name}` has {values.shape[1]} profiles, the others {times}")
+    if not np.all(np.isfinite(values[:, 0])):
+        raise ValueError(f"`{name}` has gaps in its first profile")
+    return np.broadcast_to(values, (levels, times))
+
+
+def _days(time: RealArray, times: int, guessed: list[model.Remark]) -> tuple[RealArray, str]:
+    """Days, and the date from which they count."""
+    if time.size != times:
+        guessed.append(model.Remark("record.time", "an hour between profiles, from 2000-01-01"))
+        return np.arange(times) / 24.0, "2000-01-01"
+    if np.all((time > _EARLIEST) & (time < _LATEST)):
+        return time - _MATLAB_EPOCH, "1970-01-01"
+    guessed.append(model.Remark("record.time", "days from 2000-01-01"))
+    return time - time[0], "2000-01-01"

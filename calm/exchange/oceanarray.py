@@ -1,0 +1,383 @@
+"""Read the configuration of a mooring in oceanarray, a file `NAME.mooring.yaml`.
+
+`inline` names the pieces of the line and `clamp` the instruments beside it, both with heights above
+the bottom and most without any figure: those come from a library of elements or the catalogue.
+Where no rope is listed between two pieces, there is one as long as their heights leave room for.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from calm.assemble.catalogue_search import Index
+from calm.errors import InputError, Problem, refused
+from calm.exchange import model
+from calm.exchange.part_names import is_called
+from calm.exchange.registry import register_format
+from calm.exchange.table.cells import number, unit_called
+from calm.exchange.table.components import component_of
+from calm.exchange.table.library import Library, complete_rows, key_of, read_library
+from calm.exchange.table.rows import ListRow
+from calm.files import Anchor, Catalogue
+from calm.files.components import FLEXIBLE_KINDS, Component
+from calm.files.yaml_document import Document, read_document
+from calm.positions import plain_degrees
+
+ROPE = "rope"
+"""The name of what is between pieces where the file lists nothing."""
+_NAMES = ("component_id", "label", "hardware_type", "category", "instrument")  # of what it is
+_CLOSE = 0.05  # m between pieces that touch
+_OFF, _ROUNDED = 0.02, 0.5  # of a length, and m, that heights may differ by: most are whole metres
+_MARKS = re.compile(rb"^(clamp|inline|instruments) *:", re.M)
+_PLACES = ("seabed", "deployment", "planned", "")  # of a position, the most exact first
+_MASS = re.compile(r"(\d+(?:\.\d+)?) *kg\b")
+
+
+def is_oceanarray(content: bytes) -> bool:
+    """Return whether a file is such a configuration, by its keys."""
+    return re.search(rb"^waterdepth *:", content, re.M) is not None and bool(_MARKS.search(content))
+
+
+def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
+    """Read such a configuration.
+
+    InputError: it lists no line, a height or length is missing or wrong, or nothing is known of a
+    name.
+    """
+    document, problems = read_document(path), list[Problem]()
+    library = {} if options.elements is None else read_library(options.elements)
+    reading = _Reading(document, problems)
+    depth = reading.depth = reading.metres(document.data, (), "waterdepth")
+    line = reading.entries("inline")
+    beside = [*reading.entries("clamp"), *reading.entries("instruments")]
+    if depth is None and not problems:
+        reading.refuse((), "needs `waterdepth`")
+    if not line:
+        said = f"lists {len(beside)} instruments and no line: its floats, releases and anchor, with"
+        said += " `hab` or `length` and a name in `label`, belong under `inline`"
+        reading.refuse((), said)
+    if len(line) + len(beside) > model.MOST_PIECES:
+        reading.refuse((), f"has more than {model.MOST_PIECES} pieces")
+    if problems:
+        raise InputError(problems)
+    parts = _Parts(reading, options.defines, library)
+    design = model.ImportedDesign(
+        "oceanarray", str(document.data.get("name") or path.stem), [], None
+    )
+    _hang(beside, _strung(line, parts, design), parts)
+    design.water = model.ImportedWater(depth, guesses={"current": "the file has none: still water"})
+    design.heading = _heading(reading)
+    if problems:
+        raise InputError(sorted(problems, key=lambda problem: problem.line))
+    return design
+
+
+_Location = tuple[str | int, ...]
+"""Where something stands in the file: keys, and numbers of items."""
+
+_Found = tuple[model.ImportedComponent, str]
+"""What a name stands for, and what of that is guessed."""
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """Hold what an item of the file says; heights are above the bottom [m].
+
+    `place` is where it stands, `names` what it is called, the most exact first, `instrument` the
+    word of oceanarray for one; of `middle`, `bottom` and `top` one is known, or none.
+    """
+
+    place: _Location
+    names: tuple[str, ...]
+    instrument: str
+    label: str
+    serial: str
+    length: float | None
+    middle: float | None
+    bottom: float | None
+    top: float | None
+    count: int
+
+    @property
+    def height(self) -> float | None:
+        """Return its height, by whichever is given."""
+        given = (self.middle, self.bottom, self.top)
+        return next((one for one in given if one is not None), None)
+
+    @property
+    def is_anchor(self) -> bool:
+        """Return whether it is called an anchor."""
+        return is_called(" ".join(self.names), "anchor")
+
+    def lower_end(self, extent: float) -> float | None:
+        """Return the height of its lower end, so long as it is [m]."""
+        if self.is_anchor:
+            return 0.0
+        if self.bottom is not None:
+            return self.bottom
+        if self.top is not None:
+            return self.top - extent
+        return None if self.middle is None else self.middle - 0.5 * extent
+
+
+@dataclass
+class _Reading:
+    """Read the items of the file; what is wrong with it is added to `problems`."""
+
+    document: Document
+    problems: list[Problem]
+    depth: float | None = None
+
+    def refuse(self, place: _Location, said: str) -> None:
+        """Add what is wrong at a place."""
+        self.problems.append(self.document.problem(place, said))
+
+    def metres(self, item: Mapping[str, Any], place: _Location, key: str) -> float | None:
+        """Return a length or height of an item [m]; None where there is none."""
+        if item.get(key) is None:
+            return None
+        found = number(str(item[key]))
+        try:
+            unit = unit_called(found.rest, "length")
+            if found.value is None:
+                raise ValueError(found.wrong or "is empty")
+            return found.value * (unit.factor if unit else 1.0)
+        except ValueError as error:
+            self.refuse((*place, key), f"{key}: {error}")
+            return None
+
+    def entries(self, key: str) -> list[_Entry]:
+        """Return the items of a list from the top down."""
+        items: Any = self.document.data.get(key) or []
+        if not isinstance(items, list):
+            self.refuse((key,), f"{key}: a list is needed")
+            return []
+        read = (self._entry(item, (key, index)) for index, item in enumerate(items))
+        found = [entry for entry in read if entry is not None]
+        ends = [entry.height for entry in found if entry.height is not None]
+        rising = len(ends) > 1 and ends[0] < ends[-1]
+        return found[::-1] if rising or (found and found[0].is_anchor) else found
+
+    def _entry(self, item: Any, place: _Location) -> _Entry | None:
+        if not isinstance(item, dict):
+            self.refuse(place, "an item with keys is needed")
+            return None
+        words = [str(item[name]).strip() for name in _NAMES if item.get(name)]
+        if not words:
+            self.refuse(place, f"needs a name: one of {', '.join(_NAMES)}")
+            return None
+        keys = ("hab", "hab_bottom", "hab_top", "depth", "length", "repeat")
+        middle, bottom, top, down, length, repeat = (self.metres(item, place, key) for key in keys)
+        if middle is None and down is not None and self.depth is not None:
+            middle = self.depth - down
+        if not 1.0 <= (repeat or 1.0) <= model.MOST_PIECES:
+            self.refuse((*place, "repeat"), f"repeat: 1 to {model.MOST_PIECES} are read")
+            return None
+        instrument = str(item.get("instrument") or "").strip()
+        label = str(item.get("label") or words[0]).strip()
+        serial = str(item.get("serial") or "").strip().rstrip("*")
+        names, count = tuple(dict.fromkeys(words)), int(repeat or 1.0)
+        return _Entry(place, names, instrument, label, serial, length, middle, bottom, top, count)
+
+
+@dataclass
+class _Parts:
+    """Look names up: in the catalogue as asked, in the library, or in the catalogue."""
+
+    reading: _Reading
+    stands_for: Mapping[str, str]
+    library: Library
+    catalogue: Catalogue = field(default_factory=Catalogue.load)
+    _known: dict[tuple[str, ...], _Found | None] = field(default_factory=dict)
+
+    def of(self, entry: _Entry) -> _Found | None:
+        """Return what an item is, and what of that is guessed; None where nothing is known."""
+        said = f"neither the library nor the catalogue has `{entry.names[0]}`"
+        return self._named(entry.names, entry.instrument, entry.place, said)
+
+    def rope(self, entry: _Entry, between: str) -> _Found | None:
+        """Return the rope below an item, between pieces where none is listed."""
+        return self._named((ROPE,), "", entry.place, f"no line is listed {between}")
+
+    def _named(
+        self, names: tuple[str, ...], instrument: str, place: _Location, said: str
+    ) -> _Found | None:
+        if names not in self._known:
+            self._known[names] = self._found(names, instrument)
+            if self._known[names] is None:
+                said += f'; give it in --elements FILE, or an id for it: --define "{names[0]}=ID"'
+                self.reading.refuse(place, said)
+        return self._known[names]
+
+    def _found(self, names: tuple[str, ...], instrument: str) -> _Found | None:
+        for name in names:
+            if id := self.stands_for.get(name, ""):
+                return self._entry(name, id), ""
+        for name in names:
+            if (element := self.library.get(key_of(name))) is not None:
+                row = ListRow(1, name, figures={"length": 1.0} if element.line else {})
+                complete_rows([row], self.library, "the library")
+                component = component_of(row, anchor=row.is_anchor)
+                reading = self.reading
+                reading.problems += refused(reading.document.path, *row.problems).problems
+                return component, ""
+        if is_called(" ".join(names), "anchor"):
+            return self._anchor(names), ""
+        for name in names:
+            if self.catalogue.entry(name) is not None:
+                return self._entry(name, name), ""
+        if found := instrument and Index(self.catalogue).search(instrument):
+            guess = f"the first that `calm catalog search {instrument}` finds"
+            return self._entry(instrument, found[0].id), guess
+        return None
+
+    def _entry(self, name: str, id: str) -> model.ImportedComponent:
+        definition = self.catalogue.get(id)
+        length = getattr(definition, "length", None) or 0.0
+        kind = definition.kind if isinstance(definition, Component) else "body"
+        kind = "anchor" if isinstance(definition, Anchor) else kind
+        return model.ImportedComponent(name, kind, {"length": float(length)}, entry=id)
+
+    def _anchor(self, names: tuple[str, ...]) -> model.ImportedComponent:
+        mass = _MASS.search(" ".join(names))
+        anchor = model.ImportedComponent(names[0], "anchor", {"length": 0.0})
+        if mass:
+            anchor.figures["mass"] = float(mass[1])
+            anchor.guesses["mass"] = "read from its label, taken as steel"
+        return anchor
+
+
+@dataclass(frozen=True)
+class _Strung:
+    """A line with the heights of its pieces' lower ends, as the file has them and by lengths."""
+
+    items: list[model.ImportedPiece]
+    nominal: list[float]
+    height: list[float]
+
+
+def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> _Strung:
+    """Return the pieces from the anchor up, ropes between them, and put them into the design."""
+    items: list[model.ImportedPiece] = []
+    nominal, height = [0.0], [0.0]  # of lower ends; the last is that of the piece to come
+    if not line[-1].is_anchor:
+        items.append(
+            model.ImportedPiece(model.ImportedComponent("anchor", "anchor", {"length": 0.0}))
+        )
+        nominal, height = [0.0, 0.0], [0.0, 0.0]
+        design.guessed.append(model.Remark("line.anchor", "the file has none"))
+    below, roped = "the anchor", 0.0
+
+    def add(item: model.ImportedPiece, at: float, extent: float) -> None:
+        items.append(item)
+        nominal[-1] = at
+        nominal.append(at + extent)
+        height.append(height[-1] + extent)
+
+    for entry in reversed(line):
+        found = parts.of(entry)
+        if found is None:
+            continue
+        component, guess = found
+        flexible = component.kind in FLEXIBLE_KINDS
+        extent = entry.length if flexible else component.number("length")
+        if extent is None:
+            said = f"`{entry.label}` is a line and needs a `length`"
+            parts.reading.refuse(entry.place, said)
+            continue
+        at = nominal[-1]
+        lower = None if flexible else entry.lower_end(extent * entry.count)
+        if lower is not None and items:
+            gap = lower - nominal[-1]
+            if gap > _CLOSE and not roped:
+                between = f"between {below} and `{entry.label}`, {gap:.6g} m above it"
+                if (rope := parts.rope(entry, between)) is not None:
+                    piece = model.ImportedPiece(
+                        rope[0], gap, guess="as long as the heights leave room"
+                    )
+                    add(piece, nominal[-1], gap)
+            elif roped and abs(gap) > max(_OFF * roped, _ROUNDED):
+                said = (
+                    f"its lines below are {roped:.6g} m long, its height says {roped + gap:.6g} m"
+                )
+                design.guessed.append(model.Remark(entry.label, said))
+            elif gap < -_CLOSE:
+                said = f"stands {-gap:.3g} m within what is below it: put on top of that"
+                design.guessed.append(model.Remark(entry.label, said))
+                lower = nominal[-1]
+            at, below, roped = lower, f"`{entry.label}`", 0.0
+        elif flexible:
+            roped += extent * entry.count
+        for repeat in range(entry.count):
+            piece = model.ImportedPiece(
+                component, extent if flexible else None, guess=guess,
+                label=entry.label if entry.count == 1 else "",
+                serial=entry.serial if entry.count == 1 else "",
+            )  # fmt: skip
+            add(piece, at + repeat * extent, extent)
+    labels = [item.label for item in items]
+    for item in items:
+        item.label *= labels.count(item.label) == 1
+    design.items = items[::-1]
+    return _Strung(items, nominal, height)
+
+
+def _hang(beside: list[_Entry], strung: _Strung, parts: _Parts) -> None:
+    """Clamp instruments on the lines at their heights, or at the nearest end of one."""
+    lines = [i for i, one in enumerate(strung.items) if one.component.kind in FLEXIBLE_KINDS]
+    if beside and not lines and not parts.reading.problems:
+        parts.reading.refuse(("inline",), "has no line to clamp instruments on")
+    nominal, height = np.array(strung.nominal), np.array(strung.height)
+    for entry in beside:
+        found, asked = parts.of(entry), entry.height
+        if asked is None:
+            said = f"`{entry.label}` needs `hab`, its height above the bottom"
+            parts.reading.refuse(entry.place, said)
+        if found is None or asked is None or not lines:
+            continue
+        top = float(np.interp(asked, nominal, height)) + max(asked - float(nominal[-1]), 0.0)
+        own = min(lines, key=lambda i: max(height[i] - top, top - height[i + 1], 0.0))
+        at = float(np.clip(height[own + 1] - top, 0.0, height[own + 1] - height[own]))
+        off = abs(float(height[own + 1]) - at - top)
+        guess = found[1]
+        if off > _CLOSE:
+            guess = f"{guess}; " * bool(guess) + f"moved by {off:.3g} m onto the nearest line"
+        host = strung.items[own]
+        host.clamp(found[0], round(at, 3), guess, f"{entry.label} {asked:g}", entry.serial)
+
+
+def _heading(reading: _Reading) -> dict[str, str]:
+    """Return further keys of the mooring file: position, ship and cruise."""
+    data, lines = reading.document.data, dict[str, str]()
+    for name in _PLACES:
+        keys = [f"{name}_{what}".lstrip("_") for what in ("latitude", "longitude")]
+        if not all(data.get(key) for key in keys):
+            continue
+        found = []
+        for key in keys:
+            try:
+                found.append(plain_degrees(str(data[key]), key.rpartition("_")[2]))
+            except ValueError as error:
+                reading.refuse((key,), f"{key}: `{data[key]}` {error}")
+        if len(found) == 2:
+            place = (f"{angle:.6f}".rstrip("0").rstrip(".") for angle in found)
+            latitude, longitude = place
+            lines["position"] = f"{{latitude: {latitude} deg, longitude: {longitude} deg}}"
+        break
+    said = {"ship": "deployment_ship", "cruise": "deployment_cruise"}
+    known = {key: data.get(key) or data.get(other) for key, other in said.items()}
+    if any(known.values()):
+        from calm.exchange.design_writer import quoted
+
+        text = ", ".join(f"{key}: {quoted(str(value))}" for key, value in known.items() if value)
+        lines["document"] = f"{{{text}}}"
+    return lines
+
+
+register_format(
+    "oceanarray", is_oceanarray, read_oceanarray, program="oceanarray", takes_elements=True
+)

@@ -1,0 +1,92 @@
+"""What the names of parts say about them, in the languages of their lists."""
+
+import re
+
+_CHAIN = r"chain|cha[iî]ne|\w*kette\b|\bkjetting|\bcadena"
+_NAMES = {
+    "chain": _CHAIN,
+    "release": (
+        r"\brelease|\bacoustic rel|\blargu|\blargage|\bar[ -]?\d{3}|\bcdms ar\b|\b8242\b|\b866\b"
+        r"|ausl[öo]se|utl[øo]se|\bliberador|\bsuelta"
+    ),
+    "connector": (
+        r"shackle|\bshac|swivel|sling|\blink|pear|\bring|ringlet|miller|manille|[ée]merillon|maillon"
+        r"|anneau|sch[äa]kel|wirbel|\bgrillete|giratorio|anilla|thimble|kausch|guardacabo"
+    ),
+    "anchor": (
+        r"anchor|sinker|railway|\blest|\bancre|\bcorps.mort|dead ?weight|clump|\banker|grundgewicht"
+        r"|\bancla|\bmuerto|\blastre"
+    ),
+    "rigid": (
+        r"float|buoy|sphere|syntactic|instrument|sensor|logger|release|hardware|connector|shackle|swivel"
+        r"|bou[ée]e|flotteur|capteur|auftrieb|boje|kugel|ger[äa]t|boya|flotador|esfera|sonde|terminal"
+        r"|\bbody\b|cylinder"
+    ),
+    "line": (
+        f"{_CHAIN}|"
+        r"wire|rope|\blines?\b|\bcable|c[âa]ble\b|cordage|filin|aussi[èe]re|\bbout\b|seil\b|seile\b|draht"
+        r"|leine\b|\btau\b|trosse|kabel|\bcabo\b|cuerda|estacha|tether|hawser|\bwarp\b|nilspin|jetstr"
+        r"|kevlar|aramid|twaron|technora|vectran|nylon|polyamid|dacron|polyester|polyprop|polysteel|danline"
+        r"|dyneema|spectra|uhmwpe|\bhmpe|amsteel|plasma|tenex|samson|colmega|dynex|steelite|phillystran"
+        r"|braid|strand|\b\d{1,2}x\d{1,2}\b(?!.*(?:\bgla|\bball|verre|vidrio|\bin\b|[\"\u2033]))|\bmanila\b|sisal|hemp\b|umbilical|\bcoax"
+    ),
+}
+"""Names of parts in the languages of their lists, by what these are."""
+
+_HEAVY = 20.0  # N: nothing that only joins weighs more, whatever it is called
+_LONG, _SLENDER = 3.0, 60.0
+"""Metres, and diameters, of which a piece is longer where it is a line, whatever it is called."""
+
+_LONGEST_PIECE = 20.0  # m of a rigid piece
+
+
+def is_called(name: str, *what: str) -> bool:
+    """Return whether a name is that of a release, chain, connector, anchor, line or rigid part.
+
+    Connectors are shackles, swivels and links; lines are wires, ropes and chains; floats,
+    instruments and fittings, or their kinds and families, are rigid.
+    """
+    return any(re.search(_NAMES[each], name, re.I) for each in what)
+
+
+def is_long(name: str, length: float, across: float) -> bool:
+    """Return whether a piece is a line by its size, whatever it is called.
+
+    Parameters
+    ----------
+    length, across : of the piece [m]; 0 where it is not known how wide it is
+    """
+    if is_called(name, "release", "connector"):
+        return False
+    slender = length >= _LONG and across > 0.0 and length >= _SLENDER * across
+    return slender or length >= _LONGEST_PIECE
+
+
+def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
+    """Return the role of a rigid piece by its name and its net force in water [N, positive up].
+
+    Parameters
+    ----------
+    name : as its program calls it
+    buoyancy : net force in water, positive up [N]
+    fastener : whether its program marks it so, which may mark instruments and floats too
+    """
+    if is_called(name, "release"):
+        return "release"
+    if is_called(name, "connector") and buoyancy <= 0.0:
+        return "connector"
+    if buoyancy > 0.0:
+        return "float"
+    return "connector" if fastener and buoyancy > -_HEAVY else "instrument"
+
+
+def size_in(name: str) -> float:
+    """Return a diameter in a name such as `8 mm wire` or `3/8" chain` [m]; 0 without one."""
+    found = re.search(r"(\d+(?:[.,]\d+)?)\s*mm\b", name, re.I)
+    if found:
+        return float(found[1].replace(",", ".")) / 1000.0
+    found = re.search(r"(?:(\d+)[ -])?(\d+)/(\d+)", name)
+    if found and int(found[3]):
+        return (int(found[1] or 0) + int(found[2]) / int(found[3])) * 0.0254
+    found = re.search(r"(\d+(?:[.,]\d+)?)\s*(?:\"|''|in\b|inch)", name, re.I)
+    return float(found[1].replace(",", ".")) * 0.0254 if found else 0.0

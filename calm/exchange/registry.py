@@ -1,0 +1,147 @@
+"""The register of file formats: how each is recognised, read and written.
+
+A format is a module that calls `register_format`. The module is imported when the format is first
+used. Other packages add formats by the entry point ``calm.formats``, which names their modules.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from calm.errors import CalmError
+
+if TYPE_CHECKING:
+    from calm.exchange.exported_parts import ExportedDesign
+    from calm.exchange.model import ImportedDesign, ImportOptions
+
+ENTRY_POINTS = "calm.formats"
+"""The group of entry points under which packages name the modules of their formats."""
+
+_OWN = {
+    "mdd": "calm.exchange.mdd",
+    "cbl": "calm.exchange.cbl",
+    "moordyn": "calm.exchange.moordyn",
+    "oceanarray": "calm.exchange.oceanarray",
+    "moords": "calm.exchange.moords",
+    "table": "calm.exchange.table",
+    "csv": "calm.exchange.table",
+}
+"""CALM's own formats and their modules, in the order in which they are tried on a file. `table` is
+the last that reads, since it takes any text in columns."""
+
+
+@dataclass(frozen=True)
+class Exported:
+    """A file for another program.
+
+    Attributes
+    ----------
+    content : of the file
+    lost : features of the design that the format cannot represent
+    beside : content of further files, by their names in the same folder
+    """
+
+    content: bytes
+    lost: tuple[str, ...]
+    beside: Mapping[str, bytes] = field(default_factory=dict)
+
+
+Detect = Callable[[bytes], bool]
+"""Whether a file is of a format, by its first 70 000 bytes."""
+
+Read = Callable[[Path, "ImportOptions"], "ImportedDesign"]
+"""Read a file as a design; `calm.errors.refused` makes the error for a file that it cannot read."""
+
+Write = Callable[["ExportedDesign"], Exported]
+"""Write a design as a file of the format."""
+
+
+@dataclass(frozen=True)
+class FileFormat:
+    """A format of design files, as `register_format` describes it."""
+
+    name: str
+    program: str
+    detect: Detect | None
+    read: Read | None
+    write: Write | None
+    takes_elements: bool
+    writes_nets: bool
+
+
+_registered: dict[str, FileFormat] = {}
+
+
+def register_format(
+    name: str,
+    detect: Detect | None = None,
+    read: Read | None = None,
+    write: Write | None = None,
+    *,
+    program: str = "",
+    takes_elements: bool = False,
+    writes_nets: bool = False,
+) -> None:
+    """Add a format that `calm import` reads or `calm export` writes.
+
+    Parameters
+    ----------
+    name : for `--format` and `--to`; the name of the entry point, too
+    detect : recognises a file by its first bytes; without it, `--format` must name the format
+    read : makes a design of a file; None if the format is only written
+    write : makes a file of a design; None if the format is only read
+    program : that the format belongs to, for messages; by default `name`
+    takes_elements : whether `read` uses `ImportOptions.elements`, a library of elements
+    writes_nets : whether `write` takes designs of several legs
+    """
+    if name in _registered:
+        raise ValueError(f"there is a format `{name}` already")
+    _registered[name] = FileFormat(
+        name, program or name, detect, read, write, takes_elements, writes_nets
+    )
+
+
+def file_format(name: str) -> FileFormat:
+    """Return the format of a name, whose module is imported if it has not been.
+
+    KeyError: there is no such format. CalmError: its module cannot be imported, or registers no
+    format of that name.
+    """
+    if name not in _registered:
+        module = _OWN[name] if name in _OWN else _added()[name]
+        try:
+            import_module(module)
+        except Exception as error:
+            reason = f"{type(error).__name__}: {error}"
+            raise CalmError(
+                f"the format `{name}` of {module} cannot be loaded ({reason})"
+            ) from error
+        if name not in _registered:
+            raise CalmError(f"{module} registers no format `{name}`")
+    return _registered[name]
+
+
+def file_formats() -> tuple[FileFormat, ...]:
+    """Return all formats in the order in which they are tried: added ones before CALM's own.
+
+    CalmError: as in `file_format`.
+    """
+    for name in (*_added(), *_OWN):
+        file_format(name)
+    others = sorted(_registered.keys() - _OWN.keys())
+    return tuple(_registered[name] for name in (*others, *_OWN))
+
+
+def _added() -> dict[str, str]:
+    """The formats of other packages and their modules."""
+    added = {entry.name: entry.module for entry in entry_points(group=ENTRY_POINTS)}
+    if taken := sorted(added.keys() & _OWN.keys()):
+        raise CalmError(
+            f"{added[taken[0]]} adds a format `{taken[0]}`, which is the name of one of CALM's own"
+        )
+    return added

@@ -1,0 +1,11 @@
+"""Lists of pieces: any in CSV or a spreadsheet is read (`table`), one in CSV is written (`csv`)."""
+
+from calm.exchange.registry import register_format
+from calm.exchange.table.cells import is_table
+from calm.exchange.table.reader import read_list
+from calm.exchange.table.writer import write_list
+
+register_format(
+    "table", is_table, read_list, program="a list in CSV or a spreadsheet", takes_elements=True
+)
+register_format("csv", write=write_list)

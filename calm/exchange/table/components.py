@@ -1,0 +1,132 @@
+"""Make components of the rows of a list, and say of each figure how it was guessed."""
+
+import math
+
+from calm.exchange import model
+from calm.exchange.mdd.elements import MODULI
+from calm.exchange.part_names import is_called, role_of, size_in
+from calm.exchange.table.rows import ROLES, ListRow
+from calm.physics.seawater import REFERENCE_DENSITY
+from calm.units import KILOGRAM_FORCE
+
+_USUAL = {"cable": 1.3, "chain": 2.75, "sphere": 0.5, "cylinder": 1.2}
+_ROUND = 1.5  # times its diameter: a float no longer is a sphere
+_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
+
+
+def component_of(row: ListRow, *, anchor: bool) -> model.ImportedComponent:
+    """Return the definition of a row in SI, which may be the anchor; its `problems` are added."""
+    for what in ("length", "diameter", "width", "cd", "area", "drag_area", "mass", "stiffness"):
+        if row.figure(what) < 0.0:
+            row.refuse(f"its {what.replace('_', ' ')} is negative")
+    kind, kept = (_anchor if anchor else _line if row.is_line else _rigid)(row)
+    guesses = {key: text for key, text in row.guesses.items() if key in kept and text}
+    return model.ImportedComponent(row.name, kind, kept, guesses)
+
+
+_Definition = tuple[str, dict[str, model.FigureOrWord]]
+"""The kind of a component, and its figures."""
+
+
+def _anchor(row: ListRow) -> _Definition:
+    kept: dict[str, model.FigureOrWord] = {}
+    if row.figure("buoyancy"):
+        kept["weight"] = abs(row.figure("buoyancy"))
+    elif row.figure("mass"):
+        kept["mass"] = row.figure("mass")
+        row.guesses["mass"] = "taken as steel: the list gives no weight in water"
+    return "anchor", kept | {"length": row.figure("length")}
+
+
+def _rigid(row: ListRow) -> _Definition:
+    figures, guesses = row.figures, row.guesses
+    if "buoyancy" not in figures:
+        row.refuse(f"its weight in water or its buoyancy is missing{row.hint}")
+    lift, length = row.figure("buoyancy"), row.figure("length")
+    kind, across = _shape(row)
+    kept: dict[str, model.FigureOrWord] = {"length": length}
+    if "drag_area" in figures and "tangential_area" in figures:
+        kind, guesses["kn"] = "body", guesses.get("drag_area", "")
+        kept["kn"] = _HALF_DENSITY * figures["drag_area"]
+        kept["kt"] = _HALF_DENSITY * figures["tangential_area"]
+    elif "drag_area" in figures or "area" in figures:
+        of = "drag_area" if "drag_area" in figures else "area"
+        coefficient = 1.0 if of == "drag_area" else figures.get("cd", 1.0)
+        kind, guesses["drag_area"] = "body", guesses.get(of, "")
+        kept |= {"drag_area": figures[of], "cd": coefficient}
+        if of == "area" and "cd" not in figures:
+            guesses["cd"] = "the list gives an area and no coefficient"
+    elif kind == "body":
+        kept |= {"drag_area": 0.0, "cd": 1.0}
+        guesses["drag_area"] = "the list gives no size: it has no drag"
+    else:
+        kept = {"diameter": across, "length": length or across, **_coefficient(row, kind)}
+    kept["buoyancy"] = lift
+    kept |= _further(row, lift, "breaking_load")
+    kept["role"] = row.role if row.role in ROLES else role_of(row.name, lift)
+    return kind, kept
+
+
+def _shape(row: ListRow) -> tuple[str, float]:
+    """Return the kind of a rigid piece by its size, and its diameter [m].
+
+    Where a list has widths and diameters, a diameter is that of a sphere. Elsewhere a float that is
+    hardly longer than wide is a sphere.
+    """
+    width, diameter, length, lift = map(row.figure, ("width", "diameter", "length", "buoyancy"))
+    if {"width", "diameter"} <= row.figures.keys():
+        round_, across = diameter > 0.0, diameter or width
+    else:
+        across = diameter or width
+        round_ = (lift > 0.0 or row.kind == "sphere") and length <= _ROUND * across
+    if across <= 0.0 or (not round_ and length <= 0.0):
+        return "body", 0.0
+    return "sphere" if round_ else "cylinder", across
+
+
+def _line(row: ListRow) -> _Definition:
+    if row.figure("length") <= 0.0:
+        row.refuse("a line needs its length")
+    if "buoyancy" not in row.figures:
+        row.refuse(f"its weight in water is missing{row.hint}")
+    across, lift = row.figure("diameter") or row.figure("width"), row.figure("buoyancy")
+    kind = "chain" if lift <= 0.0 and is_called(f"{row.name} {row.kind}", "chain") else "cable"
+    if across <= 0.0:
+        across = size_in(row.name)
+        if across <= 0.0:
+            row.refuse("its diameter is missing")
+            across = 0.01
+        row.guesses["diameter"] = "from its name"
+    kept: dict[str, model.FigureOrWord] = {"diameter": across}
+    if "drag_area" in row.figures:
+        kept["cn"] = row.figure("drag_area") / across
+        kept["ct"] = row.figure("tangential_area") / (math.pi * across)
+    else:
+        kept |= _coefficient(row, kind)
+        if "area" in row.figures:
+            kept["cn"] = float(kept["cn"]) * row.figure("area") / across
+    if lift > 0.0:
+        kept["buoyancy"] = lift
+    else:
+        kept["weight"] = 0.0 - lift
+        row.guesses["weight"] = row.guesses.get("buoyancy", row.guesses.get("weight", ""))
+    kept |= _further(row, lift, "stiffness", "breaking_load")
+    material = row.figure("material")
+    if "stiffness" not in kept and material in range(1, len(MODULI) + 1):
+        kept["stiffness"] = MODULI[round(material) - 1] * math.pi / 4.0 * across**2
+    return kind, kept
+
+
+def _coefficient(row: ListRow, kind: str) -> dict[str, model.FigureOrWord]:
+    """Return the drag coefficient of the list, or the usual one of the kind as a guess."""
+    key, guess = "cx" if kind == "sphere" else "cn", f"the usual one of a {kind}"
+    row.guesses[key] = row.guesses.get("cd", "") if "cd" in row.figures else guess
+    return {key: row.figures.get("cd", _USUAL[kind])}
+
+
+def _further(row: ListRow, lift: float, *names: str) -> dict[str, model.FigureOrWord]:
+    """Return further figures; a mass lighter than the piece is in water is left out."""
+    mass = row.figure("mass")
+    heavy = mass > 0.0 and mass * KILOGRAM_FORCE >= max(-lift, 0.0)
+    named = {name: row.figure(name) for name in names if row.figure(name) > 0.0}
+    return {"mass": mass, **named} if heavy else {**named}

@@ -1,0 +1,161 @@
+"""Read libraries of elements, whose figures complete a list.
+
+A library is the table of elements of Mooring Design & Dynamics, in character matrices, or a table
+or workbook whose sheets have headings.
+"""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from calm.errors import nearest, refused
+from calm.exchange.mat_file import MatVariables, is_mat, names, read_variables
+from calm.exchange.mdd.elements import GROUPS
+from calm.exchange.part_names import is_called
+from calm.exchange.table.cells import SheetRows, read_sheets
+from calm.exchange.table.headings import headings_of
+from calm.exchange.table.rows import ListRow, rows_of, weights_as_buoyancy
+from calm.units import KILOGRAM_FORCE
+from calm.whole_file import read_content
+
+_NOT_THEIRS = ("at", "count", "height")  # of an element, whatever the heading says
+_A_METRE = 1e-6  # m by which the length of a line's figures may miss a metre
+_SHEETS = 3  # with headings of their own make a library
+
+_LINES = ("wires", "chains")
+_NAME = 16  # bytes of a name, where the file does not say
+_FIGURES = (6, 7)  # behind it: buoyancy, mass in air of late, length, width, diameter, Cd, material
+_CENTIMETRE = 0.01
+_METRE = 100.0  # cm: the length of a line whose figures are those of a metre
+
+
+Library = Mapping[str, ListRow]
+"""Elements by their name without capitals and blanks; figures of a line are those of a metre."""
+
+
+def read_library(path: Path) -> Library:
+    """Return the elements of Mooring Design & Dynamics' `mdcodes.mat`, or of a table or workbook.
+
+    Of several elements of one name the first holds. InputError: the file cannot be read, or holds
+    no elements.
+    """
+    content = read_content(path, largest=200_000_000)
+    elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)
+    library: dict[str, ListRow] = {}
+    for element in elements:
+        library.setdefault(key_of(element.name), element)
+    return library
+
+
+def is_library(sheets: Mapping[str, SheetRows]) -> bool:
+    """Return whether sheets are a library: several with headings, or the table of moords."""
+    headed = [found for rows in sheets.values() if (found := headings_of(rows, {})) is not None]
+    moords = {"buoyancy_kg", "length_m", "width_m", "diameter_m"}
+    return len(headed) >= _SHEETS or any(
+        moords <= {column.heading for column in found.columns.values()} for found in headed
+    )
+
+
+def key_of(name: str) -> str:
+    """Return a name without capitals and blanks, as libraries are searched."""
+    return "".join(name.lower().split())
+
+
+def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> None:
+    """Give rows the figures that they lack, from the element of their name.
+
+    Parameters
+    ----------
+    rows : of the list, changed in place
+    library : in which they are looked up
+    source : name of the library in hints
+    """
+    for row in rows:
+        element = library.get(key_of(row.name))
+        if element is None:
+            near = nearest(row.name.lower(), [each.name.lower() for each in library.values()])
+            if "buoyancy" not in row.figures and near is not None:
+                row.hint = f"; {source} has `{near}`"
+            elif "buoyancy" not in row.figures:
+                row.hint = f"; {source} has no element of that name"
+            continue
+        row.line = element.line
+        for what, value in element.figures.items():
+            if what in row.figures or (element.line and what == "length"):
+                continue
+            row.figures[what] = value
+            if element.line:
+                row.metre.add(what)
+
+
+def _of_matrices(path: Path) -> list[ListRow]:
+    """Return the elements of character matrices, a row an element, as in `mdcodes.mat`."""
+    variables = read_variables(path, [*GROUPS, "format"])
+    entries = [
+        entry
+        for group in GROUPS
+        for text in names(variables.get(group))
+        if (entry := _entry(text, group, _width(variables))) is not None
+    ]
+    if not entries:
+        raise refused(path, "holds no element library of that program (`floats`, `wires` …)")
+    return entries
+
+
+def _width(variables: MatVariables) -> int:
+    """Bytes of a name: `format` has the columns of the name and of each figure."""
+    try:
+        columns = variables.reals("format")
+    except ValueError:
+        return _NAME
+    return int(columns[0, -1]) if columns.ndim == 2 and 0 < columns.size <= 100 else _NAME
+
+
+def _entry(text: str, group: str, end: int) -> ListRow | None:
+    """Return an element of a row; None for a row that cannot be read."""
+    content = text.encode()
+    try:
+        figures = [float(word) for word in content[end:].split()]
+    except ValueError:
+        return None
+    if len(figures) not in _FIGURES:
+        return None
+    length, width, diameter, cd, material = figures[-5:]
+    sizes = {"length": length, "width": width, "diameter": diameter}
+    return ListRow(
+        0,
+        content[:end].decode("utf-8", "replace").strip(),
+        line=group in _LINES and length == _METRE,
+        figures={
+            "buoyancy": figures[0] * KILOGRAM_FORCE,
+            **{name: size * _CENTIMETRE for name, size in sizes.items()},
+            "cd": cd,
+            "material": material,
+        },
+    )
+
+
+def _of_sheets(path: Path) -> Iterable[ListRow]:
+    found = False
+    for title, cells in read_sheets(path).items():
+        headings = headings_of(cells, {})
+        if headings is None:
+            continue
+        if headings.problems:
+            raise refused(path, *headings.problems)
+        rows = rows_of(cells, headings, [], [], [])
+        weights_as_buoyancy(rows, [])
+        for row in rows:
+            found = True
+            row.line = _is_line(row, title)
+            row.figures = {k: one for k, one in row.figures.items() if k not in _NOT_THEIRS}
+            yield row
+    if not found:
+        raise refused(path, "holds no elements: no sheet has headings that CALM knows")
+
+
+def _is_line(row: ListRow, title: str) -> bool:
+    """Return whether an element is a line, with figures per metre."""
+    floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
+    if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
+        return False
+    return bool(row.metre) or row.is_line or is_called(title, "line")

@@ -1,0 +1,202 @@
+"""Read a list of pieces as a design."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Mapping
+from itertools import accumulate
+from pathlib import Path
+
+import numpy as np
+
+from calm.errors import refused
+from calm.exchange import model
+from calm.exchange.mat_file import MatVariables
+from calm.exchange.mdd.water import read_water
+from calm.exchange.table.cells import SheetRows, number, read_sheets
+from calm.exchange.table.components import component_of
+from calm.exchange.table.headings import ListHeadings, check_given, headings_of
+from calm.exchange.table.library import Library, complete_rows, is_library, key_of, read_library
+from calm.exchange.table.rows import TOTAL, ListRow, count_lines, rows_of, weights_as_buoyancy
+from calm.files.components import FLEXIBLE_KINDS
+
+_NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
+_WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
+_NAMES = 3  # at least, in a list of names alone
+
+
+def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
+    """Read a CSV file or a workbook.
+
+    InputError: no headings are recognised, a figure is missing, or no end is an anchor.
+    """
+    columns, elements = options.columns, options.elements
+    sheets = read_sheets(path)
+    check_given(sheets, columns, path)
+    if elements is None and not columns and is_library(sheets):
+        raise refused(
+            path,
+            "is a library of elements, not a mooring; a list takes its figures: --elements FILE",
+        )
+    library = read_library(elements) if elements is not None else {}
+    design = model.ImportedDesign("a list", path.stem, [], None, notes=[_NOTE])
+    design.water = _water(sheets, design, path)
+    problems: list[str] = []
+    ordered = sorted(sheets.values(), key=len, reverse=True)
+    headed = ((cells, headings_of(cells, columns)) for cells in ordered)
+    cells, headings = next((each for each in headed if each[1] is not None), ([], None))
+    said = list[model.Remark]()
+    if headings is not None:
+        problems += headings.problems
+        said = _unit_remarks(headings)
+        weighed = {"buoyancy", "weight"} & headings.columns.keys()
+        rows = rows_of(
+            cells, headings, problems, design.dropped, said,
+            bare=lambda name: bool(library) and (not weighed or key_of(name) in library),
+        )  # fmt: skip
+        weights_as_buoyancy(rows, design.guessed)
+        if headings.others:
+            design.dropped.append(model.Remark("columns", ", ".join(headings.others)))
+    else:
+        rows = _names(sheets, design, path, library)
+    if elements is not None:
+        complete_rows(rows, library, elements.name)
+    count_lines(rows, headings.columns if headings else {})
+    if sum(row.count for row in rows) > model.MOST_PIECES:
+        raise refused(path, f"has more than {model.MOST_PIECES} pieces")
+    rows = _from_the_top(rows, path, design)
+    design.items = _items(rows)
+    design.guessed += said
+    if problems := [*problems, *(each for row in rows for each in row.problems)]:
+        raise refused(path, *problems)
+    design.in_kilograms = headings is None or any(
+        headings.columns[key].by_mass for key in ("buoyancy", "weight") if key in headings.columns
+    )
+    return design
+
+
+def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:
+    """Return what is taken for the unit of forces whose headings give none."""
+    usual = {"buoyancy": "kg", "weight": "kg", "stiffness": "N", "breaking_load": "N"}
+    return [
+        model.Remark(f"column {column.heading}", f"gives no unit: read as {usual[what]}")
+        for what, column in headings.columns.items()
+        if what in usual and not column.known
+    ]
+
+
+def _names(
+    sheets: Mapping[str, SheetRows], design: model.ImportedDesign, path: Path, library: Library
+) -> list[ListRow]:
+    """Return the rows of a list that holds names alone, in the longest sheet.
+
+    The first is the name of the mooring where the library has no such element.
+    """
+    longest = max(sheets.values(), key=len, default=[])
+    rows = _names_in(longest)
+    filled = sum(bool(cell) for row in longest for cell in row)
+    if len(rows) < _NAMES or 2 * len(rows) < filled:
+        raise refused(
+            path, "has no headings that CALM knows; name them: --columns name=…,length=…,weight=…"
+        )
+    if not library:
+        raise refused(
+            path,
+            f"holds names and no figures (`{rows[0].name}`, `{rows[1].name}` …); "
+            "give the library of these elements: --elements FILE",
+        )
+    if key_of(rows[0].name) not in library:
+        if key_of(rows[0].name) != "name":
+            design.name = rows[0].name
+        rows = rows[1:]
+    return rows
+
+
+def _names_in(cells: SheetRows) -> list[ListRow]:
+    """Return the rows of a sheet that holds names alone: the words of the column that has most."""
+    words = (i for row in cells for i, cell in enumerate(row) if re.search(r"[^\W\d]{2}", cell))
+    counts = Counter(words)
+    best = max(range(max(map(len, cells), default=1)), key=counts.__getitem__)
+    return [
+        ListRow(place, row[best])
+        for place, row in enumerate(cells, 1)
+        if best < len(row) and row[best] and not TOTAL.match(row[best])
+    ]
+
+
+def _water(
+    sheets: Mapping[str, SheetRows], design: model.ImportedDesign, path: Path
+) -> model.ImportedWater | None:
+    """Return the environment in a sheet of heights, `z`, of Mooring Design & Dynamics."""
+    for rows in sheets.values():
+        headings = [cell.lower() for cell in rows[0]]
+        if not {"z", "u"} <= set(headings):
+            continue
+        columns = MatVariables(
+            (name, np.array([_figure(row, i, path) for row in rows[1:] if i < len(row)]))
+            for name in _WATER
+            if name.lower() in headings and (i := headings.index(name.lower())) >= 0
+        )
+        try:
+            water, _ = read_water(columns, False, design.guessed)
+        except ValueError as error:
+            raise refused(path, str(error)) from None
+        return water
+    return None
+
+
+def _figure(row: list[str], index: int, path: Path) -> float:
+    """Return a number of the water; 0 of an empty cell."""
+    found = number(row[index])
+    if found.wrong or found.rest:
+        raise refused(path, f"water: {found.wrong or f'`{row[index]}` is not a number'}")
+    return found.value or 0.0
+
+
+def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign) -> list[ListRow]:
+    """Return the rows from the top down; lists run either way, clamps follow their piece."""
+    pieces = [row for row in rows if "at" not in row.figures]
+    if len(pieces) < 2:
+        raise refused(path, f"has {len(pieces)} pieces")
+    anchored = [i for i, row in enumerate(pieces) if row.is_anchor]
+    if anchored and anchored[0] == 0 and anchored[-1] != len(pieces) - 1:
+        design.notes.append("The list runs from the anchor up: here it is reversed.")
+        return _turned(rows)
+    if anchored and anchored[-1] == len(pieces) - 1:
+        return rows
+    lifts = [row.figures.get("buoyancy", 0.0) for row in (pieces[0], pieces[-1])]
+    if max(lifts) <= 0.0:
+        raise refused(
+            path,
+            "no end of the list is a float, and none is an anchor; a list of what is towed is not "
+            "read, since it has neither ship nor speed",
+        )
+    if lifts[0] < lifts[1]:
+        design.notes.append("The list runs from the lower end up: here it is reversed.")
+        rows = _turned(rows)
+    design.guessed.append(model.Remark("line.anchor", "the list has none"))
+    return [*rows, ListRow(0, "anchor", kind="anchor", role="anchor")]
+
+
+def _turned(rows: list[ListRow]) -> list[ListRow]:
+    pieces = accumulate(int("at" not in row.figures) for row in rows)
+    numbered = sorted(zip(pieces, rows, strict=True), key=lambda pair: -pair[0])
+    return [row for _, row in numbered]
+
+
+def _items(rows: list[ListRow]) -> list[model.ImportedPiece]:
+    items: list[model.ImportedPiece] = []
+    for row in rows:
+        component = component_of(row, anchor=row is rows[-1] and row.is_anchor)
+        at = row.figures.get("at")
+        if at is None:
+            length = row.figures.get("length") if component.kind in FLEXIBLE_KINDS else None
+            guess = "" if length is None else row.guesses.get("length", "")
+            items += [
+                model.ImportedPiece(component, length, label=row.label, guess=guess)
+                for _ in range(row.count)
+            ]
+        elif items:
+            items[-1].clamps.append(model.ImportedClamp(component, at, row.guesses.get("at", "")))
+    return items

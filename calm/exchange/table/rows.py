@@ -1,0 +1,244 @@
+"""Read the rows of a list in SI, each with how it was interpreted."""
+
+import math
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+from calm.exchange import model
+from calm.exchange.part_names import is_called, is_long, size_in
+from calm.exchange.table.cells import SheetRows, number, unit_called
+from calm.exchange.table.headings import WORDS, ListColumn, ListHeadings, cell_of, decimals_of
+
+TOTAL = re.compile(
+    r"^(sub-?)?(totals?|totaux|gesamt\w*|summ?[ae]?|somme|ensemble|i alt|tilsammans)\b", re.I
+)
+_DITTO = re.compile(r"^(ditt?o|do|idem|id|dto|[\"'\u2033\u201d\u201e\u3003]+)\.?$", re.I)
+_COUNTED = re.compile(r"^\(?([2-9]|[1-9]\d)\s?[x\u00d7]\s?(?=\S)", re.I)  # 10x glass, 6 x 17 in
+_ANCHOR_KINDS = re.compile(r"\banchors?\b|\bancre|\blest\b", re.I)
+_ENOUGH = {"length", "buoyancy", "weight"}  # one of them makes a piece
+_MOST = 1000  # of one row's count
+_WIDEST, _WIDEST_LINE = 10.0, 0.5  # m of what has no unit
+_FULL = 5.0  # times its diameter: a metre of line shows no larger area
+_METRES = re.compile(r"/\s*(\d+)")  # kg/100 m
+_SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")  # along a line
+ROLES = ("float", "instrument", "release", "connector")
+_FITTING = 1.0  # m: a shorter link or shackle of a rope is none
+
+
+@dataclass(eq=False)
+class ListRow:
+    """Hold a row: its name, its figures, what was guessed in it, and its count.
+
+    `metre` names the figures of a line that are per metre; `line` says whether it is a cable or
+    chain, `hint` where a library says that its figures might be, and `problems` what is wrong.
+    """
+
+    place: int
+    name: str
+    label: str = ""
+    kind: str = ""
+    role: str = ""
+    figures: dict[str, float] = field(default_factory=dict)
+    guesses: dict[str, str] = field(default_factory=dict)
+    metre: set[str] = field(default_factory=set)
+    line: bool | None = None
+    hint: str = ""
+    count: int = 1
+    problems: list[str] = field(default_factory=list)
+
+    @property
+    def where(self) -> str:
+        """The name by which problems call it."""
+        return f"row {self.place}, {self.name}"
+
+    def refuse(self, problem: str) -> None:
+        """Add what is wrong with it."""
+        self.problems.append(f"{self.where}: {problem}")
+
+    def figure(self, what: str) -> float:
+        """Return a figure; 0 where the list has none."""
+        return self.figures.get(what, 0.0)
+
+    @property
+    def is_anchor(self) -> bool:
+        """Tell whether it is the anchor."""
+        said = _ANCHOR_KINDS.search(f"{self.kind} {self.role}")
+        return said is not None or is_called(self.name, "anchor")
+
+    @property
+    def sinks(self) -> bool:
+        """Tell whether it is a line, an anchor, or what sinks by its name."""
+        named = is_called(self.name, "connector", "release")
+        return named or self.is_line or self.is_anchor
+
+    @property
+    def is_line(self) -> bool:
+        """Tell whether it is a cable or a chain."""
+        if self.line is not None:
+            return self.line
+        if self.role in ROLES or is_called(self.kind, "rigid"):
+            return False
+        if is_called(self.name, "connector") and self.figure("length") < _FITTING:
+            return self.role == "line"
+        return self.role == "line" or is_called(f"{self.kind} {self.name}", "line")
+
+
+def rows_of(
+    cells: SheetRows,
+    headings: ListHeadings,
+    problems: list[str],
+    dropped: list[model.Remark],
+    guessed: list[model.Remark],
+    *,
+    bare: Callable[[str], bool] = lambda name: False,
+) -> list[ListRow]:
+    """Return the rows below the headings; sums and rows without figures go to `dropped`.
+
+    Parameters
+    ----------
+    guessed : to which the decimal sign is added where the file has commas
+    bare : whether a name alone makes a piece, since a library has its figures
+    """
+    rows: list[ListRow] = []
+    known = headings.columns
+    decimal, said = decimals_of(cells, headings, problems)
+    if said:
+        guessed.append(model.Remark("numbers", said))
+    for place, each in enumerate(cells[headings.row + 1 :], headings.row + 2):
+        name = cell_of(each, known["name"])
+        if _DITTO.match(name) and rows:
+            guessed.append(model.Remark(f"row {place}", f"`{name}` read as `{rows[-1].name}`"))
+            name = rows[-1].name
+        if not name:
+            held = [cell_of(each, column) for what, column in known.items() if what in _ENOUGH]
+            if any(re.search(r"\d", cell) for cell in held):
+                dropped.append(model.Remark(f"row {place}", "it has figures and no name"))
+            continue
+        if TOTAL.match(name):
+            dropped.append(model.Remark(f"row {place}", f"`{name}`, a sum"))
+            continue
+        row = _row(each, ListRow(place, name), known, decimal)
+        if not (bare(name) or _ENOUGH & row.figures.keys() or row.is_anchor):
+            dropped.append(model.Remark(f"row {place}", f"`{name}`, without length and weight"))
+            continue
+        size = row.figure("diameter") or row.figure("width") or size_in(name)
+        fixed = row.is_line or row.is_anchor or row.role in ROLES or is_called(row.kind, "rigid")
+        if not fixed and is_long(name, row.figure("length"), size):
+            row.line = True
+            guessed.append(model.Remark(row.where, "taken as a rope, since it is long and thin"))
+        several = _COUNTED.match(name)
+        if several and row.count == 1 and not row.is_line:
+            said = f"read as one piece with the figures of its row, not as {several[1]} of them"
+            guessed.append(model.Remark(row.where, said))
+        rows.append(row)
+    return rows
+
+
+def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: str) -> ListRow:
+    """Return a row with the words and figures of its cells."""
+    row.label, row.kind, row.role = (
+        cell_of(cells, known.get(what)).removeprefix("'") for what in ("label", "kind", "role")
+    )
+    for what, column in known.items():
+        if what in WORDS:
+            continue
+        column, cell = column.of(cells, line=row.is_line)
+        found = number(cell, decimal)
+        if found.value is None:
+            if found.wrong and what != "material":
+                row.refuse(f"{column.heading}: {found.wrong}")
+            continue
+        try:
+            unit = unit_called(found.rest, what)
+        except ValueError as error:
+            row.refuse(f"{column.heading}: `{cell}`: {error}")
+            continue
+        figure = found.value * (unit or column).factor
+        if not math.isfinite(figure):
+            row.refuse(f"{column.heading} is {found.value:g}")
+            continue
+        widest = _WIDEST_LINE if row.is_line else _WIDEST
+        if what in ("diameter", "width") and not (unit or column.known) and figure > widest:
+            row.refuse(f"{column.heading} is {figure:g} m; which unit is it in?")
+        if unit.per_metre if unit else column.per_metre:
+            row.metre.add(what)
+            several = _METRES.search(f"{column.heading} {found.rest}")
+            if several and not row.is_line:
+                figure *= int(several[1])
+                row.guesses[what] = "read as that of the whole piece, since it is not a line"
+        row.figures[what] = figure
+        if found.tidied:
+            row.guesses[what] = f"`{cell}` read as {found.value:g} {found.rest}".rstrip()
+    count = row.figures.pop("count", 1.0)
+    row.count = round(count)
+    if not 1 <= row.count <= _MOST:
+        row.refuse(f"{count:.12g} of them")
+        row.count = 1
+    return row
+
+
+def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) -> None:
+    """Give every row its net force as buoyancy, positive up.
+
+    Weights are positive down; where they are negative for what sinks by its name, positive up.
+    Where what sinks has a positive buoyancy and all else a negative one, they are weights.
+    """
+    rows = list(rows)
+    sinking = [row.figures["weight"] for row in rows if row.sinks and row.figures.get("weight")]
+    upward = 2 * sum(weight < 0.0 for weight in sinking) > len(sinking)
+    lifts = [row for row in rows if row.figures.get("buoyancy")]
+    turned = all(row.sinks == (row.figures["buoyancy"] > 0.0) for row in lifts)
+    if turned and 0 < sum(row.sinks for row in lifts) < len(lifts):
+        guessed.append(model.Remark("buoyancy", "positive for parts that sink: read as weight"))
+        for row in lifts:
+            row.figures["buoyancy"] *= -1.0
+    if upward:
+        guessed.append(model.Remark("weights", "negative for parts that sink: read as buoyancy"))
+    for row in rows:
+        if "weight" not in row.figures:
+            continue
+        weight, guess = row.figures.pop("weight"), row.guesses.pop("weight", "")
+        if row.figures.get("buoyancy"):
+            continue
+        row.figures["buoyancy"] = weight if upward else 0.0 - weight
+        if "weight" in row.metre:
+            row.metre.add("buoyancy")
+        if guess:
+            row.guesses["buoyancy"] = guess
+
+
+def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
+    """Make figures of lines per metre, where the list gives them of the whole length."""
+    lines = [row for row in rows if row.is_line and row.figure("length") > 0.0]
+    for what in _SPREAD:
+        column = known.get(what) or (known.get("weight") if what == "buoyancy" else None)
+        listed = [row for row in lines if what in row.figures and what not in row.metre]
+        if column is None or not listed:
+            continue
+        per_metre = not column.whole and (
+            all(row.figures[what] <= _FULL * row.figure("diameter") for row in listed)
+            if "area" in what
+            else _same_for_all(listed, what)
+        )
+        for row in listed:
+            if not per_metre:
+                row.figures[what] /= row.figures["length"]
+            row.metre.add(what)
+            if what == "buoyancy" and not column.whole:
+                row.guesses.setdefault(
+                    what,
+                    "read as that of a metre: it is the same at different lengths"
+                    if per_metre
+                    else "the weight in the list is read as that of the whole length",
+                )
+
+
+def _same_for_all(lines: list[ListRow], what: str) -> bool:
+    """Return whether lines of one name have one weight, per metre then, at different lengths."""
+    seen: dict[str, tuple[float, float]] = {}
+    for row in lines:
+        length, value = seen.setdefault(row.name, (row.figures["length"], row.figures[what]))
+        if abs(length - row.figures["length"]) > 0.05 * length and value:
+            return abs(value - row.figures[what]) < 0.01 * abs(value)
+    return False

@@ -1,0 +1,123 @@
+"""Keys of an item of the line and of its clamps, and those of the individual thing there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Any, TypeGuard
+
+from pydantic import Field
+
+from calm.files import definition
+from calm.files.check_limits import Day
+from calm.files.definition import Text, described, optional
+from calm.files.yaml_document import SourceMapping, validate
+
+
+class Equipment(definition.Model):
+    """Hold what the file says of the individual thing at a place of the line.
+
+    `serial` is a text, or as many as the `count` of the item; of an item, one of it is chosen for
+    each piece.
+    """
+
+    serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
+        "serial number; for a count, a list with one for each", 12345
+    )
+    calibrated: Day | None = optional("day of its last calibration, e.g. 2026-03-01", "2026-03-01")
+    sampling: Text | None = optional(
+        "how it samples, as people read it, e.g. every 10 min", "every 10 min"
+    )
+    battery_until: Day | None = optional(
+        "day on which its battery is empty, e.g. 2027-06-30", "2028-01-31"
+    )
+    termination: Text | None = optional(
+        "how the ends of a cable are made, e.g. swaged sockets", "swaged sockets"
+    )
+
+    def of(self, repeat: int) -> Equipment:
+        """Return the equipment of one of a count, from 0."""
+        if not isinstance(self.serial, tuple):
+            return self
+        return self.model_copy(update={"serial": self.serial[min(repeat, len(self.serial) - 1)]})
+
+
+LOAD = definition.QuantityField("force", usual_unit="kN", at_least=0)
+
+
+class LengthAt(definition.Model):
+    """A length of a cable [m] as measured under a load [N]."""
+
+    load: Annotated[float, LOAD] = described("that the cable was under", "2 kN")
+    length: Annotated[float, definition.POSITIVE_LENGTH] = described(
+        "as measured under `load`", "480 m"
+    )
+
+
+MOST_PIECES = 10_000
+"""Pieces a line may have, after assemblies and counts are expanded."""
+
+
+Label = Annotated[
+    Text, described("name of the piece in results; the id when there is none", "top float")
+]
+
+
+class ClampKeys(Equipment):
+    """An instrument fixed to a piece."""
+
+    use: str = described("id of a component of the catalogue or of `components`", "sbe37")
+    label: Label = ""
+    at: Annotated[float, definition.LENGTH] = described(
+        "distance from the top of the piece, unstretched", "20 m"
+    )
+
+
+class ItemKeys(Equipment):
+    """A piece of the line; other fields override the component's."""
+
+    use: str = described("id of a component of the catalogue or of `components`", "wire-jacketed-8")
+    label: Label = ""
+    count: Annotated[int, Field(ge=1, le=MOST_PIECES)] = described(
+        "how many follow one another in the line", 6, default=1
+    )
+    length: definition.Length = 0.0
+    length_at: LengthAt = described(
+        "a length measured under a load, e.g. {load: 2 kN, length: 480 m}",
+        {"load": "2 kN", "length": "480 m"},
+    )
+    top_depth: Annotated[float, definition.LENGTH] = described(
+        "depth wanted in still water for the top of the line", "105 m"
+    )
+    body_depth: Annotated[float, definition.LENGTH] = described(
+        "depth wanted in a tow for the lower end of this cable, at the tow's speed", "70 m"
+    )
+    clamps: tuple[ClampKeys, ...] = described(
+        "instruments fixed to this piece", [{"use": "sbe37", "at": "20 m"}]
+    )
+
+
+EQUIPMENT_KEYS = frozenset(Equipment.model_fields)
+NO_EQUIPMENT = Equipment()
+
+
+def read_equipment(item: SourceMapping) -> Equipment:
+    """Read what an item or a clamp says of the individual thing."""
+    given = {key: item.data[key] for key in item.data.keys() & EQUIPMENT_KEYS}
+    if not given:
+        return NO_EQUIPMENT
+    return validate(Equipment, item.holding(given)) or NO_EQUIPMENT
+
+
+def check_serials(item: SourceMapping, count: int) -> None:
+    """Check that serial numbers given as a list are as many as the item, and its clamps, count."""
+    clamps: Any = item.data.get("clamps")
+    below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]
+    for place, data in [((), item.data), *below]:
+        serials = data.get("serial") if isinstance(data, dict) else None
+        if _is_list(serials) and len(serials) != count:
+            message = f"`serial` has {len(serials)} numbers for a count of {count}"
+            item.refuse((*place, "serial"), message)
+
+
+def _is_list(value: object) -> TypeGuard[Sequence[object]]:
+    return isinstance(value, (list, tuple))

@@ -1,0 +1,73 @@
+"""Currents as read, the depths of the line near them, and the prior law of unmeasured speeds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from calm.physics.line import Floats
+
+
+@dataclass(frozen=True)
+class ReadCurrents:
+    """One way to read the currents of some times, and where it puts the line.
+
+    Attributes
+    ----------
+    level : (n, k) depths of the levels [m]
+    u, v : (n, k) [m/s]
+    spread : (n, g, g) prior covariance of the logarithms
+    """
+
+    level: Floats
+    u: Floats
+    v: Floats
+    spread: Floats
+
+
+@dataclass(frozen=True)
+class Linear:
+    """The depths of the points near a state of the currents.
+
+    Attributes
+    ----------
+    logs : (n, g) the state
+    depth : (n, p) there [m]
+    slope : (n, p, g) with the state
+    common : (n, p, f) with the logarithms of the common factors
+    """
+
+    logs: Floats
+    depth: Floats
+    slope: Floats
+    common: Floats
+
+    def moved(self, logs: Floats, depth: Floats) -> Linear:
+        """Return the line at another state, with slopes that lead there from this one (Broyden)."""
+        step = logs - self.logs
+        size = (step**2).sum(axis=1)[:, None]
+        miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)
+        share = np.divide(step, size, out=np.zeros_like(step), where=size > 1e-6)
+        slope = self.slope + np.nan_to_num(miss)[:, :, None] * share[:, None, :]
+        return Linear(logs, depth, slope, self.common)
+
+
+@dataclass(frozen=True)
+class SpeedLaw:
+    """Hold what is known of the speeds before a time is looked at, and the times it came from.
+
+    Attributes
+    ----------
+    mean, covariance : (k,), (k, k) of the logarithms of the speeds [m/s]
+    kept : fits of the times that were learnt from, the first at the mean; states are relative to it
+    """
+
+    mean: Floats
+    covariance: Floats
+    kept: Linear | None = None
+
+    def read(self, level: Floats) -> ReadCurrents:
+        """Return the currents at levels (n, k), whose direction is the same at all of them [m]."""
+        u = np.tile(np.exp(self.mean), (len(level), 1))
+        return ReadCurrents(level, u, np.zeros_like(u), np.tile(self.covariance, (len(u), 1, 1)))
