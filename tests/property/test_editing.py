@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from calm.files.editing import Draft, History, clamps_of
+from calm.files.editing import Draft, EditError, History, clamps_of
 from tests.property.ugly_files import UGLY
 
 pytestmark = pytest.mark.thorough
@@ -248,6 +248,16 @@ class Editor:
         self.history.do(new, "edit")
 
 
+def has_comments_in_brackets(text: str, refusal: str) -> bool:
+    """Whether an edit is refused since it would lose a comment between entries in brackets."""
+    found = re.fullmatch(r"line (\d+): .* comments; change it in the text", refusal)
+    if found is None:
+        return False
+    inside = "\n".join(text.splitlines()[int(found[1]) - 1 :])
+    opened = re.search(r"[\[{]", inside)
+    return opened is not None and "#" in inside[opened.start() :]
+
+
 def same_beginning(one: str, other: str) -> int:
     """How many signs two texts begin with alike."""
     pairs = zip(one, other, strict=False)
@@ -287,7 +297,10 @@ def test_random_edits(name: str, data: st.DataObject) -> None:
     comments = set(re.findall(r"(?m)(?:^|\s)(#.*?)\r?$", FILES[name]))
     editor = Editor(data.draw, history, comments)
     for step in data.draw(st.lists(st.sampled_from(STEPS), min_size=1, max_size=12)):
-        step(editor)
+        try:
+            step(editor)
+        except EditError as refusal:
+            assert has_comments_in_brackets(editor.draft.text, str(refusal))
         assert not editor.draft.problems
     last = editor.draft.text
     while history.redo():
