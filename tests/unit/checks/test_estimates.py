@@ -78,7 +78,8 @@ def test_what_passes_by_its_value_alone_is_unknown(tmp_path: Path) -> None:
     assert figure["needed_by"] == ["strength"]
     assert figure["pieces"] == ["link"]
     assert figure["class_estimate"] == {
-        "quantity": "working_load", "value": 20e3, "low": 2.8e3, "source": "its chain",
+        "quantity": "working_load", "value": 20e3, "low": 2.8e3, "low_in_waves": None,
+        "quality": None, "source": "its chain",
     }  # fmt: skip
     of_its_load = {"missing", "strength", "launch-strength"}
     rules = {one.rule for one in assessment.all_findings() if one.component == "link"}
