@@ -124,10 +124,23 @@ def said_of(finding: Finding) -> Cell:
 def counted_states(findings: Iterable[Finding]) -> Counter[State]:
     """Return how many parts of one or several moorings each state is the worst of, rule by rule.
 
-    A missing figure of a component is counted once.
+    A missing figure of a component is counted once, and so is a cluster of which every float fails
+    or warns.
     """
     by_mooring = grouped(findings, attrgetter("mooring"))
-    return Counter(one.state for each in by_mooring for one in worst_by_part(each))
+    found = [one for each in by_mooring for one in grouped(worst_by_part(each), _counted_as)]
+    return Counter(one[0].state for one in found)
+
+
+def _counted_as(finding: Finding) -> Hashable:
+    """Return what findings are counted as one: of equal pieces in one row of the file, what is to
+    be mended.
+    """
+    place = finding.place
+    if place is None or finding.state not in (State.FAIL, State.WARN):
+        return id(finding)
+    called = re.sub(r" \d+$", "", finding.component or "")
+    return finding.rule, finding.state, place.row, called, finding.missing
 
 
 def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:

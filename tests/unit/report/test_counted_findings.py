@@ -1,0 +1,40 @@
+"""How many findings a verdict counts: a cluster of equal floats is one, unlike pieces are not."""
+
+import pytest
+
+from calm.checks.finding import Finding, State
+from calm.files import Place
+from calm.report.check_tables import counted_states, verdict_of
+
+
+def _finding(component: str, place: Place, state: State = State.FAIL, **others: str) -> Finding:
+    return Finding(
+        component=component, place=place, state=state, value=983.2, limit=400.0, margin=-583.2,
+        message="", **({"mooring": "m", "environment": "own", "rule": "depth-rating"} | others),
+    )  # fmt: skip
+
+
+CLUSTER = [_finding(f"glass {i}", Place(3, repeat=i // 4, part=i % 4)) for i in range(12)]
+
+
+def test_a_cluster_is_one_finding() -> None:
+    assert verdict_of(CLUSTER) == (State.FAIL, "1 failure")
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        _finding("shackle", Place(3, part=5)),
+        _finding("glass 13", Place(4)),
+        _finding("glass 1", Place(3), rule="strength"),
+        _finding("glass 1", Place(3), mooring="n"),
+    ],
+)
+def test_what_is_unlike_is_counted_apart(other: Finding) -> None:
+    assert counted_states([*CLUSTER, other])[State.FAIL] == 2
+
+
+def test_floats_of_a_cluster_that_pass_are_counted_each() -> None:
+    passing = [_finding(each.component or "", Place(7, repeat=i), State.PASS)
+               for i, each in enumerate(CLUSTER)]  # fmt: skip
+    assert counted_states([*CLUSTER, *passing]) == {State.FAIL: 1, State.PASS: 12}
