@@ -31,6 +31,17 @@ def is_synthetic(component: Component) -> bool:
     return component.kind == "cable" and fibre_of(component.material) is not None
 
 
+def counted_working_load(component: Component) -> float | None:
+    """Return the working load by which a component is judged [N], None without one.
+
+    Tables of synthetic ropes print a working load for lifting, a twelfth to a seventh of the
+    breaking load. A rope that gives its breaking load is judged by that alone.
+    """
+    if is_synthetic(component) and component.breaking_load is not None:
+        return None
+    return component.working_load
+
+
 def warnings_of(result: LegResult, solution: Solution) -> tuple[str, ...]:
     """Return every warning of the result of a leg, the file's own notices first."""
     # a leg that is marched from its other end is no tow
@@ -44,7 +55,7 @@ def _overloaded(result: LegResult, _: Solution) -> Iterator[str]:
         if row.safety_factor < 1.0:
             pull = say("tension", row.tension)
             yield f"{row.label} breaks: {pull} is above its breaking load."
-        elif row.utilisation > 1.0:
+        elif row.utilisation > 1.0 and counted_working_load(row.part.component) is not None:
             pull = say("tension", row.tension)
             yield f"{row.label} is overloaded: {pull} is above its working load."
 

@@ -300,7 +300,7 @@ def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
     yield from _way_of(part, wire)
     if component.drive_force is None:
         told = f"The drive force of {part.label} is not known, nor whether it can climb."
-        yield unknown(part, told, "Give its `drive_force` and `speed`.")
+        yield unknown(part, told, "Give its `drive_force` and `speed`.", lacks="drive_force")
         return
     flow, density = water.current_at(np.array(row.depth)), water.density_at(np.array(row.depth))
     lean = radians(row.tilt)

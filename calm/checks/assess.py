@@ -44,6 +44,7 @@ from calm.checks.assessment import (
 from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, worst_of_each_rule
 from calm.checks.inventory import inventory_of
+from calm.checks.missing import is_lacking, missing, with_missing
 from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
 from calm.checks.recovery import breaks_of, losses_of, recovery_of
 from calm.checks.situations import STRUMMING, currents, equilibrium
@@ -84,13 +85,17 @@ def judged_stand(
         for findings in changed
         for one in findings
     ]
+    lacking = tuple(filter(is_lacking, (*given, *others)))
+    lacked = {_of(finding) for finding in lacking}
+    given = [one for one in given if not is_lacking(one)]
+    others = [one for one in others if _of(one) not in lacked or one.state is State.FAIL]
     graver = [each for each in others if each.state.severity > states.get(_of(each), -1)]
     listed = (*given, *graver)
     worst = worst_of_each_rule((*listed, *others))
     shown = {id(finding) for finding in listed}
     tighter = tuple(finding for finding in worst if id(finding) not in shown)
     accepted = tuple(one for one in (*given, *others) if one.accept is not None)
-    return MooringInEnvironment(environment, leg, situations, listed, tighter, accepted)
+    return MooringInEnvironment(environment, leg, situations, listed, tighter, accepted, lacking)
 
 
 def assessment_of(
@@ -110,6 +115,8 @@ def assessment_of(
     for each in ONCE:
         verdicts = each.judge(handling)
         findings += acceptance.findings(each, verdicts, name, first.environment, each.situation)
+    lacking = [one for stand in stands for one in stand.lacking]
+    findings = with_missing((*lacking, *findings), acceptance.parts, name, first.environment)
     if first.result is not None and not moving(stand.leg for stand in stands):
         findings.insert(0, equilibrium.find(situations.STILL_ONLY, name, first.environment))
     return Assessment(
@@ -244,7 +251,7 @@ STANDING = _judging(once=False)
 ONCE = _judging(once=True)
 """What is judged once of a mooring: its breaks, its launch and its recovery."""
 
-RULES = {each.name: each for each in (equilibrium, currents, *STANDING, *IN_WAVES, *ONCE)}
+RULES = {each.name: each for each in (equilibrium, currents, missing, *STANDING, *IN_WAVES, *ONCE)}
 """Every rule by its name."""
 
 

@@ -11,7 +11,7 @@ from typing import TypeVar
 
 from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
-from calm.checks.finding import AS_GIVEN, Finding, Rule, State, Verdict, worst_state
+from calm.checks.finding import AS_GIVEN, Finding, Lack, Rule, State, Verdict, worst_state
 from calm.checks.inventory import InventoryItem
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss, Recovery
@@ -19,11 +19,13 @@ from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import Accept, Clamp, MooringFile, Piece
 from calm.files.check_limits import LimitKey
-from calm.files.definition import EstimatedFigure
 from calm.files.pieces import parts_of
 from calm.files.rule_texts import RULES
 
 _Part = TypeVar("_Part", Piece, Clamp)
+
+MISSING = "missing"
+"""The rule of figures that components do not give."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +52,7 @@ class MooringInEnvironment:
     findings : all as given, and of the other situations those whose state is worse
     tighter : of each rule the finding of another situation that leaves less margin than all those
     accepted : of every situation, whether it is listed or not
+    lacking : of every situation, what rules cannot judge for want of a figure; not in `findings`
     """
 
     environment: str
@@ -58,6 +61,7 @@ class MooringInEnvironment:
     findings: tuple[Finding, ...]
     tighter: tuple[Finding, ...] = ()
     accepted: tuple[Finding, ...] = ()
+    lacking: tuple[Finding, ...] = ()
 
     @property
     def result(self) -> LegResult | None:
@@ -151,26 +155,31 @@ class Handling:
 class Acceptance:
     """The accepts of a mooring file on a day; only failures and what is unknown are accepted.
 
-    `estimates` are those in use, by the label of a part and the figure.
+    `parts` are the pieces and clamps of the line by their labels.
     """
 
     accepts: tuple[Accept, ...]
     day: date
-    estimates: Mapping[str, Mapping[str, EstimatedFigure]]
+    parts: Mapping[str, Piece | Clamp]
 
     @classmethod
     def of_file(cls, file: MooringFile, day: date | None) -> Acceptance:
         """Those of a mooring file on a day, today where none is given."""
-        estimates = {part.label: part.component.estimates for part in parts_of(file.pieces)}
-        return cls(file.accepts, day or date.today(), estimates)
+        parts = {part.label: part for part in parts_of(file.pieces)}
+        return cls(file.accepts, day or date.today(), parts)
 
     def of(self, finding: Finding) -> Finding:
-        """The finding, estimated where it rests on an estimate, accepted where the file does."""
+        """The finding, estimated where it rests on an estimate, accepted where the file does.
+
+        An accept of the rule `missing` covers every rule that lacks a figure of a component.
+        """
         finding = self._estimated(finding)
         if finding.state not in (State.FAIL, State.UNKNOWN):
             return finding
+        rules = (finding.rule,) if finding.lacks is None else (finding.rule, MISSING)
         for accept in self.accepts:
-            if accept.counts_on(self.day) and accept.covers(finding.rule, finding.component):
+            covers = any(accept.covers(rule, finding.component) for rule in rules)
+            if covers and accept.counts_on(self.day):
                 return replace(finding, state=State.ACCEPTED, accept=accept)
         return finding
 
@@ -187,13 +196,19 @@ class Acceptance:
 
     def _estimated(self, finding: Finding) -> Finding:
         """What passes by the least that a figure can be is estimated; what fails is unknown."""
-        own, figures = self.estimates.get(finding.component or "", {}), RULES[finding.rule].figures
+        part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
+        own = {} if part is None else part.component.estimates
         used = [one for name, one in own.items() if name in figures]
-        if not used or finding.state not in (State.PASS, State.FAIL):
+        if part is None or not used or finding.state not in (State.PASS, State.FAIL):
             return finding
-        state = State.ESTIMATED if finding.state is State.PASS else State.UNKNOWN
+        passes = finding.state is State.PASS
         said = " ".join(f"Its {one}." for one in used)
-        return replace(finding, state=state, message=f"{finding.message} {said}")
+        return replace(
+            finding,
+            state=State.ESTIMATED if passes else State.UNKNOWN,
+            message=f"{finding.message} {said}",
+            lacks=None if passes else Lack(part.label, used[0].quantity),
+        )
 
     def notices(self, accepted: Iterable[Finding]) -> Iterator[str]:
         """Notices of accepts that do not count, or that none of the accepted findings needs."""

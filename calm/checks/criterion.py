@@ -74,6 +74,7 @@ class Criterion:
     beyond : state of a value that does: fail or warn
     silent : whether a value that is NaN is nothing to judge, rather than unknown
     source : of the limit; "" for that of the rule
+    lacks : key of the component that is missing if there is no limit
     stated : value and limit as people state them, of the same margin, where not these
     """
 
@@ -85,6 +86,7 @@ class Criterion:
     beyond: State = State.FAIL
     silent: bool = False
     source: str = ""
+    lacks: str = ""
     stated: Callable[[float, LegResult], tuple[float, float]] | None = None
 
     def verdict(self, result: LegResult) -> Verdict | None:
@@ -94,7 +96,9 @@ class Criterion:
             return None
         message, remedy = self.words(value, result)
         if isnan(value) or self.limit is None:
-            return unknown(self.part, message, remedy, None if isnan(value) else value)
+            lacks = self.lacks if self.limit is None else ""
+            known = None if isnan(value) else value
+            return unknown(self.part, message, remedy, known, lacks=lacks)
         margin = value - self.limit if self.least else self.limit - value
         state, said = (State.PASS, None) if margin >= 0.0 else (self.beyond, remedy)
         shown, limit = (value, self.limit) if self.stated is None else self.stated(value, result)

@@ -26,6 +26,7 @@ from calm.checks.finding import AS_GIVEN, OWN
 from calm.checks.handling import backup
 from calm.checks.inventory import inventory_of
 from calm.checks.leg_graph import LegGraph
+from calm.checks.missing import with_missing
 from calm.checks.planned import planned_depth, planned_parts
 from calm.errors import NoEquilibrium
 from calm.files.legs import stand_in_anchor
@@ -133,6 +134,8 @@ def assessment_of(
     findings = list(assess.findings_of_currents(list(waters.values()), name, acceptance))
     for rule, verdicts, environment in once:
         findings += acceptance.findings(rule, verdicts, name, environment)
+    lacking = [one for stand in stands for one in stand.lacking]
+    findings = with_missing((*lacking, *findings), acceptance.parts, name, first)
     fast = (float(np.hypot(each.water.u, each.water.v).max()) for each in waters.values())
     if found and max(fast) < situations.LEAST_CURRENT:
         findings.insert(

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import partial
 from math import inf
 from typing import Any
 
 from calm.files import Accept, LinePart, Place
+from calm.files.definition import EstimatedFigure
 from calm.files.rule_texts import RULES as RULE_TEXTS
 
 AS_GIVEN = "as given"
@@ -64,6 +65,52 @@ def worst_state(states: Iterable[State]) -> State:
 
 
 @dataclass(frozen=True)
+class Lack:
+    """A figure of a component without which a rule cannot judge.
+
+    Attributes
+    ----------
+    label : of a piece or clamp that is such a component
+    quantity : key of the component
+    """
+
+    label: str
+    quantity: str
+
+
+@dataclass(frozen=True)
+class MissingFigure:
+    """A figure that a component does not give, once for all rules and pieces.
+
+    Attributes
+    ----------
+    component_id : as in `use`
+    quantity : key of the component
+    needed_by : names of the rules that cannot judge without it
+    pieces, places : labels and places of the pieces and clamps that are not judged
+    class_estimate : estimate of the figure, which is too low to settle the rules; None without one
+    """
+
+    component_id: str
+    quantity: str
+    needed_by: tuple[str, ...]
+    pieces: tuple[str, ...]
+    places: tuple[Place, ...]
+    class_estimate: EstimatedFigure | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """The missing figure in JSON."""
+        estimate = self.class_estimate
+        return {
+            "component_id": self.component_id,
+            "quantity": self.quantity,
+            "needed_by": list(self.needed_by),
+            "pieces": list(self.pieces),
+            "class_estimate": None if estimate is None else estimate.model_dump(),
+        }
+
+
+@dataclass(frozen=True)
 class Verdict:
     """Hold what a rule says of a mooring, or of one of its components.
 
@@ -76,6 +123,8 @@ class Verdict:
     message : what was found, with both figures
     remedy : what to change; None where nothing need be
     source : of the limit, where it is not that of the rule
+    lacks : the figure that the rule needs and a component does not give
+    missing : of the rule `missing` alone, the figure with all rules and pieces
     """
 
     component: str | None
@@ -87,6 +136,8 @@ class Verdict:
     remedy: str | None = None
     place: Place | None = None
     source: str = ""
+    lacks: Lack | None = None
+    missing: MissingFigure | None = None
 
     @property
     def share(self) -> float | None:
@@ -127,10 +178,24 @@ at_least = partial(at_most, least=True)
 
 
 def unknown(
-    part: LinePart | None, message: str, remedy: str, value: float | None = None
+    part: LinePart | None,
+    message: str,
+    remedy: str,
+    value: float | None = None,
+    *,
+    lacks: str = "",
+    of: LinePart | None = None,
 ) -> Verdict:
-    """The verdict where a figure that the rule needs is missing."""
-    return verdict_on(part, State.UNKNOWN, message, remedy, value)
+    """The verdict if the rule cannot judge.
+
+    Parameters
+    ----------
+    lacks : key of the component whose figure is missing, if that is the reason
+    of : piece or clamp that lacks it, if it is another than the part judged
+    """
+    lacking = of or part
+    lack = Lack(lacking.label, lacks) if lacks and lacking is not None else None
+    return replace(verdict_on(part, State.UNKNOWN, message, remedy, value), lacks=lack)
 
 
 def verdict_on(
@@ -225,10 +290,18 @@ class Finding(Verdict):
         """The finding in JSON."""
         first = ("mooring", "environment", "situation", "rule", "component")
         values = dict(vars(self))
-        accept = values.pop("accept")
-        del values["place"], values["probability"]
+        accept, missing = values.pop("accept"), values.pop("missing")
+        del values["place"], values["probability"], values["lacks"]
         said = {"reason": None if accept is None else accept.reason}
-        return {name: values.pop(name) for name in first} | values | said
+        figure = {} if missing is None else missing.to_dict()
+        return {name: values.pop(name) for name in first} | values | said | figure
+
+    @property
+    def places(self) -> tuple[Place, ...]:
+        """Places of all pieces and clamps that the finding concerns; none of the whole line."""
+        if self.missing is not None:
+            return self.missing.places
+        return () if self.place is None else (self.place,)
 
 
 def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:

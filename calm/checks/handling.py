@@ -4,12 +4,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from math import isnan
 
+from calm.case.warnings import counted_working_load
 from calm.checks.assessment import Handling
 from calm.checks.criterion import cited
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss, Recovery
-from calm.checks.strength import lesser_load, passes_load_on
+from calm.checks.strength import lesser_load, passes_load_on, wanted_load
 from calm.errors import NoEquilibrium
 from calm.files import LinePart
 from calm.quantities import QUANTITIES, say
@@ -81,14 +82,15 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
     times, over = file.checks.launch_working_factor, file.checks.launch_safety_factor
     most = "" if launch.anchor_drag_known else "at most "
     for piece, tension in zip(file.pieces, launch.greatest_tension.tolist(), strict=False):
-        limit, working = lesser_load(piece.component, times, over), piece.component.working_load
+        limit = lesser_load(piece.component, times, over)
+        working = counted_working_load(piece.component)
         bears = f"{piece.label} bears {most}{say('tension', tension)} in the fall"
         if limit is None:
             if passes_load_on(file, piece.index):
                 message = f"{bears}; neither its working nor its breaking load is known."
-                yield unknown(
-                    piece, message, "Give its `working_load` or `breaking_load`.", tension
-                )
+                remedy = "Give its `working_load` or `breaking_load`."
+                lacks = wanted_load(piece.component)
+                yield unknown(piece, message, remedy, tension, lacks=lacks)
             continue
         if working is not None and limit == times * working:
             load = "working load" if times == 1.0 else f"working load times {times:g}"
@@ -99,7 +101,8 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         message = f"{bears}; its {load} is {say('tension', limit)}."
         if tension > limit and not launch.anchor_drag_known:
             message += " This assumes an anchor without drag; its own is not known."
-            yield unknown(piece, message, "Give the anchor's `kt`.", tension)
+            remedy, anchor = "Give the anchor's `kt`.", file.pieces[-1]
+            yield unknown(piece, message, remedy, tension, lacks="kt", of=anchor)
             continue
         remedy = "Take a stronger one, or lower the anchor on a parachute or a wire."
         yield at_most(piece, tension, limit, message, remedy, source=source)
@@ -130,7 +133,7 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
     if launch.greatest_speed <= GREATEST_TOUCHDOWN_SPEED:
         yield at_most(anchor, speed, GREATEST_TOUCHDOWN_SPEED, message, remedy, State.WARN)
     else:
-        yield unknown(anchor, message, "Give the anchor's `kt`.", speed)
+        yield unknown(anchor, message, "Give the anchor's `kt`.", speed, lacks="kt")
 
 
 @rule("recovery", once=True)

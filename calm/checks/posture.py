@@ -67,7 +67,8 @@ def tilt(leg: Leg) -> Iterator[Criterion]:
             continue
         limit = min((one for one in (own, design) if one is not None), default=None)
         source = THE_DESIGNS if limit is not None and limit != own else ""
-        yield Criterion(part, "tilt", limit, partial(_tilt_words, part, limit), source=source)
+        words = partial(_tilt_words, part, limit)
+        yield Criterion(part, "tilt", limit, words, source=source, lacks="max_tilt")
         if warned is not None and (limit is None or warned < limit):
             words = partial(_doubtful_words, part, warned)
             yield Criterion(part, "tilt", warned, words, beyond=State.WARN)
@@ -106,7 +107,9 @@ def depth_rating(leg: Leg) -> Iterator[Criterion]:
             continue
         limit = None if rating is None else rating - min(margin, MOST_OF_A_RATING * rating)
         words = partial(_rating_words, part, limit)
-        yield Criterion(part, "depth", limit, words, silent=True, source=source)
+        yield Criterion(
+            part, "depth", limit, words, silent=True, source=source, lacks="depth_rating"
+        )
 
 
 def _rating_words(
@@ -150,6 +153,7 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
                 f"inextensible: it {could}; depths above it are not known.",
                 "Give its `stiffness`, or its `elongation`.",
                 by,
+                lacks="stiffness",
             )
         breaking = component.breaking_load
         bears = component.working_load or (breaking and _MEASURED * breaking)

@@ -7,12 +7,12 @@ import numpy as np
 
 from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
-from calm.case.warnings import is_synthetic
+from calm.case.warnings import counted_working_load, is_synthetic
 from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, pieces_of
 from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
 from calm.checks.posture import reaches_the_surface
-from calm.files import Cable, Component, MooringFile, Piece, SafetyFactors
+from calm.files import Cable, Component, Flexible, MooringFile, Piece, SafetyFactors
 from calm.files.mooring_file import legs_of
 from calm.quantities import say
 
@@ -27,19 +27,28 @@ def allowable_load(component: Component, factors: SafetyFactors, surface: bool) 
     """Load that a component may bear in use [N], None where neither of its loads is known.
 
     The lesser of its working load and of its breaking load over the safety factor of a surface
-    mooring, of a synthetic rope, or of steel, as far as they are known.
+    mooring, of a synthetic rope, or of steel, as far as they are known and count.
     """
     return lesser_load(component, 1.0, safety_factor(component, factors, surface))
 
 
 def lesser_load(component: Component, working_factor: float, factor: float) -> float | None:
-    """The lesser of working load × `working_factor` and breaking load / `factor` [N]."""
-    known = []
-    if component.working_load is not None:
-        known.append(working_factor * component.working_load)
+    """The lesser of working load × `working_factor` and breaking load / `factor` [N].
+
+    Of a synthetic rope that gives both, the breaking load alone counts.
+    """
+    known, working = [], counted_working_load(component)
+    if working is not None:
+        known.append(working_factor * working)
     if component.breaking_load is not None:
         known.append(component.breaking_load / factor)
     return min(known, default=None)
+
+
+def wanted_load(component: Component) -> str:
+    """The key of the load to ask for if a component gives none: ropes and wires are sold by their
+    breaking load, other things by their working load."""
+    return "breaking_load" if isinstance(component, Flexible) else "working_load"
 
 
 def passes_load_on(file: MooringFile, index: int) -> bool:
@@ -88,7 +97,8 @@ def strength(leg: Leg) -> Iterator[Criterion]:
         of_factor = limit is not None and limit != component.working_load
         source = cited(leg.file, f"safety_factor.{name}") if of_factor else ""
         words = partial(_strength_words, part, limit, getattr(factors, name))
-        yield Criterion(part, "tension", limit, words, source=source)
+        lacks = wanted_load(component)
+        yield Criterion(part, "tension", limit, words, source=source, lacks=lacks)
 
 
 def _strength_words(
@@ -100,17 +110,17 @@ def _strength_words(
             f"{bears}; neither its working nor its breaking load is known.",
             "Give its `working_load` or `breaking_load`.",
         )
-    if limit == component.working_load:
+    if limit == counted_working_load(component):
         allowed = f"its working load is {say('tension', limit)}"
     else:
         allowed = (
             f"its breaking load of {say('tension', component.breaking_load)} "
             f"over {factor:g} allows {say('tension', limit)}"
         )
-    return f"{bears}; {allowed}.", (
-        f"Take one with a working load of {say('tension', tension)} and a breaking load "
-        f"of {say('tension', factor * tension)} or more."
-    )
+    wanted = f"a breaking load of {say('tension', factor * tension)} or more"
+    if not is_synthetic(component):
+        wanted = f"a working load of {say('tension', tension)} and {wanted}"
+    return f"{bears}; {allowed}.", f"Take one with {wanted}."
 
 
 @criteria("release-load")
@@ -123,13 +133,14 @@ def release_load(leg: Leg) -> Iterator[Criterion]:
     factors, surface = leg.file.checks.safety_factor, reaches_the_surface(leg)
     for part in pieces_of(leg):
         if part.component.role == "release":
+            lacks = wanted_load(part.component)
             stands = allowable_load(part.component, factors, surface)
             opens = part.component.opening_load
             words = partial(_release_words, part, "bears", stands)
-            yield Criterion(part, "tension", stands, words)
+            yield Criterion(part, "tension", stands, words, lacks=lacks)
             limit = stands if opens is None else opens
             words = partial(_release_words, part, "opens under", limit)
-            yield Criterion(part, "tension_bottom", limit, words)
+            yield Criterion(part, "tension_bottom", limit, words, lacks=lacks)
 
 
 def _release_words(
@@ -244,6 +255,7 @@ def anchor_weight(leg: Leg) -> Iterator[Criterion]:
         weight,
         words,
         source=cited(leg.file, "anchor_factor", "anchor_friction"),
+        lacks="weight",
         stated=lambda required, result: (result.anchor.weight, required),
     )
 
@@ -264,7 +276,8 @@ def anchor_uplift(leg: Leg) -> Iterator[Criterion]:
         )
 
     source = cited(leg.file, "anchor_factor")
-    yield Criterion(pieces_of(leg)[-1], "vertical", limit, words, source=source)
+    anchor = pieces_of(leg)[-1]
+    yield Criterion(anchor, "vertical", limit, words, source=source, lacks="weight")
 
 
 @criteria("anchor-sliding", of_anchor=True)
@@ -294,6 +307,7 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
         None if weight is None else friction * weight / factor,
         words,
         source=cited(leg.file, "anchor_factor", "anchor_friction"),
+        lacks="weight",
         stated=lambda _, result: (result.anchor.horizontal, held(result)),
     )
 

@@ -10,7 +10,7 @@ from calm.case.leg import Leg
 from calm.checks.criterion import cited
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
 from calm.checks.posture import reaches_the_surface
-from calm.checks.strength import lesser_load, passes_load_on
+from calm.checks.strength import lesser_load, passes_load_on, wanted_load
 from calm.errors import UsageError
 from calm.quantities import say
 from calm.waves.analysis import WaveAnalysis, analyse
@@ -66,7 +66,8 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
             if passes_load_on(leg.file, piece.index):
                 message = f"{bears}; neither its working nor its breaking load is known."
                 message += _measured(row, "greatest")
-                yield unknown(piece, message, "Give its `breaking_load`.", tension)
+                remedy, lacks = "Give its `breaking_load`.", wanted_load(piece.component)
+                yield unknown(piece, message, remedy, tension, lacks=lacks)
             continue
         message = f"{bears}; its loads allow {say('tension', limit)}.{_measured(row, 'greatest')}"
         remedy = "Take a stronger one, or let the line stretch more."

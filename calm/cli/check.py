@@ -6,11 +6,13 @@ import os
 from collections.abc import Callable, Sequence
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
 
 from calm.cli import options
 from calm.cli.judging import DrawnSection, drawn_section, judge, load_ahead
-from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate, show
 from calm.cli.reading import DesignFile, read_designs
 from calm.errors import InputError, Problem, UsageError
 
@@ -28,6 +30,8 @@ def check(
     json: OutputPath = None,
     report: Path | None = None,
     against: Path | None = None,
+    missing: bool = False,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
     allow_unknown: bool = False,
     uncertainty: bool = False,
     samples: options.Samples = 2048,
@@ -54,6 +58,11 @@ def check(
         Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder.
     against
         An earlier design, with which the report compares the mooring; needs --report.
+    missing
+        Print, in place of the findings, a block of YAML to complete: the figures that
+        each component lacks, with the rules that need them.
+    output
+        Write the block of --missing to this file.
     allow_unknown
         Ignore unknown figures in the exit code; the output stays the same.
     uncertainty
@@ -68,6 +77,7 @@ def check(
       calm check mooring.yaml --environment storm.yaml --environment neap.yaml
       calm check north.yaml south.yaml --report cruise/
       calm check revised.yaml --report cruise/ --against design.yaml
+      calm check mooring.yaml --missing -o figures.yaml
       calm check mooring.yaml --uncertainty --samples 512
       calm check mooring.yaml --json - | jq '.findings[] | select(.state == "fail")'
     """
@@ -75,6 +85,7 @@ def check(
     options.from_one(workers=workers)
     if against is not None and (report is None or len(files) > 1):
         raise UsageError("--against compares one mooring with an earlier design in its --report")
+    _check_missing(missing, output, files, (json, report))
     draws = options.draws_of(uncertainty, samples, seed)
     if report is not None:
         given = [*files, *map(Path, environment or ()), *(catalog or ()), *filter(None, [against])]
@@ -105,7 +116,10 @@ def check(
         names = str(against), str(designs[0].path)
         compared = comparison_of(names, earlier, designs[0].moorings[0])
         drawings = [drawn_section(mooring_section(assessments[0], compared), 1)]
-    _answer(assessments, drawings, outputs, report)
+    if missing:
+        _write_missing(assessments, output)
+    else:
+        _answer(assessments, drawings, outputs, report)
     return gravest(_code(each, allow_unknown) for each in assessments)
 
 
@@ -159,6 +173,33 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
         for path in given:
             if os.path.realpath(path) == real:
                 raise UsageError(f"{path} is read here; the report would overwrite it")
+
+
+def _check_missing(
+    missing: bool, output: Path | None, files: Sequence[Path], other: Sequence[Path | None]
+) -> None:
+    """Refuse a block of missing figures that could not be written, before anything is solved."""
+    if output is not None and not missing:
+        raise UsageError("-o is the file of --missing; for the findings, use --json or --report")
+    if missing and any(other):
+        raise UsageError("--missing is printed in place of the findings: leave out the others")
+    if output is not None:
+        from calm.report.folder import check_destination
+
+        check_destination(output)
+        if os.path.realpath(output) in map(os.path.realpath, files):
+            raise UsageError(f"{output} would overwrite the file that is read")
+
+
+def _write_missing(assessments: Sequence[Assessment], output: Path | None) -> None:
+    from calm.report.folder import write_file
+    from calm.report.missing_block import missing_block
+
+    block = missing_block(one for each in assessments for one in each.all_findings())
+    if output is None:
+        show(block)
+    else:
+        write_file(output, block.encode())
 
 
 def _answer(

@@ -17,7 +17,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from calm.errors import InputError, Problem, UsageError, nearest, shown, unknown
-from calm.files.components import KINDS, Component, Outline, lacking
+from calm.files.components import KINDS, Component, Outline, contradicted, lacking
 from calm.files.definition import Definition, described
 from calm.files.yaml_document import Document, SourceMapping, compose, read_document, validate
 from calm.shipped import shipped_folder
@@ -85,8 +85,22 @@ class Catalogue:
 
     def under(self, definitions: SourceMapping) -> Catalogue:
         """Lay this catalogue under the `components:` of a mooring file."""
-        entries = entries_of(definitions, None)
+        entries = map(self._completed, entries_of(definitions, None))
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
+
+    def _completed(self, entry: CatalogueEntry) -> CatalogueEntry:
+        """Return an entry; one without `kind` completes the definition of its id below.
+
+        Keys without a value are left out. An assembly has no figures of its own to complete.
+        """
+        section, below = entry.section, self.entry(entry.id)
+        kind = None if below is None else below.section.data.get("kind")
+        if below is None or "kind" in section.data or kind not in KINDS:
+            return entry
+        given = {key: value for key, value in section.data.items() if value is not None}
+        void = contradicted(str(kind), below.section.data.keys(), given.keys())
+        whole = section.holding(given).over(below.section, dropping=void)
+        return CatalogueEntry(entry.id, below.family, whole)
 
     def ids(self) -> list[str]:
         """Return every id, in the order of the files."""
@@ -225,6 +239,13 @@ class CatalogueEntry:
     id: str
     family: str | None
     section: SourceMapping
+
+    @property
+    def replaces(self) -> list[str]:
+        """Return the keys in place of those of a definition that the entry completes."""
+        base = self.section.base
+        given = frozenset[str]() if base is None else self.section.own & base.data.keys()
+        return sorted(given - {"source", "sources", "searched", "note", "date"})
 
     @property
     def place(self) -> str:

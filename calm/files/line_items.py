@@ -286,7 +286,11 @@ class LineReader:
         hidden = self._catalogue.hidden(use)
         if hidden:
             notice = f"{use}: defined in {entry.place}, which hides that of {hidden.place}"
-            self._notices += [notice] * (notice not in self._notices)
+            if entry.section.base is not None:
+                keys = ", ".join(f"`{key}`" for key in entry.replaces)
+                notice = f"{use}: {keys} of {entry.place} in place of that of {hidden.place}"
+            if entry.section.base is None or entry.replaces:
+                self._notices += [notice] * (notice not in self._notices)
         return entry
 
     def _definition(

@@ -47,10 +47,17 @@ RULES = {
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 of its speed, 0.2 "
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
+    "missing": RuleText("Missing figures", "",
+        "figures that a component does not give and rules need: one finding for each component id "
+        "and figure, with these rules and the pieces that they cannot judge",
+        "unknown",
+        "The sources of the rules that need the figure",
+        _ONCE),
     "strength": RuleText("Strength", "tension",
         "greatest tension of every piece; of the top one and the anchor where they give a load",
         "the lesser of its working load and its breaking load over `safety_factor`: 3 steel, "
-        "5 synthetic, 5 anything in a surface mooring",
+        "5 synthetic, 5 anything in a surface mooring; of a synthetic rope with a breaking load "
+        "that alone, since rope tables print working loads for lifting",
         "The lesser of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, "
         "chain and wire), oceanographic practice MBL/3 to MBL/5",
         figures=("working_load", "breaking_load")),
@@ -142,7 +149,8 @@ RULES = {
         "Practice of mooring groups, 50 to 100 kgf above the release; no figure is published"),
     "wave-strength": RuleText("Strength in waves", "tension",
         "greatest tension of every piece in `waves:`, mean and most probable greatest of 3 h",
-        "the lesser of its working load and its breaking load over `waves_safety_factor`, 1.67; "
+        "the lesser of its working load and its breaking load over `waves_safety_factor`, 1.67, "
+        "the loads that count for `strength`; "
         "unknown of a surface mooring without `waves:`",
         "API RP 2SK: 1.67 on breaking strength, intact, tensions found dynamically",
         _WAVES, figures=("working_load", "breaking_load")),
@@ -232,7 +240,7 @@ RULES = {
     "launch-strength": RuleText("Strength in the launch", "tension",
         "tension of every piece as the line falls behind its anchor",
         "the lesser of `launch_working_factor`, 1, times its working load and its breaking load "
-        "over `launch_safety_factor`, 2",
+        "over `launch_safety_factor`, 2; the loads that count for `strength`",
         "Anchor-last launch at terminal speed (URI GSO program); the working load, and breaking "
         "load over 2",
         _ONCE, figures=("working_load", "breaking_load")),

@@ -33,8 +33,9 @@ def mooring_schema() -> Schema:
     )
     refs = {model: names[(model, "validation")] for model in models}
     schemas: dict[str, Schema] = definitions["$defs"]
-    component = {"oneOf": [refs[model] for model in (*KINDS.values(), Assembly)]}
     fields = _fields(KINDS.values(), schemas)
+    completed = {"type": "object", "properties": fields, "additionalProperties": False}
+    component = {"oneOf": [*(refs[model] for model in (*KINDS.values(), Assembly)), completed]}
     schemas |= {"Clamp": schemas.pop("ClampKeys"), "Item": schemas.pop("ItemKeys")}
     own = schemas["Item"]["properties"]
     own["length"] = fields["length"] | {"anyOf": [{"const": "fit"}, LENGTH.json_schema()]}

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import accumulate
+from itertools import accumulate, product
 from math import ceil, hypot
 from operator import attrgetter
 from pathlib import Path
@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from calm.checks.assess import RULES
-from calm.checks.assessment import Assessment
+from calm.checks.assessment import Assessment, MooringInEnvironment
 from calm.checks.finding import AS_GIVEN, ON_THE_WAY, OWN, Finding, State, by_rule, worst_of
 from calm.files.check_limits import LimitKey
 from calm.quantities import say
@@ -120,12 +120,14 @@ def facts_of(assessment: Assessment) -> CheckFacts:
     every = (*assessment.all_findings(), *assessment.tighter_findings())
     anchors = [one for one in every if one.rule == "anchor-weight" and one.value is not None]
     columns = {
-        stand.environment: by_rule((*stand.findings, *stand.tighter)) for stand in assessment.stands
+        stand.environment: by_rule((*stand.findings, *stand.tighter, *_missing_in(stand, every)))
+        for stand in assessment.stands
     }
+    on_the_way = [one for one in assessment.findings if _is_of_the_way(one)]
     return CheckFacts(
         assessment.name,
         frozenset(one.leg.file.environment.name or OWN for one in assessment.stands),
-        columns | {ON_THE_WAY: by_rule(assessment.findings)},
+        columns | {ON_THE_WAY: by_rule(on_the_way)},
         tuple(title_pairs(file)),
         _file_hash(Path(file.path)),
         _strongest_current(assessment),
@@ -135,6 +137,22 @@ def facts_of(assessment: Assessment) -> CheckFacts:
         tuple(assessment.accepted_findings()),
         tuple(key for key in assessment.limits if key.departs),
     )
+
+
+def _missing_in(stand: MooringInEnvironment, findings: Iterable[Finding]) -> Iterator[Finding]:
+    """Missing figures without which a rule cannot judge the mooring in an environment."""
+    lacked = {(one.rule, one.place) for one in stand.lacking}
+    for one in findings:
+        if one.missing is not None:
+            wanted = product(one.missing.needed_by, one.missing.places)
+            if not lacked.isdisjoint(wanted):
+                yield one
+
+
+def _is_of_the_way(finding: Finding) -> bool:
+    """Whether a finding concerns launch, recovery or breaks; a missing figure may not."""
+    figure = finding.missing
+    return figure is None or any(RULES[name].once for name in figure.needed_by)
 
 
 def _file_hash(path: Path) -> str | None:
@@ -363,8 +381,9 @@ def worst_table(moorings: Sequence[CheckFacts]) -> Table:
             worst = [worst_of(each) for _, each in found]
             states = {(mooring, one.state) for (mooring, _), one in zip(found, worst, strict=True)}
             counts = Counter(state for _, state in states) if several else Counter[State]()
-            unknown = sum(one.state is State.UNKNOWN for _, each in found for one in each)
-            rows.append((worst_of(worst), unknown, counts))
+            every = (one for _, each in found for one in each)
+            unknown = {id(one) for one in every if one.state is State.UNKNOWN}
+            rows.append((worst_of(worst), len(unknown), counts))
 
     def in_so_many(heading: str, state: State) -> blocks.Field:
         return number(heading, lambda row: row[2][state] or None, narrow=False)

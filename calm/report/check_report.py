@@ -250,6 +250,8 @@ def _sentence(found: Sequence[Finding]) -> blocks.Line:
     """Return what is found alike of some components, told of the worst of them."""
     worst = found[0]
     sign, quiet = Span(f"{worst.state.sign} ", worst.state), worst.state is not State.FAIL
+    if worst.missing is not None:
+        return sign, Span(f"{worst.message} {worst.remedy}", quiet=True)
     if worst.state is State.UNKNOWN and worst.component is not None and worst.limit is None:
         names = check_tables.named((one.component or "" for one in found), _LACKING)
         return sign, Span(f"{worst.rule} of {names} is unknown. {worst.remedy}", quiet=True)

@@ -51,7 +51,7 @@ def place_of(finding: Finding) -> str:
 
 def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
     """The worst finding of each rule on each component, the gravest first."""
-    groups = grouped(findings, lambda each: (each.rule, each.place))
+    groups = grouped(findings, lambda each: (each.rule, each.place, each.missing))
     return sorted(map(worst_of, groups), key=attrgetter("rank"))
 
 

@@ -20,6 +20,7 @@ from calm.case.result_tables import ComponentRow, rows_by_place, table_columns
 from calm.checks import assess, design_check
 from calm.checks.assessment import MooringInEnvironment, Situation
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
+from calm.checks.missing import with_missing
 from calm.checks.strength import strength
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, Piece, Place, editing, pieces, read_mooring, yaml_document
@@ -210,6 +211,8 @@ def _solved(view: View, file: MooringFile) -> View:
         for each in (None,) if result is None else result.legs:
             situation = Situation(AS_GIVEN, each, failure)
             findings += assess.findings_of(situation, file.name, file.environment.name or OWN)
+    parts = {part.label: part for part in pieces.parts_of(file.pieces)}
+    findings = with_missing(findings, parts, file.name, file.environment.name or OWN)
     rows = tuple(rows_of(file, result, findings))
     return replace(
         view, result=result, failure=failure, findings=tuple(findings), rows=rows,
@@ -222,10 +225,6 @@ def _wrong(view: View, problems: Sequence[Problem]) -> View:
     lacking = dict.fromkeys(problem.lacks for problem in problems if problem.lacks)
     wrong = tuple(problem for problem in problems if not problem.lacks)
     return replace(view, problems=wrong, missing=tuple(lacking))
-
-
-_LACKING = (State.UNKNOWN, State.ACCEPTED)
-"""What is not known stays so where somebody has accepted it."""
 
 
 @dataclass(frozen=True)
@@ -260,7 +259,8 @@ def rows_of(
     columns = table_columns(Output.BUILDER)
     found: defaultdict[Place | None, list[Finding]] = defaultdict(list)
     for finding in findings:
-        found[finding.place].append(finding)
+        for place in finding.places:
+            found[place].append(finding)
     for piece in file.pieces:
         if piece.use == pieces.STAND_IN:
             continue
@@ -281,8 +281,13 @@ def rows_of(
                 figures,
                 margin=min((each.share for each in own if each.share is not None), default=None),
                 state=gravest.state if gravest else None,
-                lacks_strength=any(
-                    each.rule == strength.name and each.state in _LACKING and each.share is None
-                    for each in own
-                ),
+                lacks_strength=any(map(_lacks_strength, own)),
             )
+
+
+def _lacks_strength(finding: Finding) -> bool:
+    """Whether `strength` lacks a figure, or would if nobody had accepted it."""
+    if finding.missing is not None:
+        return strength.name in finding.missing.needed_by
+    lacks = finding.lacks is not None and finding.share is None
+    return lacks and finding.rule == strength.name

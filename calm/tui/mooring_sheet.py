@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from calm.checks.finding import State
+from calm.checks.missing import alternatives
 from calm.files import Clamp, Flexible, MooringFile, Piece, Place
 from calm.files.editing import Draft, Value
 from calm.files.item_keys import Equipment
@@ -212,7 +213,8 @@ def figures_sheet(missing: Sequence[Missing]) -> InputSheet:
         for number, figure in enumerate(each.fields):
             above = "" if number else each.called
             key, title = f"{each.use}.{figure.key}", figure.key.replace("_", " ")
-            asked.append(replace(figure, key=key, title=title, above=above))
+            takes = each.estimates.get(figure.key, figure.takes)
+            asked.append(replace(figure, key=key, title=title, above=above, takes=takes))
     asked.append(Asked("source", "source", takes=_SOURCE, above="Of the figures"))
     count = len(missing)
     title = f"Figures missing of {count} component{'s' * (count != 1)}; any may stay empty"
@@ -229,12 +231,14 @@ class Missing:
     labels : of the pieces and clamps that it is missing of, as the keys of a dict
     targets : by key where in the file it is written: in the definition, where the file has it,
         else in every row that lacks it; nowhere where that stands in an assembly
+    estimates : class estimate by key, without its source
     """
 
     use: str
     kind: str
     labels: dict[str, None] = field(default_factory=dict)
     targets: dict[str, dict[Location, None]] = field(default_factory=dict)
+    estimates: dict[str, str] = field(default_factory=dict)
 
     @property
     def called(self) -> str:
@@ -255,18 +259,28 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
     if view.file is None:
         return []
     wanted: dict[Place, dict[str, None]] = {}
-    for finding in view.findings:
-        if finding.state is State.UNKNOWN and finding.place and RULES[finding.rule].figures:
-            asked = wanted.setdefault(finding.place, {})
-            asked.update(dict.fromkeys(RULES[finding.rule].figures))
+    estimates: dict[tuple[str, str], str] = {}
+    pieces = [*parts_of(view.file.pieces)]
+    for figure in (one.missing for one in view.findings if one.missing is not None):
+        own_places = [part.place for part in pieces if part.use == figure.component_id]
+        places = [one for one in own_places if one in figure.places] or own_places
+        rules = (RULES[name].figures for name in figure.needed_by)
+        keys = dict.fromkeys((*alternatives(figure.quantity), *chain.from_iterable(rules)))
+        for place in places:
+            wanted.setdefault(place, {}).update(keys)
+        if figure.class_estimate is not None:
+            bounds = str(figure.class_estimate).partition(": ")[2].partition(" (")[0]
+            estimates[figure.component_id, figure.quantity] = f"estimated: {bounds}"
     own = draft.value(("components",)) or ()
     found: dict[str, Missing] = {}
-    for part in parts_of(view.file.pieces):
+    for part in pieces:
         if part.place not in wanted:
             continue
         missing = found.setdefault(part.use, Missing(part.use, part.component.kind))
         missing.labels[part.label] = None
         for key in wanted[part.place]:
+            if (estimate := estimates.get((part.use, key))) is not None:
+                missing.estimates[key] = estimate
             targets = missing.targets.setdefault(key, {})
             if part.use in own:
                 targets["components", part.use] = None

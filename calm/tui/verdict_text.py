@@ -116,7 +116,7 @@ def _environment(name: str) -> str:
 
 def _stand(stand: MooringInEnvironment) -> Saying:
     """Return how the line does in one environment, in one line."""
-    said, result = _judged(stand.findings), stand.result
+    said, result = _judged((*stand.findings, *stand.lacking)), stand.result
     figures = ""
     if result is not None and result.type != "surface":
         figures = f"top at {say('depth', result.top.depth)}, "
@@ -217,13 +217,21 @@ def _found(findings: Sequence[Finding], *, pending: bool) -> Iterator[Saying]:
 
     A rule passes where it is met for every component: of a figure that is missing it is not known.
     """
-    from calm.report.check_tables import grouped, named_components
+    from calm.report.check_tables import grouped, named, named_components
 
     for finding in sorted(findings, key=lambda each: each.rank):
         if _graver(finding):
             yield _told(finding)
-    for own in grouped((each for each in findings if each.state is State.UNKNOWN), _title):
-        text = f"figures missing of {named_components(own)}"
+    unknown = [each for each in findings if each.state is State.UNKNOWN]
+    for one in unknown:
+        if (figure := one.missing) is not None:
+            needed = ", ".join(figure.needed_by)
+            text = f"{figure.quantity} of {named(figure.pieces)}, needed by {needed}"
+            yield Saying(
+                text, f"Missing of {figure.component_id}", State.UNKNOWN, places=_places([one])
+            )
+    for own in grouped((each for each in unknown if each.missing is None), _title):
+        text = f"not known of {named_components(own)}"
         yield Saying(text, _title(own[0]), State.UNKNOWN, places=_places(own))
     other = {_title(each) for each in findings if _graver(each) or each.state is State.UNKNOWN}
     passed = dict.fromkeys(_title(each) for each in findings if each.state is State.PASS)
@@ -236,7 +244,7 @@ def _found(findings: Sequence[Finding], *, pending: bool) -> Iterator[Saying]:
 def why(view: View, row: Place) -> list[Saying]:
     """All that was found of a row of the file, the gravest first, with what would mend it."""
     found = [_placed(each, view) for each in (*view.findings, *view.tighter)]
-    own = [each for each in found if each.place is not None and each.place.row == row]
+    own = [each for each in found if row in _places([each])]
     return [_told(each) for each in sorted(own, key=lambda each: each.rank)]
 
 
@@ -248,7 +256,7 @@ def _told(finding: Finding) -> Saying:
 
 def _places(findings: Iterable[Finding | None]) -> tuple[Place, ...]:
     """The rows that findings are of, each once."""
-    found = (each.place.row for each in findings if each is not None and each.place is not None)
+    found = (place.row for each in findings if each is not None for place in each.places)
     return tuple(dict.fromkeys(found))
 
 

@@ -38,6 +38,10 @@ def checked(calm, file):
     states = {}
     for finding in document["findings"]:
         states.setdefault((finding["rule"], finding["component"]), []).append(finding["state"])
+    for finding in document["findings"]:
+        for rule in finding.get("needed_by", ()):  # of one missing figure
+            for label in finding["pieces"]:
+                states.setdefault((rule, label), [finding["state"]])
     return done, document, states
 
 

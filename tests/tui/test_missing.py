@@ -5,7 +5,7 @@ import pytest
 from calm.checks.finding import State
 from calm.files.editing import Draft
 from calm.tui.live import judge
-from calm.tui.mooring_sheet import missing_figures, with_figures
+from calm.tui.mooring_sheet import figures_sheet, missing_figures, with_figures
 from tests.tui.conftest import MOORING
 
 UNKNOWN = MOORING.replace(", depth_rating: 300 m", "")
@@ -101,3 +101,12 @@ def test_where_nothing_is_missing_that_is_said(drive, folder):
         assert "No figure of a component is missing" in driver.screen
 
     drive(story, path)
+
+
+def test_the_form_shows_the_class_estimate_of_a_figure():
+    estimate = "estimate: {quantity: working_load, value: 20 kN, low: 1 N, source: its like}"
+    text = UNKNOWN.replace("role: release,", f"role: release, {estimate},")
+    (found,) = (one for one in missing_figures(judge(text), Draft(text)) if one.use == "releaser")
+    assert found.estimates == {"working_load": "estimated: 1 N at least, 20000 N"}
+    takes = {each.key: each.takes for each in figures_sheet([found])._asked}
+    assert takes["releaser.working_load"] == "estimated: 1 N at least, 20000 N"

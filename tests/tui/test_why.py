@@ -95,7 +95,7 @@ def test_unknown_figures_lead_to_one_row_after_the_other(drive, small):
         await driver.press("G")
         lines = len(list(sayings(driver.view)))
         for _ in range(lines):  # the first such line is of one row alone
-            if "figures missing of releaser, logger" in said_here(driver.app.focused):
+            if "depth_rating of logger, deep logger" in said_here(driver.app.focused):
                 break
             await driver.press("down")
         seen = []

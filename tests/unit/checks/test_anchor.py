@@ -52,11 +52,15 @@ def test_an_anchor_is_judged_where_what_it_weighs_in_water_is_known(load, figure
     result = mooring.solve()
     warned = [each for each in result.warnings if "is taken as steel, 7850 kg/m³" in each]
     assert len(warned) == (not known)
-    found = {one.rule: one for one in check(mooring).stands[0].findings if one.rule in RULES}
-    assert set(found) == set(RULES)
+    assessment = check(mooring)
+    found = {one.rule: one for one in assessment.stands[0].findings if one.rule in RULES}
+    missing = [one.missing for one in assessment.findings if one.missing is not None]
+    needed = {one.quantity: set(one.needed_by) for one in missing}
+    assert set(found) == (set(RULES) if known else set())
+    assert needed.get("weight", set()) == (set() if known else set(RULES))
     for finding in found.values():
-        assert (finding.state == "unknown") is not known
-        assert (finding.limit is None) is not known
+        assert finding.state != "unknown"
+        assert finding.limit is not None
     if known:
         anchor = result.anchor
         assert found["anchor-weight"].value == pytest.approx(weight)

@@ -7,7 +7,7 @@ import pytest
 import calm
 from calm.checks.assessment import Assessment
 from calm.checks.design_check import check
-from calm.checks.finding import State
+from calm.checks.finding import Finding, State
 from calm.errors import InputError
 from calm.report.check_report import check_document
 
@@ -51,6 +51,11 @@ def of_link(assessment: Assessment, rule: str) -> tuple[State, float | None, str
     return finding.state, finding.limit, finding.message
 
 
+def missing_of_link(assessment: Assessment) -> list[Finding]:
+    found = [(one, one.missing) for one in assessment.findings]
+    return [one for one, figure in found if figure and figure.component_id == "link"]
+
+
 # The link bears 3000 N less 100 m of rope, 2840 N, and the little that the current adds.
 def test_what_passes_by_the_low_bound_is_estimated(tmp_path: Path) -> None:
     assessment = judged(tmp_path, ESTIMATE.replace("LOW", "3 kN"))
@@ -64,9 +69,21 @@ def test_what_passes_by_the_low_bound_is_estimated(tmp_path: Path) -> None:
 
 
 def test_what_passes_by_its_value_alone_is_unknown(tmp_path: Path) -> None:
-    state, limit, message = of_link(judged(tmp_path, ESTIMATE.replace("LOW", "2.8 kN")), "strength")
-    assert (state, limit) == (State.UNKNOWN, 2800.0)
-    assert "20000 N likely (its chain)" in message
+    assessment = judged(tmp_path, ESTIMATE.replace("LOW", "2.8 kN"))
+    (finding,) = missing_of_link(assessment)
+    assert finding.state is State.UNKNOWN
+    assert "20000 N likely (its chain)" in finding.message
+    figure = finding.to_dict()
+    assert (figure["component_id"], figure["quantity"]) == ("link", "working_load")
+    assert figure["needed_by"] == ["strength"]
+    assert figure["pieces"] == ["link"]
+    assert figure["class_estimate"] == {
+        "quantity": "working_load", "value": 20e3, "low": 2.8e3, "low_in_waves": None,
+        "quality": None, "source": "its chain",
+    }  # fmt: skip
+    of_its_load = {"missing", "strength", "launch-strength"}
+    rules = {one.rule for one in assessment.all_findings() if one.component == "link"}
+    assert rules & of_its_load == {"missing"}
 
 
 def test_a_figure_that_is_given_counts_and_not_its_estimate(tmp_path: Path) -> None:
@@ -78,7 +95,10 @@ def test_a_figure_that_is_given_counts_and_not_its_estimate(tmp_path: Path) -> N
 
 def test_an_estimate_of_another_figure_changes_nothing(tmp_path: Path) -> None:
     figures = ", estimate: {quantity: max_tilt, value: 30 deg, low: 20 deg, source: its like}"
-    assert of_link(judged(tmp_path, figures), "strength")[:2] == (State.UNKNOWN, None)
+    (finding,) = missing_of_link(judged(tmp_path, figures))
+    assert finding.missing is not None
+    assert finding.missing.quantity == "working_load"
+    assert finding.missing.class_estimate is None
 
 
 def test_what_an_estimate_leaves_unknown_may_be_accepted(tmp_path: Path) -> None:
@@ -104,15 +124,14 @@ def test_a_lower_bound_alone_is_enough_and_its_quality_is_shown(tmp_path: Path) 
 
 
 # Waves of 5 cm add next to nothing: the bound differs, not the load.
-@pytest.mark.parametrize(("waves", "limit"), [("", 3000.0), (WAVES, 2800.0)])
-def test_a_line_that_waves_move_is_judged_by_the_bound_for_waves(
-    waves: str, limit: float, tmp_path: Path
-) -> None:
+def test_a_line_that_waves_move_is_judged_by_the_bound_for_waves(tmp_path: Path) -> None:
     figures = ESTIMATE.replace("LOW", "3 kN, low_in_waves: 2.8 kN")
-    state = State.UNKNOWN if waves else State.ESTIMATED
-    found = of_link(judged(tmp_path, figures, waves=waves), "strength")
-    assert found[:2] == (state, limit)
-    assert "3000 N at least, 2800 N in waves, 20000 N likely" in found[2]
+    calm_water = of_link(judged(tmp_path, figures), "strength")
+    assert calm_water[:2] == (State.ESTIMATED, 3000.0)
+    (finding,) = missing_of_link(judged(tmp_path, figures, waves=WAVES))
+    assert finding.state is State.UNKNOWN
+    for message in (calm_water[2], finding.message):
+        assert "3000 N at least, 2800 N in waves, 20000 N likely" in message
 
 
 @pytest.mark.parametrize(

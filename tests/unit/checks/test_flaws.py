@@ -604,8 +604,8 @@ FLAWS = (
         "a nylon rope without stiffness",
         CDMS,
         (("stiffness: 2655 kN\n    material: aramid", "material: nylon"),),
-        "stretch",
-        "Kevlar 1",
+        "missing",
+        "Kevlar 3",
         "unknown",
         "is nylon of unknown stiffness, taken as inextensible: it could stretch by",
     ),
@@ -891,6 +891,7 @@ def test_a_flaw_is_caught_by_its_rule(flaw: Flaw, tmp_path: Path) -> None:
         if finding.rule == flaw.rule
         and finding.situation == flaw.situation
         and flaw.component in (None, finding.component)
+        and (finding.missing is None or flaw.says in finding.message)
     ]
     assert [finding.state for finding in found] == [flaw.state], found
     (finding,) = found
@@ -927,6 +928,6 @@ def _findings(flaw: Flaw, folder: Path) -> Iterable[Finding]:
     path.write_text(text, encoding="utf-8")
     mooring = load(path)
     (stand,) = stands_of(mooring, "flawed")
-    if flaw.rule in {"current", *(rule.name for rule in ONCE)}:
+    if flaw.rule in {"current", "missing", *(rule.name for rule in ONCE)}:
         return assessment_of("flawed", [stand]).all_findings()
     return stand.findings  # no launch and no recovery need be computed

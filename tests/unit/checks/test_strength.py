@@ -105,3 +105,18 @@ def test_a_working_load_above_the_breaking_load_is_a_mistake(tmp_path: Path) -> 
     path.write_text(text.replace("LOWER", "20 kN"), encoding="utf-8")
     with pytest.raises(InputError, match="20000 N, above the `breaking_load` of 19000 N"):
         calm.load(path)
+
+
+def test_a_synthetic_rope_is_judged_by_its_breaking_load() -> None:
+    """Polyester of 14 mm: the table's 2390 N are for lifting, a twelfth of its 28.6 kN."""
+    keys = {"kind": "cable", "diameter": "14 mm", "weight": "0.4 N/m", "material": "polyester"}
+    both = Cable.model_validate(keys | {"working_load": "2390 N", "breaking_load": "28.6 kN"})
+    factors = SafetyFactors()
+    assert allowable_load(both, factors, surface=False) == pytest.approx(28_600.0 / 5.0)
+    assert lesser_load(both, 1.0, 2.0) == pytest.approx(14_300.0)
+    alone = Cable.model_validate(keys | {"working_load": "2390 N"})
+    assert allowable_load(alone, factors, surface=False) == pytest.approx(2390.0)
+    steel = Cable.model_validate(
+        keys | {"material": "steel", "working_load": "2390 N", "breaking_load": "28.6 kN"}
+    )
+    assert allowable_load(steel, factors, surface=False) == pytest.approx(2390.0)

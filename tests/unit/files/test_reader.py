@@ -326,3 +326,47 @@ def test_paths_are_shown_as_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     Path("m.yaml").write_text("name: m\n")
     with pytest.raises(InputError, match=r"(?m)^m.yaml:1:1: `line` is missing$"):
         read_mooring("m.yaml")
+
+
+COMPLETED = """\
+environment: {depth: 300 m}
+line:
+  - {use: sphere-steel-1250}
+  - {use: wire-jacketed-8, length: 80 m}
+  - {use: sbe37}
+  - {use: anchor-wheels-4}
+components:
+  sbe37: {KEYS}
+"""
+
+
+def test_a_component_without_a_kind_completes_that_of_the_catalogue(tmp_path):
+    text = COMPLETED.replace("KEYS", "working_load: 40 kN, depth_rating: ")
+    plain = read_mooring(tmp_path / "m.yaml", text=text.partition("components")[0])
+    file = read_mooring(tmp_path / "m.yaml", text=text)
+    before, after = (each.pieces[2].component for each in (plain, file))
+    assert before.working_load is None and after.working_load == 40e3
+    assert after.depth_rating == before.depth_rating is not None
+    assert after == before.model_copy(update={"working_load": 40e3})
+    assert file.notices == plain.notices
+
+
+def test_a_figure_in_place_of_that_of_the_catalogue_is_noticed(tmp_path):
+    text = COMPLETED.replace("KEYS", "depth_rating: 9 km")
+    (notice,) = read_mooring(tmp_path / "m.yaml", text=text).notices
+    assert notice.startswith("sbe37: `depth_rating` of ")
+    assert "in place of that of" in notice
+
+
+@pytest.mark.parametrize(
+    ("id", "keys", "says"),
+    [
+        ("sbe37", "depht_rating: 9 km", "did you mean `depth_rating`"),
+        ("sbe99x", "depth_rating: 9 km", "`kind` is missing"),
+    ],
+)
+def test_what_completes_nothing_is_refused(tmp_path, id, keys, says):
+    text = COMPLETED.replace("  sbe37: {KEYS}", f"  {id}: {{{keys}}}")
+    with pytest.raises(InputError) as error:
+        read_mooring(tmp_path / "m.yaml", text=text)
+    assert any(says in each.message for each in error.value.problems)

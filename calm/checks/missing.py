@@ -1,0 +1,103 @@
+"""The rule `missing`: figures that components do not give, each once for all rules and pieces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from calm.checks.assessment import MISSING
+from calm.checks.finding import Finding, MissingFigure, State, Verdict, rule
+from calm.files import Clamp, Piece
+
+MOST_NAMED = 3
+"""Other pieces that a message names; the finding has all of them."""
+
+_INSTEAD = {
+    "working_load": ("breaking_load",),
+    "breaking_load": ("working_load",),
+    "stiffness": ("elongation",),
+}
+
+
+def alternatives(quantity: str) -> tuple[str, ...]:
+    """The keys of a component of which any one settles what a missing figure leaves open."""
+    return quantity, *_INSTEAD.get(quantity, ())
+
+
+@rule(MISSING)
+def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Verdict]:
+    """One verdict for each component id and figure, from all that rules could not judge.
+
+    The message is that of the piece with the greatest value: the deepest, or the one that bears
+    most.
+    """
+    for found in lacking.values():
+        figure = found[0].missing
+        assert figure is not None
+        worst = max(found, key=lambda one: abs(one.value or 0.0))
+        others = [label for label in figure.pieces if label != worst.component]
+        if len(others) > MOST_NAMED:
+            others = [*others[:MOST_NAMED], f"{len(others) - MOST_NAMED} more"]
+        also = f", also for {_listed(others)}" if others else ""
+        message = f"{worst.message} Needed by {_listed(figure.needed_by)}{also}."
+        keys = " or ".join(f"`{one}`" for one in alternatives(figure.quantity))
+        remedy = f"Give the {keys} of {figure.component_id}."
+        yield Verdict(
+            worst.component, None, None, None, State.UNKNOWN, message, remedy, worst.place,
+            missing=figure,
+        )  # fmt: skip
+
+
+def is_lacking(finding: Finding) -> bool:
+    """Whether a rule could not judge for want of a figure that nobody has accepted."""
+    return finding.state is State.UNKNOWN and finding.lacks is not None
+
+
+def gathered(
+    lacking: Iterable[Finding], parts: Mapping[str, Piece | Clamp]
+) -> dict[tuple[str, str], list[Finding]]:
+    """What rules could not judge, by component id and figure, each with the whole of it.
+
+    Parameters
+    ----------
+    parts : pieces and clamps of the line by their labels
+    """
+    found: dict[tuple[str, str], list[Finding]] = {}
+    for one in lacking:
+        assert one.lacks is not None
+        found.setdefault((parts[one.lacks.label].use, one.lacks.quantity), []).append(one)
+    for (use, quantity), group in found.items():
+        component = parts[group[0].lacks.label].component if group[0].lacks else None
+        figure = MissingFigure(
+            use,
+            quantity,
+            tuple(dict.fromkeys(one.rule for one in group)),
+            tuple(dict.fromkeys(one.component for one in group if one.component)),
+            tuple(dict.fromkeys(one.place for one in group if one.place)),
+            None if component is None else component.estimates.get(quantity),
+        )
+        found[use, quantity] = [replace(one, missing=figure) for one in group]
+    return found
+
+
+def with_missing(
+    findings: Iterable[Finding],
+    parts: Mapping[str, Piece | Clamp],
+    mooring: str,
+    environment: str,
+) -> list[Finding]:
+    """The findings of a mooring, with those that lack a figure replaced by those of `missing`.
+
+    Parameters
+    ----------
+    mooring, environment : their names in the findings of `missing`
+    """
+    every = list(findings)
+    lacking = gathered(filter(is_lacking, every), parts)
+    told = [missing.find(one, mooring, environment) for one in missing.judge(lacking)]
+    return [*told, *(one for one in every if not is_lacking(one))]
+
+
+def _listed(names: Sequence[str]) -> str:
+    first, last = names[:-1], names[-1]
+    return f"{', '.join(first)} and {last}" if first else last

@@ -1,0 +1,92 @@
+"""`calm check --missing`: the block of missing figures, and what completing it does."""
+
+import json
+import re
+
+import pytest
+import yaml
+
+pytestmark = pytest.mark.usefixtures("solved_once")
+
+LINE = """\
+name: Completed
+environment:
+  depth: 300 m
+  current: {speed: 0.4 m/s, toward: 90 deg}
+line:
+  - {use: sphere-steel-1250, label: float}
+  - use: wire-jacketed-8
+    length: 80 m
+    clamps:
+      - {use: sbe56-uwa, at: 10 m}
+      - {use: sbe56-uwa, at: 20 m}
+  - {use: link, count: 2}
+  - {use: wire-jacketed-8, length: 40 m}
+  - {use: anchor-wheels-4}
+"""
+OWN = """\
+  link: {kind: body, role: connector, length: 0.1 m, buoyancy: -5 N, kn: 1 N/(m/s)^2,
+         inclination: insensitive, estimate: {quantity: working_load, value: 9 kN, low: 10 N,
+         source: its chain}}
+"""
+CATALOGUE = """\
+sbe56-uwa: {kind: body, role: instrument, length: 0.2 m, buoyancy: -2 N, kn: 1 N/(m/s)^2,
+            inclination: insensitive, max_tilt: 90 deg, source: a list}
+"""
+
+
+@pytest.fixture
+def lacking(folder):
+    (folder / "own.yaml").write_text(CATALOGUE, encoding="utf-8")
+    (folder / "m.yaml").write_text(f"{LINE}components:\n{OWN}", encoding="utf-8")
+    return "m.yaml", "--catalog", "own.yaml"
+
+
+def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, lacking):
+    done = calm("check", *lacking, "--missing")
+    assert done.code == 1
+    block = yaml.safe_load(done.out)["components"]
+    assert block["sbe56-uwa"] == {"depth_rating": None}
+    assert block["link"] == {"working_load": None}
+    assert "sbe56-uwa:  # sbe56-uwa 1 and 2\n" in done.out
+    assert "    depth_rating:  # needed by depth-rating\n" in done.out
+    assert "working_load:  # or breaking_load; needed by strength, launch-strength\n" in done.out
+    assert "    # `working_load` is estimated: 10 N at least, 9000 N (its chain)\n" in done.out
+
+
+def test_a_completed_block_in_the_file_settles_what_it_gives(calm, lacking, folder):
+    assert calm("check", *lacking, "--missing", "-o", "block.yaml").out == ""
+    block = (folder / "block.yaml").read_text(encoding="utf-8")
+    given = re.sub(r"( +depth_rating):", r"\1: 500 m", block)
+    # the file defines `link` itself
+    pasted = re.sub(r"  link:.*?\n(?=  \S|\Z)", "", given, flags=re.DOTALL)
+    (folder / "m.yaml").write_text(f"{LINE}{pasted}\n{OWN}", encoding="utf-8")
+    done = calm("check", *lacking, "--json", "-")
+    assert "hides" not in done.err
+    found = json.loads(done.out)["findings"]
+    asked = {f["component_id"] for f in found if f["rule"] == "missing"}
+    assert "sbe56-uwa" not in asked
+    assert "link" in asked
+    rated = {f["component"]: f["limit"] for f in found if f["rule"] == "depth-rating"}
+    assert rated["sbe56-uwa 2"] == pytest.approx(400.0)
+
+
+def test_a_key_without_a_value_stays_unknown(calm, lacking, folder):
+    empty = f"{LINE}components:\n  sbe56-uwa: {{depth_rating: }}\n{OWN}"
+    (folder / "m.yaml").write_text(empty, encoding="utf-8")
+    block = yaml.safe_load(calm("check", *lacking, "--missing").out)["components"]
+    assert block["sbe56-uwa"] == {"depth_rating": None}
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("-o", "x.yaml"), "-o is the file of --missing"),
+        (("--missing", "--json", "-"), "--missing is printed in place of the findings"),
+        (("--missing", "-o", "m.yaml"), "m.yaml would overwrite the file that is read"),
+    ],
+)
+def test_what_cannot_be_is_refused_before_anything_is_solved(calm, lacking, words, says):
+    done = calm("check", *lacking, *words)
+    assert done.code == 2
+    assert says in done.err
