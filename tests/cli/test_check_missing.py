@@ -51,7 +51,7 @@ def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, la
     assert "sbe56-uwa:  # sbe56-uwa 1 and 2\n" in done.out
     assert "    depth_rating:  # needed by depth-rating\n" in done.out
     assert "working_load:  # or breaking_load; needed by strength, launch-strength\n" in done.out
-    assert "    # `working_load` is estimated: 10 N at least, 9000 N (its chain)\n" in done.out
+    assert "is estimated: 10 N at least, 9000 N likely (its chain)\n" in done.out
 
 
 def test_a_completed_block_in_the_file_settles_what_it_gives(calm, lacking, folder):
