@@ -12,7 +12,7 @@ from functools import cached_property
 from itertools import combinations
 from math import dist
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -58,6 +58,8 @@ from calm.solve import Settings, Solution, Status
 
 if TYPE_CHECKING:
     from calm.solve.net import NetSolution
+
+_End = TypeVar("_End")
 
 _SKIN = 1e-3  # m above the surface, in which water turns into air
 
@@ -452,15 +454,13 @@ class Result:
 
     @property
     def tow_point(self) -> TowPoint:
-        """Load of a tow on the ship."""
-        assert self.leg.tow_point is not None, "only a tow has a tow point"
-        return self.leg.tow_point
+        """Load of a tow on the ship; UsageError for a leg that is not towed."""
+        return _of_a_tow(self.leg.tow_point, self.name)
 
     @property
     def body(self) -> TowedBody:
-        """Towed body."""
-        assert self.leg.body is not None, "only a tow has a towed body"
-        return self.leg.body
+        """Towed body; UsageError for a leg that is not towed."""
+        return _of_a_tow(self.leg.body, self.name)
 
     @property
     def shape(self) -> Shape:
@@ -679,3 +679,9 @@ def load_in(
     if problems:
         raise InputError(list(problems))
     return read
+
+
+def _of_a_tow(end: _End | None, name: str) -> _End:
+    if end is None:
+        raise UsageError(f"{name} is not towed: it has no tow point and no towed body")
+    return end

@@ -210,7 +210,12 @@ def _margins(designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
     if len(judged) < 2:
         return
     worst = [
-        {one.rule: one for one in worst_of_each_rule([*assessment.all_findings()])}
+        {
+            one.rule: one
+            for one in worst_of_each_rule(
+                (*assessment.all_findings(), *assessment.tighter_findings())
+            )
+        }
         for assessment in judged
     ]
     for rule in RULES.values():

@@ -195,11 +195,15 @@ def _write_missing(assessments: Sequence[Assessment], output: Path | None) -> No
     from calm.report.folder import write_file
     from calm.report.missing_block import missing_block
 
-    block = missing_block(one for each in assessments for one in each.all_findings())
+    found = [one for each in assessments for one in each.all_findings()]
+    for message in dict.fromkeys(one.message for one in found if one.rule == "equilibrium"):
+        narrate(message)
+    block = missing_block(found)
     if output is None:
         show(block)
     else:
         write_file(output, block.encode())
+        narrate(f"{output} written")
 
 
 def _answer(

@@ -11,7 +11,7 @@ a hyphen or an underscore joins to it (``CTD_0400``). No depth is
   mostly are a serial number;
 - any number of a label that names a length, a range or a height: of cable, wire, rope or chain,
   ``range``, ``rated``, ``above``, ``below``, ``mab`` and the like;
-- a range such as ``50-1000 m``, or one of two numbers.
+- a range such as ``50-1000 m``, or one of two numbers; nor ``1 200 m``, ``3x100 m`` or ``1.2e2 m``.
 
 The label of a cable or chain names no plan, nor does that of a connector, a release, an anchor or a
 profiler, which travels. A float counts if its label names 10 m or more: smaller numbers are sizes.
@@ -35,9 +35,11 @@ _LENGTHS = re.compile(
     re.IGNORECASE,
 )
 _RANGE = re.compile(r"(?<![A-Za-z0-9])[\d.]+\s*(?:m\s*)?(?:-|–|\.\.|to)\s*[\d.]+\s*(?:m|ft)\b")
+_DOUBTFUL = re.compile(r"(?<![\w.])\d{1,3} \d{3}\s*(?:m|ft)\b|\d[eE]\d|\d\s*[x×*]\s*\d")
+"""A number of two words, a power of ten or a product."""
 _WITH_UNIT = re.compile(
     r"(@\s*)?(?<![\d.,])(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)\s*(m|met(?:er|re)s?|ft|feet)"
-    r"(?![A-Za-z0-9/²³^])"
+    r"(?![A-Za-z0-9²³^]|\s*/\s*(?:s|min|h)\b)"
 )
 _AFTER_AT = re.compile(r"(@\s*)(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)()(?![\w.,/])")
 _AT_THE_END = re.compile(r"^(.*)[_-](\d{4})$")
@@ -54,7 +56,7 @@ def depth_in_label(label: str, serial: str | None = None, rating: float | None =
     rating : depth rating of its component [m]
     """
     text = _NUMBERED.sub("|", label)
-    if _LENGTHS.search(text) or _RANGE.search(text):
+    if any(pattern.search(text) for pattern in (_LENGTHS, _RANGE, _DOUBTFUL)):
         return float("nan")
     found = {
         (bool(at), float(digits.replace(",", "")) * (_FOOT if unit[:1] == "f" else 1.0), digits)

@@ -298,7 +298,8 @@ def _blocks(comparison: Comparison) -> Iterator[Block]:
     parts = [one for one in comparison.figures if one.of_a_part]
     yield _figures("Pieces and instruments", comparison.names, parts)
     margins = [one for one in comparison.figures if one.states is not None]
-    yield _figures("Margins of the design check", comparison.names, margins, all_rows=True)
+    if margins:
+        yield _figures("Margins of the design check", comparison.names, margins, all_rows=True)
 
 
 def _figures(

@@ -11,8 +11,8 @@ from calm.report.check_tables import grouped, named
 
 _HEAD = """\
 # Figures that calm check needs and the components do not give. Write what you know after the
-# colons, and put the block into the mooring file; if that has `components:`, under these.
-# A key without a value stays unknown.
+# colons. Put the keys of a component that the mooring file defines into that definition, and the
+# other entries under `components:` of the file. A key without a value stays unknown.
 """
 _WIDTH = 100
 
@@ -21,9 +21,12 @@ def missing_block(findings: Iterable[Finding]) -> str:
     """The `components:` section of a mooring file with the missing keys of each component id.
 
     Comments name the pieces and the rules that need a figure, and its class estimate if there is
-    one. A comment alone if nothing is missing.
+    one. A comment alone if nothing is missing, or nothing can be judged.
     """
-    figures = [one.missing for one in findings if one.missing is not None]
+    found = list(findings)
+    figures = [one.missing for one in found if one.missing is not None]
+    if not figures and any(one.rule == "equilibrium" for one in found):
+        return "# Without an equilibrium nothing is judged, and no missing figure is known.\n"
     if not figures:
         return "# No figure of a component is missing.\n"
     lines = ["components:"]

@@ -90,3 +90,15 @@ def test_what_cannot_be_is_refused_before_anything_is_solved(calm, lacking, word
     done = calm("check", *lacking, *words)
     assert done.code == 2
     assert says in done.err
+
+
+def test_without_equilibrium_no_figure_is_known_to_be_missing(calm, lacking, folder):
+    text = (folder / "m.yaml").read_text(encoding="utf-8")
+    sunk = text.replace("count: 2", "count: 4000")
+    (folder / "m.yaml").write_text(sunk, encoding="utf-8")
+    done = calm("check", *lacking, "--missing", "-o", "block.yaml")
+    assert done.code == 3
+    assert "buoyancy" in done.err  # why there is none
+    assert "block.yaml written" in done.err
+    block = (folder / "block.yaml").read_text(encoding="utf-8")
+    assert block.startswith("# Without an equilibrium nothing is judged")

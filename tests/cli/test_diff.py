@@ -61,8 +61,18 @@ def test_what_it_does_is_what_each_run_says(calm, two):
     greatest = [max(max(c["tension_top"], c["tension_bottom"]) for c in each["components"])
                 for each in (before, after)]  # fmt: skip
     assert figures["greatest_tension"] == pytest.approx(greatest)
-    needed = figures["anchor.required_weight"]
-    assert figures["margin.anchor-weight"] == pytest.approx(tuple(5000.0 - one for one in needed))
+
+
+def test_a_margin_is_the_least_of_any_situation(calm, two):
+    figures = json.loads(calm("diff", *two, "--json", "-").out)["figures"]
+    (margin,) = [one for one in figures if one["name"] == "margin.anchor-weight"]
+    checked = [json.loads(calm("check", file, "--json", "-").out) for file in two]
+    least = [
+        min(one["margin"] for one in found["findings"] + found["tighter"]
+            if one["rule"] == "anchor-weight")
+        for found in checked
+    ]  # fmt: skip
+    assert [margin["from"], margin["to"]] == pytest.approx(least)
 
 
 def test_the_table(calm, two):

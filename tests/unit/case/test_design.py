@@ -90,3 +90,10 @@ def test_the_legs_of_a_net_go_to_another_process_with_their_changes(net: calm.De
     longer = net.with_length(1, 160.0)
     there = pickle.loads(pickle.dumps(longer))
     assert there.solve().nodes == longer.solve().nodes != net.solve().nodes
+
+
+def test_what_is_not_towed_has_no_tow_point(net: calm.Design) -> None:
+    result = calm.load(LINES / "s1000.yaml").solve()
+    for end in ("tow_point", "body"):
+        with pytest.raises(calm.UsageError, match="is not towed"):
+            getattr(result, end)

@@ -34,6 +34,7 @@ from calm.files.planned_depth import depth_in_label
         ("SBE37 SN 12345 @ 1500m", 1500.0),
         ("meter no. 3, 800 m", 800.0),
         ("RCM #1234 800 m", 800.0),
+        ("SBE37 200 m", 200.0),
     ],
 )
 def test_a_label_names_a_depth(label: str, depth: float) -> None:
@@ -63,6 +64,11 @@ def test_a_label_names_a_depth(label: str, depth: float) -> None:
         "profiler 50-1000 m",
         "MMP 50 m to 1000 m",
         "300 m or 400 m",
+        "100 m/500 m",
+        "CTD 1 200 m",
+        "CTD 12 500 m",
+        "CTD 3x100 m",
+        "CTD 1.2e2 m",
         "float 450 mm",
         "1.5 m/s meter",
         "glass 17in",
