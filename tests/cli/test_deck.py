@@ -235,7 +235,7 @@ def test_like_pieces_that_follow_one_another_are_one_row(deck):
 
 @pytest.mark.parametrize(
     ("line", "most"),
-    [("s1000", 5), ("s-tether", 6), ("fit-top-depth", 7), ("deep-current-meters", 10)],
+    [("s1000", 5), ("s-tether", 6), ("fit-top-depth", 7), ("deep-current-meters", 11)],
 )
 @pytest.mark.thorough
 def test_a_package_is_no_thicker_than_this(calm, folder, line, most):

@@ -312,13 +312,13 @@ def test_the_document_and_the_equipment_of_a_row(drive, small):
         await driver.type("2")
         await driver.press("enter", "N")
         await driver.type("T1, T2")
-        for _ in range(5):
+        for _ in range(6):
             await driver.press("enter")
         await driver.settle()
         spot = driver.builder.line.table.spot
         assert driver.session.draft.value(("line", spot.item, "serial")) == ["T1", "T2"]
         assert driver.session.draft.problems == ()
-        await driver.press("N", "ctrl+u", *["enter"] * 5)
+        await driver.press("N", "ctrl+u", *["enter"] * 6)
         await driver.settle()
         assert driver.session.draft.value(("line", spot.item, "serial")) is None
 
