@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from threading import current_thread, main_thread
+from types import FrameType
 from typing import TYPE_CHECKING
 
 from calm.cli import options
@@ -16,6 +17,7 @@ from calm.cli.progress import ProgressTeller, grouped
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
+    from calm.batch.blocks import Progress
     from calm.case import Design
     from calm.records.record import Record
 
@@ -92,7 +94,7 @@ def batch(
     seabed = float(mooring.water.depth)
     teller = ProgressTeller()
     turned = options.quantities(declination=(declination, "angle")).get("declination")
-    with stopped_by_a_signal():
+    with stopped_by_a_signal(teller) as progress:
         terms = Terms(seabed, place, turned)
         with open_record(currents, terms, period, every) as record:
             for notice in (*mooring.file.notices, *record.notes):
@@ -101,7 +103,7 @@ def batch(
             try:
                 counts = run_batch(
                     mooring, record, output, workers=workers, scheduler=scheduler,
-                    progress=teller, tell=teller.note,
+                    progress=progress, tell=teller.note,
                 )  # fmt: skip
             finally:
                 teller.clear()
@@ -174,13 +176,36 @@ def check_output(output: Path, *inputs: Path) -> None:
 
 
 @contextmanager
-def stopped_by_a_signal() -> Iterator[None]:
-    """A batch system's request to stop ends the work as Ctrl-C does: with nothing left behind."""
+def stopped_by_a_signal(
+    progress: Callable[[Progress], None],
+) -> Iterator[Callable[[Progress], None]]:
+    """A batch system's request to stop ends the work as Ctrl-C does: with nothing left behind.
+
+    Python ignores what a signal raises in the callback of a weak reference. So the returned
+    `progress` ends the work, too.
+    """
     if current_thread() is not main_thread():
-        yield
+        yield progress
         return
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    came: list[int] = []
+
+    def stop(number: int, _: FrameType | None) -> None:
+        came.append(number)
+        raise KeyboardInterrupt
+
+    def stopping(now: Progress) -> None:
+        if came:
+            raise KeyboardInterrupt
+        progress(now)
+
+    heeded = [
+        number
+        for number in (signal.SIGINT, signal.SIGTERM)
+        if signal.getsignal(number) is not signal.SIG_IGN
+    ]
+    before = {number: signal.signal(number, stop) for number in heeded}
     try:
-        yield
+        yield stopping
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -155,10 +155,10 @@ def motion(
     for note in recovery.notes:
         narrate(note)
     teller = ProgressTeller()
-    with stopped_by_a_signal():
+    with stopped_by_a_signal(teller) as progress:
         compile_solver(profiles.Batch(mooring), teller.note)
         try:
-            counts = recovery.estimate(output, workers=workers, progress=teller, tell=teller.note)
+            counts = recovery.estimate(output, workers=workers, progress=progress, tell=teller.note)
         finally:
             teller.clear()
         code = ended(counts, output)
