@@ -154,6 +154,7 @@ LAWS = {
 def s1000_with(stretch: str, solver: str, line: str) -> Design:
     """S1000, its float a smooth sphere, under another law."""
     text = (shipped_folder("lines") / "s1000.yaml").read_text(encoding="utf-8")
+    text, _, _ = text.partition("\nchecks:\n")  # what it accepts names the pieces of its line
     text = text.replace(LINE, line)
     text = text.replace("stiffness: 4000 kN", stretch or "stiffness: 4000 kN")
     text = text.replace("kind: body\n    length: 0 m", "kind: sphere\n    diameter: 1.2 m")
