@@ -345,7 +345,7 @@ class NetProfiles:
         sunk, sunk_clamps = -place[..., 2] - known[0], -of_clamps[..., 2] - known[1]
         anchors = [leg.end - 1 for leg in file.legs if leg.bottom.anchor is not None]
         sunk[:, anchors] = 0.0
-        sunk_clamps[:, np.isin([n for n, _ in sorted(on)], anchors)] = 0.0
+        sunk_clamps[:, np.isin([on[k][0] for k in order], anchors)] = 0.0
         return columns | {
             "depth_top": -place[..., 2],
             "x_top": place[..., 0],

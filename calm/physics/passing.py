@@ -73,7 +73,8 @@ class How(NamedTuple):
         across that vanishes; the rest lies there
     bed : the seabed
     given : whether the segments are given, else chosen
-    exact : whether segments are split at every level, and not only where it counts
+    exact : whether segments are split at every level, if all is to settle to the last digits, and
+        not only where it counts
     halves : whether each segment, or part of one, is passed in two halves
     recording : whether every node and element is recorded
     """
@@ -188,7 +189,7 @@ def pass_cable(
         vibration = with_beat(vibration, vibration.beat * cable.diameter)
     first, done, hanging = used, 0.0, -1.0
     near, halves, expected = how.near, how.halves, (0.0, 0.0, 0.0)
-    share = EXACT if how.exact else ROUGH
+    share = EXACT if how.exact and near == 0.0 else ROUGH
     others = 3 * len(course.loads) + 2 * len(course.stages) + 1
     whole = (1.0 - ROUNDING) * cable.length
     while used - first < counts[place] if how.given else done < whole or used == first:

@@ -4,7 +4,6 @@ The *miss* is the height of the line's last end above where it is to be [m]: the
 or the ship that tows it. It falls as the free end goes deeper and as more buoyancy is used.
 """
 
-from collections.abc import Callable
 from math import isnan, nan
 from typing import NamedTuple
 
@@ -119,7 +118,7 @@ def miss_at(about: About, x: float) -> float:
         unknown.lands,
         problem.limits.bed,
         about.given,
-        about.given and problem.limits.near == 0.0,
+        about.given,
         about.cuts == HALVED,
         about.record != NOT_RECORDED,
     )
@@ -131,11 +130,6 @@ def miss_at(about: About, x: float) -> float:
     if work.left[FAILURE] != GOES_ON:
         return nan
     return work.left[Z] - unknown.goal
-
-
-def miss_now(miss: Callable[[About, float], float], about: About, x: float) -> float:
-    """Call a march by its address."""
-    return miss(about, x)
 
 
 def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, float]:

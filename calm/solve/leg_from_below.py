@@ -249,7 +249,7 @@ def pass_hung(
         False,
         bed_of(net, i),
         how.given,
-        how.exact and near == 0.0,
+        how.exact,
         how.cuts == HALVED,
         True,
     )

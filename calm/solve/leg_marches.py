@@ -118,8 +118,8 @@ def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
     reach = degrees(how.step) * leg.longest
     lands = leg.kind == STANDING and leg.seabed > -inf
     near, bed = problem.limits.near, bed_of(net, i)
-    exact, halves = how.exact and near == 0.0, how.cuts == HALVED
-    asked = How(how.step, reach, near, leg.stages, lands, bed, how.given, exact, halves, True)
+    halves = how.cuts == HALVED
+    asked = How(how.step, reach, near, leg.stages, lands, bed, how.given, how.exact, halves, True)
     pass_line(course, how.sea, asked, depth, out, cuts, counts, record, left)
     state[MARCHES] += 1.0
     if left[FAILURE] != GOES_ON:
