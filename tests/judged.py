@@ -44,11 +44,16 @@ def judged(path: Path, *environments: str) -> Assessment:
     )
 
 
+def without_checks(name: str) -> str:
+    """The text of a line of `lines/` up to its limits and what it accepts, if it has these."""
+    text, _, _ = (LINES / f"{name}.yaml").read_text(encoding="utf-8").partition("\nchecks:\n")
+    return text
+
+
 def unaccepting(name: str, folder: Path) -> Path:
     """A line of `lines/` that accepts nothing and may not move: some fails, some is unknown."""
     path = folder / name
-    text, _, _ = (LINES / name).read_text(encoding="utf-8").partition("\nchecks:\n")
-    text = text.replace("label: swivel}", "label: swivel, estimate: []}")
+    text = without_checks(path.stem).replace("label: swivel}", "label: swivel, estimate: []}")
     path.write_text(f"{text}\nchecks: {{maximum_excursion: 1 cm}}\n", encoding="utf-8")
     return path
 

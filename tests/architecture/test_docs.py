@@ -42,29 +42,10 @@ def calm_prints(*arguments: str) -> str:
     return finished.stdout
 
 
-def test_the_command_line_page_is_what_help_prints() -> None:
+@pytest.mark.parametrize("what", ["command_line", "rules", "columns"])
+def test_commands_rules_and_columns_are_in_the_manual_as_they_are(what: str) -> None:
     finished = subprocess.run(
-        [sys.executable, ROOT / "docs" / "generate_command_line.py", "--check"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert finished.returncode == 0, finished.stderr
-
-
-def test_the_rules_of_the_design_check_are_in_the_manual_as_they_are() -> None:
-    finished = subprocess.run(
-        [sys.executable, ROOT / "docs" / "generate_rules.py", "--check"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert finished.returncode == 0, finished.stderr
-
-
-def test_the_columns_of_results_are_in_the_manual_as_they_are() -> None:
-    finished = subprocess.run(
-        [sys.executable, ROOT / "docs" / "generate_columns.py", "--check"],
+        [sys.executable, ROOT / "docs" / f"generate_{what}.py", "--check"],
         capture_output=True,
         text=True,
         check=False,

@@ -12,18 +12,13 @@ from calm.tui.line_rows import table_rows
 from calm.tui.live import judge, judge_fully
 from calm.tui.theme import ELLIPSIS
 from calm.tui.verdict_text import headline, sayings
+from tests.judged import without_checks
 from tests.tui.conftest import MOORING
 
 LINES = Path(__file__).resolve().parents[2] / "lines"
 
 
-def without_checks(name):
-    """The text of a shipped mooring without its limits and what it accepts."""
-    text = (LINES / name).read_text(encoding="utf-8")
-    return re.sub(r"(?m)^checks:.*\n(?:(?:[ #].*)?\n)*", "", text)
-
-
-BUOY = without_checks("braconnot-buoy.yaml")
+BUOY = without_checks("braconnot-buoy")
 
 
 def said(text):
@@ -62,7 +57,7 @@ def test_the_reserve_is_that_of_the_worst_finding():
 
 
 def test_the_knockdown_is_that_of_the_worst_finding():
-    text = without_checks("s1000.yaml")
+    text = without_checks("s1000")
     told = said(text + "checks: {maximum_knockdown: 35 m}\n")
     head = next(each for each in told if each.heading == "Knockdown" and "top at" in each.text)
     below = the(told, "The top is knocked down")
