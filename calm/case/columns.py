@@ -95,7 +95,7 @@ class ResultColumn:
 
     @property
     def unit(self) -> str:
-        """SI unit, or degrees; empty for text and pure numbers."""
+        """SI unit, or degrees. Text and pure numbers have an empty unit."""
         return "" if self.quantity is None else self.quantity.unit
 
     @property
@@ -131,10 +131,11 @@ def column(
     Parameters
     ----------
     description, outputs, more : attributes of the `ResultColumn`
-    title, unit, decimals : of the quantity. By default it is the entry of `QUANTITIES` with the
-        name of the field, of which `title` may replace the heading; a field without is text.
+    title, unit, decimals : title, unit and digits of the quantity. By default it is the entry of
+        `QUANTITIES` with the name of the field, of which `title` may replace the heading; a field
+        without is text.
     in_repr : whether the `repr` of a row includes the field
-    default : of the field
+    default : default value of the field
     """
 
     def named(name: str, prefix: str) -> ResultColumn:

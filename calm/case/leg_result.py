@@ -40,14 +40,15 @@ class LegResult:
     leg : the solved leg
     type : ``subsurface``, ``surface`` or ``tow``
     top : upper end
-    anchor : load on the anchor; NaN for a leg without an anchor, whose last component is a stand-in
-        without meaning
+    anchor : load on the anchor; NaN for a leg without an anchor, whose last component is a
+        placeholder without meaning
     tow_point, body : both ends of a tow; None for other legs
     ends : loads on the anchor and on other fixed ends
     still_shape : shape in still water; None without a unique shape
-    profilers : profilers at their places; all other figures hold with them at their upper stops
+    profilers : profilers at their positions; all other values are for profilers at their upper
+        stops
     iterations, segments : number of marches, and of segments of the final shape
-    miss : distance of the lower end from its place, in height [m]
+    miss : height difference between the lower end and its position [m]
     closure : relative force residual, recomputed from the final coordinates
     other : another equilibrium, if one was found
     """
@@ -74,7 +75,7 @@ class LegResult:
     warnings: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
-        """Return its name, and how many components it has."""
+        """Summary with name, type and number of components."""
         return f"LegResult({self.name!r}, {self.type}, {len(self.components)} components)"
 
     @property
@@ -138,11 +139,11 @@ class LegResult:
 
 
 def leg_result_of(leg: Leg, solution: Solution, still: Solution | None) -> LegResult:
-    """Make the result of a leg, without warnings and profilers.
+    """Build the result of a leg, without warnings and profilers.
 
     Parameters
     ----------
-    still : the line in still water; None without a unique shape
+    still : solution in still water; None without a unique shape
     """
     pieces = leg.file.pieces
     above = pieces if leg.towed else pieces[:-1]

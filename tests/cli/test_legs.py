@@ -352,7 +352,7 @@ def test_an_anchor_that_is_lifted_is_no_result(
     file = tmp_path / "light.yaml"
     file.write_text(NET.replace("anchor-wheels-4", "anchor-wheels-1"))
     assert run("run", file) == 3
-    assert "anchor-lifts: The vertical pull of leg stem is" in capsys.readouterr().err
+    assert "anchor-lifts: The vertical load of leg stem is" in capsys.readouterr().err
 
 
 MISTAKES = {
@@ -830,7 +830,7 @@ def test_a_line_lies_on_the_plane_of_a_grid(tmp_path: Path) -> None:
         assert there == pytest.approx(where, abs=0.3 + off)
         said = [each for each in grid.warnings if "lies on the plane" in each]
         assert len(said) == (bowl > 0.0)
-        told = float(re.search(r"up to ([\d.]+) m off", said[0])[1]) if said else 0.0
+        told = float(re.search(r"up to ([\d.]+) m there", said[0])[1]) if said else 0.0
         assert told == pytest.approx(bowl * grid.anchor.grounded_length**2, rel=0.05, abs=0.06)
 
 
@@ -931,7 +931,7 @@ def test_a_leg_that_stands_the_other_way_round_is_said(tmp_path: Path) -> None:
         "length: 60 m}\n", "length: 60 m}\n      - {use: glass-17in, count: 4}\n"
     )
     (said,) = (one for one in load(tmp_path / "net.yaml", text=text).solve().warnings
-               if "other way round" in one)  # fmt: skip
+               if "in reverse order" in one)  # fmt: skip
     assert "Leg second" in said
 
 
@@ -944,9 +944,9 @@ def test_a_net_that_sinks_is_refused_as_such(tmp_path: Path) -> None:
 def test_two_anchors_that_are_put_in_one_place_are_told(tmp_path: Path) -> None:
     text = SLOPE.replace("at: [30 m, 0 m]", "at: [-30 m, 0 m]")
     said = [one for one in load(tmp_path / "two.yaml", text=text).solve().warnings
-            if "in one place" in one]  # fmt: skip
+            if "at the same position" in one]  # fmt: skip
     assert len(said) == 1
-    assert said[0].startswith("The anchors of legs west and east stand in one place")
+    assert said[0].startswith("The anchors of legs west and east are at the same position")
 
 
 def test_places_may_be_latitudes_and_longitudes(tmp_path: Path) -> None:
@@ -977,7 +977,7 @@ legs:
     assert result.status == "converged"
     # 300 m hang plumb, but for their stretch, and the anchor is 400 m from where they come down
     (slack,) = [text for text in result.warnings if "is slack" in text]
-    assert slack.startswith("Leg moor is slack: 190.")
+    assert slack.startswith("Leg moor is slack: the chain on the seabed is 190.")
     (anchor,) = result.anchors
     assert anchor.horizontal == pytest.approx(0.0, abs=1e-3)
 
