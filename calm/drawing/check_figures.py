@@ -18,11 +18,11 @@ from calm.quantities import QUANTITIES
 Solved = Sequence[tuple[str, LegResult]]
 
 
-_SIZE = 8.0  # points, of the letters
+_SIZE = 8.0  # font size in points
 _WIDTH, _HEIGHT = 533.0, 576.0  # points: an A4 page between its margins
 _LEGEND_ROW, _LEGEND_COLUMNS = 13.5, 4
-_LEAST_SPAN = 0.1  # of the depth: a line that hardly leans is not drawn as if it did
-_FURTHEST_LIMIT = 4.0  # times the greatest tension; what is beyond is drawn at the edge
+_LEAST_SPAN = 0.1  # as a share of the depth; an almost vertical line is not stretched beyond this
+_FURTHEST_LIMIT = 4.0  # times the maximum tension; larger values are drawn at the edge
 _DASHES: tuple[tuple[float, ...], ...] = ((), (7.0, 2.5), (1.8, 1.8))
 _STILL = graph.Stroke("grey", 1.0, (3.0, 2.0))
 _LIMIT = graph.Stroke("#b3261e", 2.0, square=True)
@@ -30,12 +30,12 @@ _UNJUDGED, _ENOUGH, _SHORT = "#b8bec4", "#8fb3cf", "#d98880"
 
 
 def check_figure(assessment: Assessment) -> str:
-    """The figure as SVG: five panels that share one legend, a line of its own for each environment.
+    """Return the figure as SVG: five panels with a common legend, and a line for each environment.
 
-    The elevation and the current are of one depth axis; an elevation lies in the plane of its own
-    excursion. Tension is drawn over the distance along the line, with the load that each piece may
-    bear. The breaks are drawn where the mooring has a release. The panels keep their size: the
-    graph grows by the rows of the legend.
+    The elevation and the current share the depth axis; each elevation is in the plane of its own
+    excursion. Tension is drawn over the distance along the line, with the allowable load of each
+    piece. The breaks are drawn if the mooring has a release. The panels keep their size: the graph
+    grows by the rows of the legend.
     """
     solved = [(stand.environment, stand.result) for stand in assessment.stands if stand.result]
     entries = _legend(solved)
@@ -47,7 +47,7 @@ def check_figure(assessment: Assessment) -> str:
     top, lower = legend + 11.0, legend + 372.0
     depth = max(line_picture.seabed_of(result) for _, result in solved)
     highest = min(float(result.shape.depth.min()) for _, result in solved)
-    # of the elevation and the current: from below the seabed to above the surface
+    # depth axis of the elevation and the current, from below the seabed to above the surface
     depths = graph.Scale(1.03 * depth, min(-0.03 * depth, highest))
     _draw_elevation(page, (42.0, top, 187.0, 310.0), solved, depths)
     _draw_current(page, (240.0, top, 72.0, 310.0), solved, depths)
@@ -63,7 +63,7 @@ Place = tuple[float, float, float, float]
 
 
 def _legend(solved: Solved) -> list[graph.LegendEntry]:
-    """An entry for each environment, and for what else the panels show."""
+    """Legend entries for each environment, and for the other lines and marks of the panels."""
     _, first = solved[0]
     there = {part.role for part in line_picture.named_parts(first)}
     still = [] if first.still_shape is None else [graph.LegendEntry("still water", line=_STILL)]
@@ -76,7 +76,7 @@ def _legend(solved: Solved) -> list[graph.LegendEntry]:
 
 
 def _stroke(number: int) -> graph.Stroke:
-    """Colour and dashes of an environment: no two of the first twenty-one are alike."""
+    """Colour and dashes of an environment, distinct for the first twenty-one environments."""
     turn, colour = divmod(number, len(graph.COLOURS))
     return graph.Stroke(graph.COLOURS[colour], 1.2, _DASHES[turn % len(_DASHES)])
 
@@ -118,7 +118,7 @@ def _draw_current(page: graph.Graph, place: Place, solved: Solved, depths: graph
 
 
 def _draw_tension(page: graph.Graph, place: Place, solved: Solved) -> None:
-    """Tension over the stretched length, and what the pieces may bear, where that is known."""
+    """Draw tension over the stretched length, and the allowable loads of the pieces, if known."""
     greatest = max(float(result.shape.tension.max()) for _, result in solved)
     _, first = solved[0]
     ends = np.concatenate([[0.0], np.cumsum(first.components.length[:-1])])
@@ -140,7 +140,7 @@ def _draw_tension(page: graph.Graph, place: Place, solved: Solved) -> None:
 
 
 def _draw_plan(page: graph.Graph, place: Place, solved: Solved) -> None:
-    """Both axes are to one scale."""
+    """Draw the line from above, with equal scales on both axes."""
     _, _, width, height = place
     across, up = (
         graph.covering([0.0], *(getattr(result.shape, name) for _, result in solved))
@@ -156,7 +156,9 @@ def _draw_plan(page: graph.Graph, place: Place, solved: Solved) -> None:
 
 
 def _draw_breaks(page: graph.Graph, place: Place, backup: Sequence[Break]) -> None:
-    """Draw what is left to lift after each break, and what is required; grey where not judged."""
+    """Draw the remaining buoyancy after each break, and the required buoyancy; breaks without
+    assessment are grey.
+    """
     number = np.array([each.break_after for each in backup], dtype=np.float64)
     required = np.array([each.required for each in backup])
     margins = np.array([each.margin for each in backup])

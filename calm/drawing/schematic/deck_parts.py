@@ -14,12 +14,12 @@ from calm.quantities import QUANTITIES
 
 
 def parts_of(deck: Deck, listed: Sequence[DeckItem], *, surface: bool) -> tuple[ShownPart, ...]:
-    """The parts listed, down a line or a leg, whose top is at the `surface` or below it.
+    """Return the listed parts of a line or leg, whose top is at the `surface` or submerged.
 
-    Connectors that follow one another make one junction.
+    Successive connectors are combined to one junction.
 
-    Beside each stand cut length or place on the wire, stretched length, depth, planned depth if any
-    part has one, height, tension and net buoyancy.
+    The values of each part are cut length or position on the wire, stretched length, depth, planned
+    depth if any part has one, height, tension and net buoyancy.
     """
     own, planned = _own_labels(deck.parts), has_plans(deck)
     weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
@@ -48,12 +48,12 @@ def parts_of(deck: Deck, listed: Sequence[DeckItem], *, surface: bool) -> tuple[
 
 
 def has_plans(deck: Deck) -> bool:
-    """Whether any part of a deck has a planned depth."""
+    """Whether at least one part of a deck has a planned depth."""
     return any(one.planned_depth is not None for one in deck.parts)
 
 
 def _own_labels(parts: Sequence[DeckItem]) -> dict[int, str]:
-    """Of each part, by its identity: its label where a person gave it, else nothing."""
+    """User-defined labels of parts by their identity, empty for default labels."""
     labels = own_labels([one.label for one in parts])
     return {
         id(one): "" if label == one.part.use else one.label
@@ -108,8 +108,8 @@ def _piece(
 
 
 def _figures(items: Sequence[DeckItem], weights: _Weights, *, planned: bool) -> tuple[str, ...]:
-    """Depth, planned depth and height of the first, the greatest tension, and the net buoyancy of
-    all.
+    """Depth, planned depth and height of the first item, maximum tension, and total net
+    buoyancy.
     """
     plan = items[0].planned_depth
     tension = max((one.tension for one in items if one.tension is not None), default=None)
@@ -132,7 +132,7 @@ def _said(name: str, value: float | None) -> str:
 def _junction(
     parts: Sequence[DeckItem], own: Mapping[int, str], weights: _Weights, *, planned: bool
 ) -> ShownPart:
-    words = []  # connectors as people write them, with their own labels and serial numbers
+    words = []  # connectors in their usual notation, with their own labels and serial numbers
     for one in parts:
         hardware, label = one_line(one.hardware), one_line(own[id(one)])
         text = f"{label} ({hardware})" if label else hardware
