@@ -1,8 +1,9 @@
-"""Many current profiles of a net of legs, by the compiled search of `calm.solve.leg_marches`.
+"""Many current profiles of a net of legs, solved by the compiled search of
+`calm.solve.leg_marches`.
 
-Each is sought from where the net is in still water, or where it does not stand there in the current
-of its file. Where that leads to nothing that stands, or the seabed is a grid, the profile is solved
-as `calm run` does.
+The search for each profile starts from the net in still water, or if there is no equilibrium in
+still water, from the net in the current of its file. If this fails, or if the seabed is a grid, the
+profile is solved as in `calm run`.
 """
 
 from collections.abc import Callable
@@ -40,22 +41,22 @@ from calm.solve.problem import CHOSEN, FINE
 from calm.solve.solution import FOUND
 
 ROUGHLY = 1e-6
-"""What may be left of lengths and forces, in shares: a run leaves less, which takes longer."""
+"""Tolerance of lengths and forces, in shares, larger than in a single run to save time."""
 BLOCK = 256
-"""Profiles that a thread takes at a time."""
+"""Number of profiles that a thread takes at a time."""
 TO_SOLVE = 1
-"""How a profile ends that is to be solved alone."""
+"""Outcome of a profile that has to be solved alone."""
 Column = tuple[float, ...]
 
 
 class NetRows(NamedTuple):
-    """Hold what is found of n profiles.
+    """Results of n profiles.
 
     Attributes
     ----------
-    pieces : (n, p, 12) place [m] and force [N] at the upper and at the lower end of each
-    clamps : (n, c, 7) place, sum of the forces above and below, and the greater one
-    shares : (n, l) of the buoyancy of the float at the upper end of each leg
+    pieces : (n, p, 12) position [m] and force [N] at the upper and at the lower end of each piece
+    clamps : (n, c, 7) position, sum of the forces above and below, and the larger of the two forces
+    shares : (n, l) share in use of the buoyancy of the float at the upper end of each leg
     """
 
     pieces: Floats
@@ -64,15 +65,15 @@ class NetRows(NamedTuple):
 
 
 class NetPaper(NamedTuple):
-    """Hold what profiles are laid out on, and from where they are sought.
+    """Work arrays and start of the search for profiles.
 
     Attributes
     ----------
-    on, still : what a profile is laid out on; the water without it
-    start, slopes, scale : the unknowns and slopes of the net there, and what scales them
-    x : room for the unknowns
-    piece, clamp : first of each leg in the rows
-    weight : of the anchor of each leg, inf where it has none [N]
+    on, still : work arrays for a profile; the water without current
+    start, slopes, scale : unknowns and slopes of the net at the start, and their scales
+    x : work array for the unknowns
+    piece, clamp : index of the first piece and clamp of each leg in the rows
+    weight : weight of the anchor of each leg [N]; inf without an anchor
     """
 
     on: solving.ProfileLevels
@@ -98,14 +99,14 @@ def solve_net_rows(
     rows: NetRows,
     endings: Any,
 ) -> None:
-    """Solve profiles; what they lead to goes to their rows.
+    """Solve profiles, and write the results to their rows.
 
     Parameters
     ----------
     step : angle step [rad]
-    depth : (1 or n, k) of the levels [m]
-    u, v, w : (n, k) current [m/s]; NaN where there is none
-    endings : (n,) those not 0 are left alone; then how each ends
+    depth : (1 or n, k) depth of the levels [m]
+    u, v, w : (n, k) current [m/s]; NaN for missing values
+    endings : (n,) outcome of each profile; profiles with a value other than 0 on entry are skipped
     """
     for case in range(endings.size):
         if endings[case] != 0:
@@ -129,8 +130,9 @@ def solve_net_rows(
 
 
 def stands(net: NetProblem, paper: NetPaper) -> bool:
-    """Return whether no leg is out of the water or in the seabed, no anchor is lifted, and
-    something holds the net in its place."""
+    """Whether a solution is valid: no leg is out of the water or below the seabed, no anchor is
+    lifted, and the net is held horizontally.
+    """
     near = net.errors[leg_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
     for i in range(len(net.legs)):
         leg, state, record = net.legs[i], net.state[i], net.lines.work.records[i][FINE]
@@ -150,7 +152,7 @@ def stands(net: NetProblem, paper: NetPaper) -> bool:
 
 
 def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None:
-    """Write what is found of a profile to its row."""
+    """Write the results of a profile to its row."""
     for i in range(len(net.legs)):
         leg, record = net.legs[i], net.lines.work.records[i][FINE]
         count = int(net.state[i][leg_numbers.COUNT])
@@ -183,18 +185,18 @@ def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None
 
 @dataclass(frozen=True)
 class NetProfiles:
-    """A net made ready for many profiles."""
+    """A net prepared for many profiles."""
 
     net: Design
 
     def water(self, depth: Column, u: Column, v: Column, w: Column) -> Water:
-        """Its water with another current."""
+        """Return the water of the net with another current."""
         environment = replace(self.net.file.environment, current=CurrentTable(depth, u, v, w))
         return self.net.water_of(environment)
 
     @cached_property
     def still(self) -> NetSolution | None:
-        """The net in still water; None where it does not stand there."""
+        """The net in still water; None without equilibrium."""
         expect_many(inf)
         try:
             return self.net.together(self.net.water.still())
@@ -203,7 +205,7 @@ class NetProfiles:
 
     @cached_property
     def at_rest(self) -> Result | None:
-        """Return what is measured of it there; None where a check of it fails."""
+        """Results in still water; None if a check fails."""
         with suppress(NoEquilibrium):
             if self.still is not None:
                 return result_together(self.net, self.still, self.still.legs)
@@ -211,26 +213,27 @@ class NetProfiles:
 
     @cached_property
     def base(self) -> NetSolution | None:
-        """From where profiles are sought: the net in still water, or else in that of its file."""
+        """Start of the search: the net in still water, or else in the current of its file."""
         with suppress(NoEquilibrium):
             return self.still or self.net.standing
         return None
 
     @cached_property
     def slopes(self) -> tuple[Floats, Floats] | None:
-        """Slopes of the net there, and what scales them; None where profiles are to be solved
-        alone."""
+        """Slopes of the net at the start, and their scales; None if profiles must be solved
+        alone.
+        """
         if self.base is None or isinstance(self.net.file.environment.seabed, SeabedGrid):
             return None
         search, step = self.search(), 4.0 * self.net.settings.angle_step
         search.put_in(self.net.water.still() if self.still else self.net.water)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        # unknowns closed already; near them the legs' own scales are taken and the slopes found
+        # the unknowns are closed already; this call computes the scales of the legs and the slopes
         search.do(leg_closing.CLOSE, self.base.unknowns, how, np.inf)
         return np.array(search.net.slopes), np.array(search.net.scale)
 
     def search(self) -> NetSearch:
-        """The search for it, compiled."""
+        """Create the compiled search for the net."""
         settings = replace(self.net.settings, compiled=True)
         nodes = len(nodes_of(self.net.file.legs))
         water = self.water(*[(0.0,)] * 4)
@@ -239,11 +242,12 @@ class NetProfiles:
     def solve(
         self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
     ) -> dict[str, Floats]:
-        """The columns of profiles, by name; how each ends goes to `status` where that is 0.
+        """Solve profiles, and return their columns by name; outcomes are written to `status` if
+        that is 0.
 
         Parameters
         ----------
-        current : depth (1 or n, k) of levels [m], and u, v, w (n, k) there [m/s]
+        current : depth (1 or n, k) of levels [m], and u, v, w (n, k) at these levels [m/s]
         status : (n,) index in `STATUSES`
         """
         count, pieces = len(status), self.net.file.pieces
@@ -257,7 +261,7 @@ class NetProfiles:
                 mine = tuple(np.array(each, np.float64, order="C") for each in own)
                 self._solve_rows(mine, NetRows(*(row[block] for row in rows)), endings[block])
 
-            solve(slice(0, 0))  # compiles where need be
+            solve(slice(0, 0))  # compiles if necessary
             with ThreadPoolExecutor(workers) as pool:
                 list(pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]))
         else:
@@ -298,7 +302,7 @@ class NetProfiles:
         outcome(solve_net_rows, True, *given)
 
     def _columns(self, rows: NetRows) -> dict[str, Floats]:
-        """The columns that the rows lead to."""
+        """Compute the columns from the rows."""
         file, count = self.net.file, len(rows.shares)
         pieces, clamps, legs = (row.shape[1] for row in rows)
         place, tilt = np.zeros((count, pieces, 3)), np.zeros((count, pieces))
@@ -366,7 +370,7 @@ class NetProfiles:
         self, current: tuple[Floats, ...], case: int, columns: dict[str, Floats],
         status: NDArray[np.int8],
     ) -> None:  # fmt: skip
-        """Solve a profile as `calm run` does."""
+        """Solve a profile as in `calm run`."""
         (depth, u, v, w), still = current, self.still
         read = np.zeros((depth.shape[1], 4))
         levels = depth[case if len(depth) > 1 else 0]

@@ -253,7 +253,7 @@ def test_without_a_folder_to_write_it_works_and_says_so(
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert "compiling the solver" in done.stderr
-    assert "no writable folder was found" in done.stderr
+    assert "no writable cache folder was found" in done.stderr
     assert "compiled in " in done.stderr
 
 
