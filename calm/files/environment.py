@@ -50,7 +50,7 @@ class SeabedKeys(Model):
         "from the horizontal", "3 deg"
     )
     toward: water.Toward = described(
-        "direction in which it becomes deeper, clockwise from north", "120 deg"
+        "clockwise from north: direction in which it becomes deeper", "120 deg"
     )
 
     def at(self, east: float, north: float) -> SeabedKeys:
@@ -151,7 +151,7 @@ class UniformCurrent(Model):
 
     speed: Annotated[float, _SPEED] = described("speed of the water", "0.5 m/s")
     toward: water.Toward = described(
-        "direction toward which it flows or moves, clockwise from north, e.g. 90 deg", "90 deg"
+        "clockwise from north: direction in which it flows or moves, e.g. 90 deg", "90 deg"
     )
     w: Annotated[float, QuantityField("speed")] = described(
         "vertical speed, positive up", "0.01 m/s", default=0.0

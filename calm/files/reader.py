@@ -77,7 +77,7 @@ class MooringKeys(Model):
         "units of display in tables, documents and the builder", {"force": "kgf", "speed": "kn"}
     )
     solver: Solver | None = optional(
-        "settings of the solver", {"angle_step": "1 deg", "strumming": "vandiver"}
+        "numerical settings and drag laws", {"angle_step": "1 deg", "strumming": "vandiver"}
     )
     checks: Checks | None = optional(
         "limits of the design check", {"anchor_factor": 1.5, "maximum_knockdown": "50 m"}

@@ -56,7 +56,9 @@ class WaveKeys(Model):
     gamma: Annotated[float, QuantityField("number", at_least=1, at_most=10)] = described(
         "peakedness of jonswap", 3.3, default=3.3
     )
-    toward: Toward = described("direction of travel, clockwise from north", "90 deg", default=90.0)
+    toward: Toward = described(
+        "clockwise from north: direction in which they travel", "90 deg", default=90.0
+    )
     swell: SwellKeys | None = optional(
         "swell in the same direction", {"significant_height": "2 m", "peak_period": "14 s"}
     )
