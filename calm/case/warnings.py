@@ -298,8 +298,8 @@ def _below_the_sea(result: LegResult, _: Solution) -> Iterator[str]:
     towing = result.leg.towing
     if towing.in_air and towing.height > 0.0 and lowest > 0.0:
         yield (
-            f"The line extends to {lowest:.1f} m below the surface although `in_air` treats the "
-            "whole line as being in air."
+            f"The line extends to {lowest:.1f} m below the surface although `fluid: air` "
+            "treats the whole line as being in air."
         )
 
 
