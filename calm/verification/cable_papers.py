@@ -254,7 +254,7 @@ sphere of 100 mm and 1.47 kg, Cx 0.90, in fresh water. The whole cable strums at
 F = 0.166 V₀ sin φ_n/D with φ_n the angle at the ship; its amplitude is a/D = A₁ + B₁ φ + C₁ φ², its
 drag coefficient C* = C₀ f(λ), at most 3.0. The paper does not print A₁, B₁ and C₁. CALM's follow
 from three of its own figures: a/D = 0.5 at 90°, C* = 1.25 at the sphere, φ_n = 16.28°. So these
-three are met by construction; the frequency, the immersion, the greatest C* and the amplitudes of
+three are met by construction; the frequency, the immersion, the maximum C* and the amplitudes of
 the bare cable from 0.6 to 2.0 m/s, for which the paper prints 0.9 to 1.4, are not. The prefactor of
 f, printed 2/π on [0, π], must be 1/π: f(0) = 1.
 

@@ -336,8 +336,8 @@ p²/4) − p/2, is also given by E. E. Zajac (Bell System Technical Journal 36, 
             "The cable is cut to σ, printed to 5e-7; the march errs by 1e-7 of its length, some "
             "1e-6, at an angle step of 0.1°.", Kind.INDEPENDENT),
         *(_tension(critical, angle, tau) for critical, f, angle, tau, *_ in _TABLE if f == 0.0),
-        Case("C6 all rows: greatest |τ − 1 − p η − f σ|", 0.0, "", 1e-11,
-             "Exact; the quadratures are good to 1e-12.", _identity_missed, Kind.PROPERTY),
+        Case("C6 all rows: maximum |τ − 1 − p η − f σ|", 0.0, "", 1e-11,
+             "Exact; the quadratures have an error of 1e-12.", _identity_missed, Kind.PROPERTY),
         *(
             Case(f"critical angle, p {ratio:g}", expected, "°", 5.5e-5, PRINTED,
                  partial(_critical_angle, ratio), Kind.CLOSED_FORM)
