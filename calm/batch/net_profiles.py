@@ -64,7 +64,7 @@ class NetRows(NamedTuple):
     shares: Floats
 
 
-class NetPaper(NamedTuple):
+class NetArrays(NamedTuple):
     """Work arrays and start of the search for profiles.
 
     Attributes
@@ -91,7 +91,7 @@ def solve_net_rows(
     ask: Callable[[NetTask, float], float],
     net: NetProblem,
     step: float,
-    paper: NetPaper,
+    arrays: NetArrays,
     depth: Floats,
     u: Floats,
     v: Floats,
@@ -111,25 +111,25 @@ def solve_net_rows(
     for case in range(endings.size):
         if endings[case] != 0:
             continue
-        endings[case], sea = sea_of(paper.on, depth, u, v, w, case, paper.still)
+        endings[case], sea = sea_of(arrays.on, depth, u, v, w, case, arrays.still)
         if endings[case] != 0:
             continue
-        copy_values(paper.start, paper.x)
-        for k in range(len(paper.x)):
-            copy_values(paper.slopes[k], net.slopes[k])
-        copy_values(paper.scale, net.scale)
+        copy_values(arrays.start, arrays.x)
+        for k in range(len(arrays.x)):
+            copy_values(arrays.slopes[k], net.slopes[k])
+        copy_values(arrays.scale, net.scale)
         how = Marching(sea, 4.0 * step, CHOSEN, False, False, FINE, 0.0)
-        ending = ask(NetTask(leg_closing.CLOSE, net, paper.x, how, leg_closing.NEAR, True), 0.0)
+        ending = ask(NetTask(leg_closing.CLOSE, net, arrays.x, how, leg_closing.NEAR, True), 0.0)
         if ending == FOUND:
             how = Marching(sea, step, CHOSEN, False, False, FINE, 0.0)
-            ending = ask(NetTask(leg_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
+            ending = ask(NetTask(leg_closing.SETTLE, net, arrays.x, how, ROUGHLY, True), 0.0)
         endings[case] = TO_SOLVE
-        if ending == FOUND and stands(net, paper):
+        if ending == FOUND and is_valid(net, arrays):
             endings[case] = 0
-            tell_net(net, paper, rows, case)
+            write_net(net, arrays, rows, case)
 
 
-def stands(net: NetProblem, paper: NetPaper) -> bool:
+def is_valid(net: NetProblem, arrays: NetArrays) -> bool:
     """Whether a solution is valid: no leg is out of the water or below the seabed, no anchor is
     lifted, and the net is held horizontally.
     """
@@ -142,16 +142,16 @@ def stands(net: NetProblem, paper: NetPaper) -> bool:
                 return False
             first = net.last[i][net.lines.surfacing[i][0].piece] + 1
         for n in range(count):
-            if n < state[leg_numbers.HUNG] and above_bed(net, i, paper.x, record, n) < -near:
+            if n < state[leg_numbers.HUNG] and above_bed(net, i, arrays.x, record, n) < -near:
                 return False
             if n >= first and record[2][n] > near + leg.highest:
                 return False
-        if record[5][count - 1] > paper.weight[i]:
+        if record[5][count - 1] > arrays.weight[i]:
             return False
     return not drifts(net)
 
 
-def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None:
+def write_net(net: NetProblem, arrays: NetArrays, rows: NetRows, case: int) -> None:
     """Write the results of a profile to its row."""
     for i in range(len(net.legs)):
         leg, record = net.legs[i], net.lines.work.records[i][FINE]
@@ -161,7 +161,7 @@ def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None
         rows.shares[case, i] = net.state[i][leg_numbers.SHARE]
         own = 1 if leg.own > 1 else 0
         for p in range(own, leg.pieces):
-            row = rows.pieces[case, paper.piece[i] + p - own]
+            row = rows.pieces[case, arrays.piece[i] + p - own]
             for side in range(2):
                 n = net.first[i][p] if side == 0 else net.last[i][p]
                 for k in range(6):
@@ -171,7 +171,7 @@ def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None
         for n in range(1, count):
             if record[7][n] < 0.0:
                 continue
-            row = rows.clamps[case, paper.clamp[i] + int(record[7][n])]
+            row = rows.clamps[case, arrays.clamp[i] + int(record[7][n])]
             row[0], row[1] = record[BETTER][n - 1] + dx, record[BETTER + 1][n - 1] + dy
             row[2] = record[BETTER + 2][n - 1]
             above = below = 0.0
@@ -284,7 +284,7 @@ class NetProfiles:
         of_legs = self.net.file.legs
         weights = [leg.anchor_weight if leg.anchored else inf for leg in self.net.legs]
         clamped = [len(piece.clamps) for piece in self.net.file.pieces]
-        paper = NetPaper(
+        arrays = NetArrays(
             on=solving.levels_for(current[0].shape[1], water),
             still=search.sea,
             start=self.base.unknowns,
@@ -297,8 +297,8 @@ class NetProfiles:
         )
         step = float(search.settings.angle_step)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        ask = by_address(do_task, NetTask(leg_closing.CLOSE, search.net, paper.x, how, 0.0, True))
-        given = (ask, search.net, step, paper, *current, rows, endings)
+        ask = by_address(do_task, NetTask(leg_closing.CLOSE, search.net, arrays.x, how, 0.0, True))
+        given = (ask, search.net, step, arrays, *current, rows, endings)
         outcome(solve_net_rows, True, *given)
 
     def _columns(self, rows: NetRows) -> dict[str, Floats]:

@@ -29,7 +29,7 @@ from calm.physics.compiled import by_address, outcome
 from calm.physics.line import Floats, Integers, Water
 from calm.solve import Status
 from calm.solve.audit import referee_of
-from calm.solve.mooring import MORE_ROOM, AskedSearch, find_asked, search_of
+from calm.solve.mooring import MORE_ROOM, SearchTask, run_search, search_of
 from calm.solve.problem import MANY_ROOM, problem_of
 from calm.solve.solution import FOUND
 
@@ -329,12 +329,12 @@ class Batch:
         if starts is not None:
             found[:] = starts
         pieces = leg.file.pieces[:-1]
-        paper = ProfileArrays(
+        arrays = ProfileArrays(
             on=on,
             may_lie=np.array([one.component.kind == "chain" for one in pieces], np.int64),
         )
-        find = by_address(find_asked, AskedSearch(search, referee))
-        given = (find, search, referee, paper, starts is None, depth, *parts, rows, endings)
+        find = by_address(run_search, SearchTask(search, referee))
+        given = (find, search, referee, arrays, starts is None, depth, *parts, rows, endings)
         outcome(solving.solve_rows, True, *given)
         return np.asarray(found)
 

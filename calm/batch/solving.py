@@ -15,7 +15,7 @@ from calm.physics.line import BETTER, NO_ROOM, Floats, Integers, Water
 from calm.physics.passing import FAILURE
 from calm.physics.profile import Interval, Sea, find_bends
 from calm.physics.referee import RefereeShape, find_ends
-from calm.solve.mooring import FIRST_OTHER, HANGING, NODES, SHARE_IN_USE, SOUGHT, AskedSearch
+from calm.solve.mooring import FIRST_OTHER, HANGING, NODES, SHARE_IN_USE, SOUGHT, SearchTask
 from calm.solve.problem import BELOW, FINE, Limits, LineProblem, Search
 from calm.solve.search import Referee
 from calm.solve.solution import FOLDED, FOUND, MARCH_STOPPED, SUPPORTED, TOO_HEAVY, UNSUPPORTED
@@ -90,10 +90,10 @@ class ProfileArrays(NamedTuple):
 
 
 def solve_rows(
-    find: Callable[[AskedSearch, float], float],
+    find: Callable[[SearchTask, float], float],
     search: Search,
     referee: Referee,
-    paper: ProfileArrays,
+    arrays: ProfileArrays,
     first: bool,
     depth: Floats,
     u: Floats,
@@ -112,22 +112,22 @@ def solve_rows(
     endings : (n,) outcome of each profile
     """
     if first:
-        find(AskedSearch(search, referee), 1.0)
+        find(SearchTask(search, referee), 1.0)
     for case in range(endings.size):
-        endings[case], sea = sea_of(paper.on, depth, u, v, w, case, search.problem.sea)
+        endings[case], sea = sea_of(arrays.on, depth, u, v, w, case, search.problem.sea)
         if endings[case] != FOUND:
             continue
-        problem = in_current(search.problem, paper.on, sea)
+        problem = in_current(search.problem, arrays.on, sea)
         ending = refused_at_once(problem.limits)
         if ending == FOUND:
-            ending = int(find(AskedSearch(Search(search.miss, problem), referee), 0.0))
+            ending = int(find(SearchTask(Search(search.miss, problem), referee), 0.0))
             if ending == MARCH_STOPPED and problem.work.left[FAILURE] == NO_ROOM:
                 ending = LACKS_ROOM
         endings[case] = ending
         if ending == FOUND:
-            if is_heap(problem, paper):
+            if is_heap(problem, arrays):
                 endings[case] = HEAPED
-            measure(problem, referee, paper, results, case)
+            measure(problem, referee, arrays, results, case)
 
 
 def sea_of(
@@ -179,14 +179,14 @@ def refused_at_once(limits: Limits) -> int:
     return UNSUPPORTED if refused == TOO_HEAVY else FOLDED
 
 
-def is_heap(problem: LineProblem, paper: ProfileArrays) -> bool:
+def is_heap(problem: LineProblem, arrays: ProfileArrays) -> bool:
     """Whether a sub-surface line has a piece on the seabed that may not lie there."""
-    told, record = problem.work.found, problem.work.records[FINE]
-    if told[SOUGHT] != BELOW:
+    found, record = problem.work.found, problem.work.records[FINE]
+    if found[SOUGHT] != BELOW:
         return False
     heap = False
-    for n in range(int(told[HANGING]) + 1, int(told[NODES])):
-        heap |= paper.may_lie[int(record[6][n])] == 0
+    for n in range(int(found[HANGING]) + 1, int(found[NODES])):
+        heap |= arrays.may_lie[int(record[6][n])] == 0
     return heap
 
 
@@ -196,11 +196,11 @@ def tilt_of(x: float, y: float, z: float) -> float:
 
 
 def measure(
-    problem: LineProblem, referee: Referee, paper: ProfileArrays, results: Results, case: int
+    problem: LineProblem, referee: Referee, arrays: ProfileArrays, results: Results, case: int
 ) -> None:
     """Write the results of a profile's shape to its row."""
-    told, record = problem.work.found, problem.work.records[FINE]
-    nodes = int(told[NODES])
+    found, record = problem.work.found, problem.work.records[FINE]
+    nodes = int(found[NODES])
     find_ends(RefereeShape(record, nodes, nodes - 1, referee.first, referee.last))
     pieces, _, ends = results
     head = referee.moored.head
@@ -220,7 +220,7 @@ def measure(
             ends[case, 4] = -k
     ends[case, 0] = pieces[case, DEPTH, 0]
     ends[case, 3] = used_buoyancy(problem)
-    ends[case, 5] = told[FIRST_OTHER + 2] if told[FIRST_OTHER] >= 0.0 else nan
+    ends[case, 5] = found[FIRST_OTHER + 2] if found[FIRST_OTHER] >= 0.0 else nan
     if head > 1:
         lean_of_head(problem, referee, results, case, head)
     measure_clamps(problem, results, case)
@@ -270,13 +270,13 @@ def measure_clamps(problem: LineProblem, results: Results, case: int) -> None:
 
 def used_buoyancy(problem: LineProblem) -> float:
     """Share in use of the buoyancy of the floats at the surface."""
-    told = problem.work.found
-    sought = int(told[SOUGHT])
+    found = problem.work.found
+    sought = int(found[SOUGHT])
     if sought == BELOW:
         return 1.0
     total = used = 0.0
     for k in range(sought + 1):
-        share = told[SHARE_IN_USE] if k == sought else problem.work.shares[0][k]
+        share = found[SHARE_IN_USE] if k == sought else problem.work.shares[0][k]
         lift = problem.surfacing[k].surface_lift
         total += lift
         used += share * lift

@@ -30,8 +30,10 @@ from calm.solve.mooring import Nearby
 from calm.solve.net import NearbyNet
 
 STAGES = (4, 8)
-"""Numbers of Gauss points in t; the second is used if the first leaves an error above `FAIR`."""
-FAIR = 0.01
+"""Numbers of Gauss points in t; the second is used if the first has an error above
+`LARGEST_MISS`.
+"""
+LARGEST_MISS = 0.01
 LEAST_DRAG = 1e-3
 """Share of the drag at which the shares begin, for a line whose shape is not unique without
 drag.
@@ -108,7 +110,7 @@ def attribute(
         total = shares.sum(axis=0)
         grows = np.abs(growth) > 1e-9 * np.maximum(np.abs(whole), 1.0)
         miss = np.where(grows, total / np.where(grows, growth, 1.0) - 1.0, 0.0)
-        if np.abs(miss).max() <= FAIR:
+        if np.abs(miss).max() <= LARGEST_MISS:
             break
     scaled = shares * np.where(grows & (total != 0.0), growth / np.where(total, total, 1.0), 0.0)
     return Attribution(parts=parts, start=start, shares=scaled, miss=miss)

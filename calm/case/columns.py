@@ -38,7 +38,7 @@ class Output(Flag):
     BUILDER = auto()
 
 
-NOWHERE = Output(0)
+NO_OUTPUT = Output(0)
 FILES = Output.JSON | Output.CSV | Output.NETCDF
 LINE_TABLES = Output.MOORING_TABLE | Output.TOW_TABLE | Output.NET_TABLE
 _LAST = 1000
@@ -72,7 +72,7 @@ class ResultColumn:
     name: str
     quantity: Quantity | None
     description: str
-    outputs: Output = NOWHERE
+    outputs: Output = NO_OUTPUT
     prefix: str = ""
     of_part: Callable[[Any], Any] | None = None
     found: Callable[[Any], Any] | None = None
@@ -117,7 +117,7 @@ class ResultColumn:
 
 def column(
     description: str,
-    outputs: Output = NOWHERE,
+    outputs: Output = NO_OUTPUT,
     *,
     title: str = "",
     unit: str | None = None,

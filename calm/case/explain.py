@@ -166,7 +166,7 @@ def explain(result: Result, label: str | None = None) -> Explanation:
         miss = float(np.abs(shares.miss[columns]).max()) if mooring.water.moving else 0.0
         for name, column in zip(quantities, columns, strict=True):
             without_drag[name] = 0.0 if name == "knockdown" else float(shares.start[column])
-        if miss > attribution.FAIR:
+        if miss > attribution.LARGEST_MISS:
             notes.append(
                 f"The shares are approximate: they do not grow steadily with the drag ({miss:.0%} "
                 "were scaled)."
@@ -208,7 +208,7 @@ def _notes(result: Result, quantities: tuple[str, ...], *, surface: bool) -> Ite
 
 
 def _shares(
-    result: Result, figures: Figures, stands: bool, place: Place
+    result: Result, figures: Figures, has_rest: bool, place: Place
 ) -> attribution.Attribution:
     design, point = result.design, _point(result, place)
     lines = [leg.line for leg in design.legs]
@@ -216,11 +216,11 @@ def _shares(
     start = None
     if design.several:
         near = attribution.of_a_net(design, point)
-        if stands:
+        if has_rest:
             bare = [attribution.with_drag(line, 0.0) for line in lines]
             start = near(bare)(0, bare[0])
         return attribution.attribute(lines, near, start, whole)
-    if stands:
+    if has_rest:
         assert figures.knockdown is not None
         start = np.array([figures.depth - figures.knockdown, 0.0, 1.0])
     return attribution.attribute(lines, attribution.of_a_line(design.water, point), start, whole)

@@ -157,14 +157,14 @@ def in_capitals(layout: ResultLayout) -> ResultLayout:
     names = {one.name for one in layout.variables} | set(layout.sizes)
 
     def raised(attributes: Attributes) -> Attributes:
-        told = dict(attributes)
+        changed = dict(attributes)
         for key in ("coordinates", "ancillary_variables", "cell_methods", "bounds"):
-            if key in told:
-                words = str(told[key]).split(" ")
-                told[key] = " ".join(
+            if key in changed:
+                words = str(changed[key]).split(" ")
+                changed[key] = " ".join(
                     w.upper() if w in names or w.removesuffix(":") in names else w for w in words
                 )
-        return told
+        return changed
 
     return ResultLayout(
         {name.upper(): size for name, size in layout.sizes.items()},

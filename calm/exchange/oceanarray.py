@@ -343,13 +343,13 @@ def _hang(beside: list[_Entry], strung: _Strung, parts: _Parts) -> None:
         parts.reading.refuse(("inline",), "has no line to clamp instruments on")
     nominal, height = np.array(strung.nominal), np.array(strung.height)
     for entry in beside:
-        found, asked = parts.of(entry), entry.height
-        if asked is None:
+        found, wanted = parts.of(entry), entry.height
+        if wanted is None:
             said = f"`{entry.label}` needs `hab`, its height above the bottom"
             parts.reading.refuse(entry.place, said)
-        if found is None or asked is None or not lines:
+        if found is None or wanted is None or not lines:
             continue
-        top = float(np.interp(asked, nominal, height)) + max(asked - float(nominal[-1]), 0.0)
+        top = float(np.interp(wanted, nominal, height)) + max(wanted - float(nominal[-1]), 0.0)
         own = min(lines, key=lambda i: max(height[i] - top, top - height[i + 1], 0.0))
         at = float(np.clip(height[own + 1] - top, 0.0, height[own + 1] - height[own]))
         off = abs(float(height[own + 1]) - at - top)
@@ -357,7 +357,7 @@ def _hang(beside: list[_Entry], strung: _Strung, parts: _Parts) -> None:
         if off > _CLOSE:
             guess = f"{guess}; " * bool(guess) + f"moved by {off:.3g} m onto the nearest line"
         host = strung.items[own]
-        host.clamp(found[0], round(at, 3), guess, f"{entry.label} {asked:g}", entry.serial)
+        host.clamp(found[0], round(at, 3), guess, f"{entry.label} {wanted:g}", entry.serial)
 
 
 def _heading(reading: _Reading) -> dict[str, str]:

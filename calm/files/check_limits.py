@@ -162,14 +162,14 @@ class Checks(definition.Model):
     )
 
 
-GREATER_FLATTERS = (
+LENIENT_IF_GREATER = (
     *("breaking_load", "working_load", "opening_load", "grip"),
     *("depth_rating", "max_tilt", "warn_tilt", "buoyancy"),
 )
 """Limits of a component, and its buoyancy, for which a larger value makes the check more
 lenient.
 """
-LESSER_FLATTERS = (
+LENIENT_IF_LESS = (
     *("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt"),
     *("k_surface", "wind_area", "wind_cd"),
 )

@@ -231,15 +231,15 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
         ends.append(end)
     upper, lower = ends
     anchors = [piece for piece in pieces if isinstance(piece.component, Anchor)]
-    stands = bool(anchors) and anchors[-1] is pieces[-1]
+    anchored = bool(anchors) and anchors[-1] is pieces[-1]
     if upper.anchor is not None:
         refuse(("top",), "the upper end of a leg is not anchored; list it the other way round")
-    for anchor in anchors[: len(anchors) - stands]:
+    for anchor in anchors[: len(anchors) - anchored]:
         message = f"anchor `{anchor.use}` is not the last item of its leg"
         own.refuse_at(anchor.line, anchor.column, message)
-    if stands and keys.bottom is None:
+    if anchored and keys.bottom is None:
         lower = EndKeys(anchor=AnchoredKeys())
-    elif stands and lower.anchor is None:
+    elif anchored and lower.anchor is None:
         refuse(("bottom",), "the leg ends in an anchor; `bottom` must be `{anchor: …}`")
     elif lower.anchor is not None and not anchors:
         refuse(("bottom",), "the leg has no anchor; its last item must be one (`kind: anchor`)")
@@ -249,7 +249,7 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
         refuse(("line",), "there is no piece above the anchor")
     if upper.join is not None and upper.join == lower.join:
         refuse(("bottom",), f"both ends join at `{upper.join}`")
-    if upper == lower == FREE and (keys.bottom is not None or not stands):
+    if upper == lower == FREE and (keys.bottom is not None or not anchored):
         refuse(("bottom",), "both ends are free: join one to another leg, or hold it")
     for piece in pieces:
         here = piece.line, piece.column

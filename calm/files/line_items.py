@@ -7,7 +7,7 @@ from dataclasses import replace
 from calm.errors import about_quantity, shown, unknown
 from calm.files import components, item_keys
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, Defined, define
-from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
+from calm.files.check_limits import LENIENT_IF_GREATER, LENIENT_IF_LESS, LimitKey
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Anchor, Component, Flexible, Outline
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.item_keys import MOST_PIECES
@@ -348,9 +348,9 @@ class LineReader:
         """Record the overrides of a line that allow a component more load, depth or buoyancy, or
         less weight or drag.
         """
-        loads = () if isinstance(component, Anchor) else LESSER_FLATTERS
+        loads = () if isinstance(component, Anchor) else LENIENT_IF_LESS
         sourced = item.data.get("sources")
-        for key in (*GREATER_FLATTERS, *loads):
+        for key in (*LENIENT_IF_GREATER, *loads):
             before, after = (getattr(each, key, None) for each in (definition, component))
             if before is None or after is None:
                 continue

@@ -255,7 +255,7 @@ class Status(Enum):
 
 WARM, COLD = 60, 1200
 """Number of moorings above which it pays to load the compiled solver, and to compile it."""
-AS_MANY = 8
+TYPICAL_COUNT = 8
 """Number of pieces and clamps of a typical mooring, to which solution times are relative."""
 
 
@@ -282,7 +282,7 @@ def runs_compiled(settings: Settings, line: Line | None = None) -> bool:
     if settings.compiled is not None:
         return settings.compiled
     if line is not None:
-        _add(max((len(line.length) + len(line.clamp_piece)) / AS_MANY, 1.0))
+        _add(max((len(line.length) + len(line.clamp_piece)) / TYPICAL_COUNT, 1.0))
     wish = os.environ.get("CALM_COMPILED")
     if wish == "never" or not (_count.pays or wish == "always"):
         return False

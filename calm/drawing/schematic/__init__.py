@@ -90,11 +90,11 @@ def _hung(shown: Schematic, column: LineColumn, top: float) -> tuple[float, tupl
         start = surface - middle if shown.surface else surface + _SUBMERGED
         return surface, placed(parts, start, start + middle)
     if shown.sea is None:
-        surface = hung = start = top + _HELICOPTER
+        surface = line_top = start = top + _HELICOPTER
     else:
         surface = top + _SHIP
-        hung, start = surface - _SHEAVE, surface + _SUBMERGED
-    *others, last = placed(parts, start, hung)
+        line_top, start = surface - _SHEAVE, surface + _SUBMERGED
+    *others, last = placed(parts, start, line_top)
     return surface, (*others, replace(last, ends=(last.ends[0], last.middle)))
 
 
@@ -238,9 +238,9 @@ def _text_lines(row: TextRow, room: float) -> list[TextLine]:
 
 
 def placed(
-    parts: Sequence[PlacedPart], top: float, hung: float | None = None
+    parts: Sequence[PlacedPart], top: float, line_top: float | None = None
 ) -> tuple[PlacedPart, ...]:
-    """Place parts one below the other from `top`; the line begins at `hung` if given, else at
+    """Place parts one below the other from `top`; the line begins at `line_top` if given, else at
     `top`.
     """
     tops = accumulate((part.height for part in parts), initial=top)
@@ -248,8 +248,8 @@ def placed(
         replace(part, top=at, ends=(at, at + part.height))
         for part, at in zip(parts, tops, strict=False)
     ]
-    if hung is not None:
-        found[0] = replace(found[0], ends=(hung, found[0].ends[1]))
+    if line_top is not None:
+        found[0] = replace(found[0], ends=(line_top, found[0].ends[1]))
     return tuple(found)
 
 

@@ -93,8 +93,8 @@ def schematic_of(file: MooringFile, result: AnyResult | None = None) -> Schemati
         heights = [] if bottom is None else [QUANTITIES["height"].format(bottom - depth)]
         return length, QUANTITIES["depth"].format(depth), *heights
 
-    stands = file.pieces[-1].use != STAND_IN
-    pieces = file.pieces if stands else file.pieces[:-1]
+    has_anchor = file.pieces[-1].use != STAND_IN
+    pieces = file.pieces if has_anchor else file.pieces[:-1]
     water = file.environment.fluid == "water"
     towed_by = None
     if file.tow is not None:
@@ -108,7 +108,9 @@ def schematic_of(file: MooringFile, result: AnyResult | None = None) -> Schemati
         surface=levels.surface,
         towed_by=towed_by,
         sea=TextRow("sea surface", "", cells("", 0.0)) if water else None,
-        seabed=None if bottom is None or not stands else TextRow("seabed", "", cells("", bottom)),
+        seabed=None
+        if bottom is None or not has_anchor
+        else TextRow("seabed", "", cells("", bottom)),
     )
 
 

@@ -22,7 +22,14 @@ from calm.drawing.graph import number
 from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, along_the_line, plane_of
 from calm.drawing.schematic.pen import ELLIPSIS
 from calm.drawing.sketch import canvas
-from calm.drawing.sketch.canvas import ACROSS, AXIS, DOWN, header_rows, levels, scaled_frame
+from calm.drawing.sketch.canvas import (
+    AXIS,
+    DOTS_ACROSS,
+    DOTS_DOWN,
+    header_rows,
+    levels,
+    scaled_frame,
+)
 from calm.physics.line import Floats, Water
 from calm.quantities import bearing_of, bearing_text, say
 
@@ -192,10 +199,10 @@ def tension(result: LegResult, width: int, height: int) -> list[Text]:
     caption = f"at most {say('tension', greatest)}{'; dotted: limits' if near else ''}"
     frame = scaled_frame((width, height), caption, across, (0.0, length), unit)
     before = 0.0
-    for row, load in _weakest(loads, length, frame.rows * DOWN):
+    for row, load in _weakest(loads, length, frame.rows * DOTS_DOWN):
         if load <= _HIGHEST_LOAD * greatest and (row % 2 == 0 or load != before):
             x, _ = frame.point(load * scale, 0.0)
-            frame.canvas.dot(x, frame.row * DOWN + row, LIMIT)
+            frame.canvas.dot(x, frame.row * DOTS_DOWN + row, LIMIT)
         before = load
     frame.line(zip((pulls * scale).tolist(), way.tolist(), strict=True), LINE)
     return frame.canvas.rows()
@@ -275,10 +282,10 @@ def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = (
     gutter = 1
     for _ in range(2):  # the numbers next to it take room, which changes the numbers
         columns = width - gutter - 1
-        metres = max((east - west) / (columns * ACROSS), (north - south) / (rows * DOWN))
-        bottom, top = _centred(south, north, metres * rows * DOWN)
+        metres = max((east - west) / (columns * DOTS_ACROSS), (north - south) / (rows * DOTS_DOWN))
+        bottom, top = _centred(south, north, metres * rows * DOTS_DOWN)
         gutter = max(map(len, map(number, levels(bottom, top, rows))))
-    left, right = _centred(west, east, metres * (width - gutter - 1) * ACROSS)
+    left, right = _centred(west, east, metres * (width - gutter - 1) * DOTS_ACROSS)
     across, down = (left, right), (top, bottom)
     what = "" if result.several else "end " if result.towed else "top "
     said = f"{what}{_distance(result)}"

@@ -12,7 +12,7 @@ from calm.drawing.graph import number, round_numbers
 
 Points = Iterable[tuple[float, float]]
 
-ACROSS, DOWN = 2, 4
+DOTS_ACROSS, DOTS_DOWN = 2, 4
 """Number of dots per cell, horizontally and vertically."""
 
 _BRAILLE = 0x2800
@@ -34,9 +34,9 @@ class Canvas:
 
     def dot(self, x: float, y: float, style: str) -> None:
         """Draw a dot; its cell takes the style."""
-        column, row = int(x // ACROSS), int(y // DOWN)
+        column, row = int(x // DOTS_ACROSS), int(y // DOTS_DOWN)
         if 0 <= column < self.width and 0 <= row < self.height:
-            self._bits[row][column] |= _BITS[int(y) % DOWN][int(x) % ACROSS]
+            self._bits[row][column] |= _BITS[int(y) % DOTS_DOWN][int(x) % DOTS_ACROSS]
             if self._signs[row][column] is None:
                 self._styles[row][column] = style
 
@@ -128,12 +128,13 @@ class PlotFrame:
 
     def point(self, x: float, y: float) -> tuple[float, float]:
         """Dot of the canvas for two values."""
-        return self.column * ACROSS + self.across.dot(x), self.row * DOWN + self.down.dot(y)
+        column = self.column * DOTS_ACROSS + self.across.dot(x)
+        return column, self.row * DOTS_DOWN + self.down.dot(y)
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
         """Column and row for two values, limited to the frame."""
         dot_x, dot_y = self.point(x, y)
-        column, row = int((dot_x + 0.5) // ACROSS), int((dot_y + 0.5) // DOWN)
+        column, row = int((dot_x + 0.5) // DOTS_ACROSS), int((dot_y + 0.5) // DOTS_DOWN)
         return (
             min(max(column, self.column), self.column + self.columns - 1),
             min(max(row, self.row), self.row + self.rows - 1),
@@ -241,7 +242,7 @@ def scaled_frame(
     foot = "m" if seabed is None else number(seabed)
     gutter = max(map(len, [foot, *map(number, values)]))
     columns, rows = size[0] - gutter - 1 - beside, size[1] - head - 2
-    scales = CellScale(*across, columns * ACROSS), CellScale(*down, rows * DOWN)
+    scales = CellScale(*across, columns * DOTS_ACROSS), CellScale(*down, rows * DOTS_DOWN)
     frame = PlotFrame(canvas, gutter + 1, head, columns, rows, *scales)
     sign, style, first = ("─", AXIS, -1) if seabed is None else ("▒", SEABED, 0)
     canvas.text(frame.column + first, size[1] - 2, sign * (frame.columns - first), style)

@@ -68,13 +68,13 @@ class TokenStream:
         self.at = min(self.at + 1, len(self.tokens) - 1)
         return token
 
-    def stands(self, *signs: str) -> bool:
-        """Whether the next token is one of some operators."""
+    def is_next(self, *signs: str) -> bool:
+        """Whether the next token is one of the given operators."""
         return self.next.kind == "sign" and self.next.text in signs
 
     def comes(self, sign: str) -> bool:
         """Whether the next token is a given sign, which is then consumed."""
-        return self.stands(sign) and bool(self.take())
+        return self.is_next(sign) and bool(self.take())
 
     def expect(self, sign: str) -> None:
         """Consume a sign, which must be the next token."""
@@ -156,9 +156,9 @@ class _Reader:
         if level == len(_LEVELS):
             return self._unary(depth)
         left = self._binary(level + 1, depth)
-        while self._words.stands(*_LEVELS[level].split()):
+        while self._words.is_next(*_LEVELS[level].split()):
             # a `+` before a key or the end marks a periodic table, not an addition
-            if self._words.stands("+") and self._words.ahead(1).kind in ("key", "end"):
+            if self._words.is_next("+") and self._words.ahead(1).kind in ("key", "end"):
                 break
             left = _joined(self._words.take().text, left, self._binary(level + 1, depth))
         return left
@@ -166,7 +166,7 @@ class _Reader:
     def _unary(self, depth: int) -> Formula:
         if depth > _DEEPEST:
             raise self._words.next.refuse("signs are nested too deeply")
-        if not self._words.stands(*_UNARY):
+        if not self._words.is_next(*_UNARY):
             return self._value(depth)
         operation = _UNARY[self._words.take().text]
         of = self._unary(depth + 1)

@@ -234,11 +234,11 @@ def _values(words: TokenStream) -> KeyValues:
 def _value(words: TokenStream, key: Token) -> KeyValue:
     if key.text in _TEXTS:
         return KeyValue(key, text=_word(words, key))
-    if words.stands("{"):  # name of a profile
+    if words.is_next("{"):  # name of a profile
         words.take()
         words.take()
         words.expect("}")
-    if words.stands("(") and (rows := _rows(words)):
+    if words.is_next("(") and (rows := _rows(words)):
         return KeyValue(key, rows=rows, repeats=words.comes("+"))
     if words.next.kind == "text":
         return KeyValue(key, text=words.take().text)
@@ -250,7 +250,7 @@ def _word(words: TokenStream, key: Token) -> str:
     if token.kind not in ("name", "text", "number"):
         raise key.refuse(f"a name is missing after `{key.text} =`")
     text = token.text
-    while words.stands("-") and words.ahead(1).kind == "name":
+    while words.is_next("-") and words.ahead(1).kind == "name":
         words.take()
         text += "-" + words.take().text
     return text
@@ -321,7 +321,7 @@ def _connector(words: TokenStream, key: Token, layout: CableItems) -> None:
     if not isinstance(below, CableSegment):
         raise key.refuse("a connector must follow a segment")
     body: KeyValue | None
-    if words.stands("{"):
+    if words.is_next("{"):
         below.joint = _block(words)
         body = below.joint.get("body") or below.joint.get("connector")
     else:

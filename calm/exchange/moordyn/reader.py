@@ -96,18 +96,18 @@ class _File:
         return names, lines
 
     def along(
-        self, names: list[str], lines: list[_Row], told: set[str]
+        self, names: list[str], lines: list[_Row], placed: set[str]
     ) -> list[model.ImportedPiece]:
         """Return lines, and the parts at their points, as pieces in order.
 
-        A point in `told` is left out; each point included is added to `told`.
+        A point in `placed` is left out; each point included is added to `placed`.
         """
         items: list[model.ImportedPiece] = []
         for at, line in zip(names, [*lines, None], strict=True):
-            if not _is_held(self.points[at]) and at not in told:
+            if not _is_held(self.points[at]) and at not in placed:
                 there = _point_of(self.points[at])
                 items += [] if there is None else [there]
-            told.add(at)
+            placed.add(at)
             items += [] if line is None else [self.piece(line)]
         return items
 
@@ -256,8 +256,8 @@ def _upper_end(top: _Row) -> model.ImportedPiece:
     figures = _figures(top)
     if _lift(figures) <= 0.0:
         raise top.refuse("the upper end is free, and does not float")
-    told = "the file holds the upper end; here a float of its point, free to move"
-    guess = {"volume": told} if _is_held(top) else {}
+    reason = "the file holds the upper end; here a float of its point, free to move"
+    guess = {"volume": reason} if _is_held(top) else {}
     name = f"point {top.words['id']}"
     return model.ImportedPiece(
         model.ImportedComponent(name, "body", {**figures, "role": "float"}, guess)
@@ -361,7 +361,7 @@ def _lay_net(file: _File, path: Path) -> None:
     InputError: lines form a ring without a point that is held.
     """
     breaks = [name for name, met in file.at.items() if len(met) != 2 or _is_held(file.points[name])]
-    left, told = list(file.lines), set[str]()
+    left, placed = list(file.lines), set[str]()
     for start in breaks:
         while any(line in left for line in file.at[start]):
             names, lines = file.walk(start, left, breaks)
@@ -378,7 +378,7 @@ def _lay_net(file: _File, path: Path) -> None:
             else:
                 halves = [(names, lines)]
             for half in halves:
-                _lay_leg(file, *half, told)
+                _lay_leg(file, *half, placed)
     if left or not breaks:
         raise refused(path, "has lines that form a ring without a fixed point")
 
@@ -389,9 +389,9 @@ def _is_anchor(file: _File, name: str) -> bool:
     return fixed and point.number("z") <= -(1.0 - _ON_THE_BED) * file.depth
 
 
-def _lay_leg(file: _File, names: list[str], lines: list[_Row], told: set[str]) -> None:
+def _lay_leg(file: _File, names: list[str], lines: list[_Row], placed: set[str]) -> None:
     """Add a leg from its upper end; a part at a point belongs to the first leg that reaches it."""
-    items = file.along(names, lines, told)
+    items = file.along(names, lines, placed)
     upper, lower = (_end(file, at) for at in (names[0], names[-1]))
     if _is_anchor(file, names[-1]):
         point = file.points[names[-1]]
