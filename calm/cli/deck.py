@@ -137,9 +137,9 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
         [{"calm": __version__, **_plan(deck), "verdict": verdict}]
     )
     return {
-        "deck.pdf": printed(deck_files.deck_report(deck, paper, notes), paper, least=7.5),
+        "deck.pdf": printed(deck_files.deck_report(deck, paper, notes), paper),
         "deck.xlsx": deck_files.deck_workbook(deck),
-        "diagram.pdf": printed(deck_files.diagram_report(deck, paper), paper, least=7.5),
+        "diagram.pdf": printed(deck_files.diagram_report(deck, paper), paper),
         **{name: text.encode("utf-8", "replace") for name, text in texts.items()},
     }
 

@@ -1,0 +1,93 @@
+"""The report of a design check: six pages of a mooring, or a matrix and a page of each of many."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from calm.checks.assessment import Assessment
+from calm.checks.comparison import Comparison
+from calm.report import blocks, provenance
+from calm.report.blocks import Block, PageBreak, ReportPart, Running, Section
+from calm.report.check_pages import basis_page, checks_page, handling_page
+from calm.report.check_summary import SummaryRow, mooring_page, summary_page, summary_row
+from calm.report.drawing_page import drawing_pages
+from calm.report.explanation import comparison_part
+from calm.report.line_page import line_page
+from calm.report.load_cases import load_cases
+from calm.report.open_items import open_items
+from calm.report.page_one import SignedMooring, page_one
+from calm.version import __version__
+
+_SIZE = 9.0
+"""Of the letters of a table [pt]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckedSection(Section):
+    """The section of a mooring in the report of a design check, with its row of the summary."""
+
+    row: SummaryRow
+
+
+def signed_mooring(assessment: Assessment) -> SignedMooring:
+    """A mooring as its papers show it."""
+    files = [one.leg.file for one in assessment.stands]
+    items = open_items(assessment)
+    return SignedMooring(assessment, load_cases(assessment), items, provenance.input_hash(files))
+
+
+def mooring_section(
+    assessment: Assessment, against: Comparison | None = None, paper: str = "a4"
+) -> CheckedSection:
+    """The pages of one mooring; they are drawn, which takes some tenths of a second.
+
+    `against` is the mooring compared with the design that it came from.
+    """
+    signed = signed_mooring(assessment)
+    pages = (
+        page_one(signed, paper), drawing_pages(signed, paper), line_page(signed),
+        checks_page(signed), handling_page(signed), basis_page(signed),
+    )  # fmt: skip
+    parts = [*_pages(pages)]
+    if against is not None:
+        parts += [_page([PageBreak()]), comparison_part(against)]
+    return CheckedSection(
+        assessment.name, tuple(parts), signed.running(), row=summary_row(assessment)
+    )
+
+
+def short_section(assessment: Assessment) -> CheckedSection:
+    """One page of a mooring, behind the summary of many."""
+    signed = signed_mooring(assessment)
+    parts = tuple(_pages([mooring_page(signed)]))
+    return CheckedSection(assessment.name, parts, signed.running(), row=summary_row(assessment))
+
+
+def _pages(pages: Iterable[Iterator[Block]]) -> Iterator[ReportPart]:
+    """A part of each page that has anything on it."""
+    full = [blocks_ for page in pages if (blocks_ := [*page])]
+    for number, page in enumerate(full):
+        yield _page([*([PageBreak()] if number else []), *page])
+
+
+def _page(shown: Sequence[Block]) -> ReportPart:
+    return ReportPart("", tuple(shown), _SIZE)
+
+
+def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
+    """The report of a design check; of several moorings a summary comes first."""
+    rows = [each.row for each in sections]
+    if len(rows) == 1:
+        name = sections[0].name
+        return blocks.Report(
+            f"{name}: design check", "", (), tuple(sections), provenance.date(),
+            running=sections[0].running,
+        )  # fmt: skip
+    environments = {name for row in rows for name in row.cells}
+    title = f"Design check of {len(rows)} moorings in {len(environments)} environments"
+    worst = max((row.conclusion for row in rows), key=[*type(rows[0].conclusion)].index)
+    foot = f"CALM {__version__}  inputs of each mooring: on its own page"
+    running = Running("", title, worst.words, provenance.date() or "", foot)
+    front = _page([blocks.TitleBlock("", title, "", ()), *summary_page(rows)])
+    return blocks.Report(
+        title, "", (front,), tuple(sections), provenance.date(), running=running
+    )
