@@ -219,7 +219,8 @@ def _answer(
     from concurrent.futures import ThreadPoolExecutor
 
     from calm.report import result_files
-    from calm.report.check_report import check_document, check_part, checks_csv, inventory_csv
+    from calm.report.check_files import check_document, checks_csv, inventory_csv
+    from calm.report.check_summary import check_part
     from calm.report.folder import write_report
 
     document = cache(lambda: check_document(assessments))

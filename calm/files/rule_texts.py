@@ -20,6 +20,7 @@ class RuleText:
     source : of the rule and its limit as it is by default
     unseen : why no profile of a batch can be judged by it, where none can
     figures : of a component, without which the rule does not know
+    has_ratio : whether its values and limits are demand and capacity
     """
 
     title: str
@@ -29,6 +30,7 @@ class RuleText:
     source: str
     unseen: str = ""
     figures: tuple[str, ...] = ()
+    has_ratio: bool = True
 
 
 _WAVES = "waves are judged of an environment, by `calm check`"
@@ -68,7 +70,7 @@ RULES = {
         figures=("working_load", "opening_load")),
     "clamp-grip": RuleText("Grip of the clamps", "tension",
         "weight in water and drag of what is clamped, in the current, the fall and the rise",
-        "its `grip`, else its `breaking_load`; reported where neither is given",
+        "its `grip`, else its `breaking_load`; not judged where neither is given",
         "The maker's figures of the clamp",
         "the result does not hold the current at each clamp", figures=("grip",)),
     "profiler": RuleText("Profiler on its wire", "tension",
@@ -177,12 +179,12 @@ RULES = {
         "the result does not hold how the float lies in the water"),
     "watch-circle": RuleText("Watch circle", "offset",
         "√(L² − h²): the line as stretched, the water above the anchor's top",
-        "`maximum_excursion`; reported where that is not given",
+        "`maximum_excursion`; not judged where that is not given",
         "Worst case √(L² - h²), h above the anchor, against the design's own `maximum_excursion`",
         "the result does not hold the stretched length of the line"),
     "scope": RuleText("Scope", "scope",
         "cut length over depth",
-        "none: it is reported",
+        "none: it is reported, not judged",
         "Reported, not judged",
         "it is reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
@@ -228,7 +230,7 @@ RULES = {
         "0.2 V apart in sea water: a warning",
         "Galvanic series in sea water (Professional Boatbuilder 100, 2006); 0.15 to 0.2 V in harsh "
         "surroundings (Pantaenius)",
-        _ONCE),
+        _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "tension",
         "net buoyancy of the part that still holds the release after the worst break that is "
         "judged (below)",
@@ -265,3 +267,6 @@ RULES = {
 
 ACCEPTABLE = tuple(name for name in RULES if name != "equilibrium")
 """The rules of `checks: accept:`; of a mooring that does not stand nothing is known to accept."""
+
+LOADED = ("strength", "release-load", "clamp-grip", "wave-strength", "launch-strength", "missing")
+"""The rules of which an accept may give the greatest tension that it accepts."""

@@ -1,222 +1,77 @@
-"""Many moorings in many environments: one matrix, and a page of each mooring."""
+"""A design check on a terminal: what decides, what is open, and what is not covered."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import groupby
 
-from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
-from calm.checks.finding import Conclusion, Finding, State, by_rule, governing, worst_of
-from calm.quantities import say
-from calm.report import blocks
-from calm.report.blocks import Block, Cell, Field, Prose, Span, Table, number, table_of, words
-from calm.report.load_cases import LoadCase
-from calm.report.open_items import figure_text, limit_text, percent_text, plain, where_text
-from calm.report.page_one import (
-    SignedMooring,
-    cases_table,
-    governing_rows,
-    short,
-    sign_off,
-    title_block,
-    verdict_box,
-)
+from calm.checks.finding import Finding, State
+from calm.report import blocks, check_facts, check_tables, provenance
+from calm.report.blocks import Prose, Span
+from calm.report.check_facts import CheckFacts
+from calm.report.check_tables import place_of
+from calm.report.likelihood import likelihood_tables
 
-_OTHER_KIND = ("fish-bite", "slack")
-"""Rules whose limits are of another kind than a load, a depth or an angle: left out of a matrix."""
-_MOST_ENVIRONMENTS = 12
-_NEAR = 0.9
+_TOLD = 12
+"""Most failures, or warnings, shown of a mooring; a report has them all."""
+_LACKING = 60
+"""Most components named that lack a figure."""
 
 
-@dataclass(frozen=True)
-class MatrixCell:
-    """The greatest use of a mooring in an environment; None where no check has one."""
+def check_part(assessments: Sequence[Assessment]) -> blocks.ReportPart:
+    """Everything that a design check says in short.
 
-    use: float | None
-    state: State
-    told: str
-
-
-@dataclass(frozen=True)
-class SummaryRow:
-    """What the summary shows of a mooring.
-
-    Attributes
-    ----------
-    mooring : its name
-    depth : of the water, in words
-    cells : by environment, in their order
-    handling : of launch, recovery and breaks
-    governs : what has the greatest use in the first environment
-    accepted, findings : how many
-    conclusion, draft : the verdict
+    Moorings by environments with the worst state in each; what decides, what is accepted and what
+    departs of each; of each rule the finding with the worst margin; every failure and warning with
+    its figures and remedy. No rule hangs on colour.
     """
-
-    mooring: str
-    depth: str
-    cells: Mapping[str, MatrixCell]
-    handling: MatrixCell | None
-    governs: str
-    accepted: int
-    findings: int
-    conclusion: Conclusion
-
-    @property
-    def first_failure(self) -> tuple[str, str] | None:
-        """The first environment in which it fails, and what does; None where nothing fails."""
-        cells = {**self.cells, "launch": self.handling} if self.handling else self.cells
-        failed = (
-            (name, cell.told) for name, cell in cells.items()
-            if cell is not None and cell.state is State.FAIL
-        )  # fmt: skip
-        return next(failed, None)
-
-
-def summary_row(assessment: Assessment) -> SummaryRow:
-    """The row of a mooring."""
-    groups: dict[str, list[Finding]] = {}
-    lacking = set()
-    for stand in assessment.stands:
-        name = stand.leg.file.environment.name or "own"
-        groups.setdefault(name, []).extend((*stand.findings, *stand.tighter))
-        if stand.lacking:
-            lacking.add(name)
-    cells = {name: _cell(found, name in lacking) for name, found in groups.items()}
-    handling = [one for one in assessment.findings if one.missing is None and one.rule != "current"]
-    depth = assessment.file.environment.depth
-    every = [*assessment.every_finding()]
-    first = next(iter(cells.values()), None)
-    return SummaryRow(
-        assessment.name,
-        "" if depth is None else f"{depth:.0f}",
-        cells,
-        _cell(handling, False) if handling else None,
-        "" if first is None else first.told,
-        len(assessment.accepted_findings()),
-        len(every),
-        assessment.verdict,
+    facts = [check_facts.facts_of(each) for each in assessments]
+    findings = [one for each in facts for one in each.findings]
+    shown = (
+        *(replace(each, title="", note="") for each in check_facts.matrix_tables(facts)),
+        check_tables.verdict_prose(findings),
+        *(block for each in facts for block in _decisive(each, several=len(facts) > 1)),
+        replace(check_facts.worst_table(facts), title=""),
+        *likelihood_tables([(each.name, [*each.all_findings()]) for each in assessments]),
+        *(block for each in facts for block in _told(each)),
+        blocks.Note(provenance.unseen(findings)[:1]),
     )
+    return blocks.ReportPart("", shown)
 
 
-def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
-    used = [
-        one for one in findings if one.utilisation is not None and one.rule not in _OTHER_KIND
-    ]
-    worst = worst_of(findings) if findings else None
-    state = State.UNKNOWN if lacking else State.PASS
-    if worst is not None and worst.state in (State.FAIL, State.UNKNOWN):
-        state = worst.state
-    if not used:
-        told = "" if worst is None else RULES[worst.rule].title.lower()
-        return MatrixCell(None, state, told)
-    lead = governing(used)
-    if state is State.FAIL and lead.state is not State.FAIL and worst is not None:
-        failed = [one for one in used if one.state is State.FAIL]
-        lead = governing(failed) if failed else worst
-    title, use = RULES[lead.rule].title.lower(), percent_text(lead.utilisation)
-    told = f"{title}, {lead.component or 'whole line'}, {use} %"
-    return MatrixCell(governing(used).utilisation, state, told)
+def _decisive(facts: CheckFacts, *, several: bool) -> Iterator[blocks.Block]:
+    """Return what decides of a mooring, what is accepted, and what departs."""
+    if several:
+        yield blocks.Heading(facts.mooring)
+    yield check_facts.key_pairs(facts)
+    yield from check_facts.settled_tables(facts)
 
 
-def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
-    """The matrix, and what governs each mooring."""
-    names = list(dict.fromkeys(name for row in rows for name in row.cells))
-    shown = names
-    if len(names) > _MOST_ENVIRONMENTS:
-        def worst(name: str) -> float:
-            return max((row.cells[name].use or 0.0 for row in rows if name in row.cells), default=0.0)
-
-        kept = set(sorted(names, key=worst, reverse=True)[:_MOST_ENVIRONMENTS])
-        shown = [name for name in names if name in kept]
-    codes = {name: f"E{at}" for at, name in enumerate(names, 1)}
-    failing = [row for row in rows if row.conclusion is Conclusion.FAILS]
-    incomplete = [row for row in rows if row.conclusion is Conclusion.INCOMPLETE]
-    state = State.FAIL if failing else State.UNKNOWN if incomplete else State.PASS
-    said = f"{len(failing)} of {len(rows)} moorings fail in at least one environment"
-    said += f", {len(incomplete)} more lack figures" if incomplete else ""
-    head = "Fails: " if failing else "Incomplete: " if incomplete else "Passes: "
-    yield Prose(((Span(head, state), Span(f"{said}; the first failure of each is named below.")),), state)
-    legend = ", ".join(f"{codes[name]} {short(name, 24)}" for name in shown)
-    left = f" {len(names) - len(shown)} milder environments are left out." * (len(shown) < len(names))
-    yield table_of(
-        "Greatest use, %",
-        rows,
-        words("Mooring", lambda row: short(row.mooring, 44), 1.0),
-        number("Water m", lambda row: row.depth),
-        *(_column(codes[name], name) for name in shown),
-        number("Launch", lambda row: _shown(row.handling)),
-        aside="of any standing check, rounded up. White on black: fails. Hatched: over 100 without "
-        "failing. ?: not known. Grey: 90 and more",
-        note=f"{legend}. Launch: greatest use in launch, recovery and breaks.{left}",
-    )
-    yield table_of(
-        "What governs",
-        rows,
-        words("Mooring", lambda row: short(row.mooring, 44), 1.1),
-        words(f"Governs in {codes[names[0]]}", lambda row: short(row.governs, 60), 1.3),
-        words("First failure", lambda row: _failure(row, codes), 1.3),
-        number("Accepted", lambda row: row.accepted),
-        note=f"{sum(row.findings for row in rows)} findings stand behind this page; a page of each "
-        "mooring follows, with a row a rule. Use leaves out fish bite, metals and least tension, "
-        "which are limits of another kind.",
-    )
+def _told(facts: CheckFacts) -> Iterator[blocks.Block]:
+    """Return what a mooring fails, lacks or is warned of, the gravest first, with its remedy."""
+    listed = check_tables.to_mend(facts.findings)
+    lines: list[blocks.Line] = []
+    for state, groups in groupby(listed, key=lambda found: found[0].state):
+        found = list(groups)
+        most = len(found) if state is State.UNKNOWN else _TOLD
+        lines += map(_sentence, found[:most])
+        if len(found) > most:
+            lines.append(f"  and {len(found) - most} more that {state}; --json has them")
+    if lines:
+        yield blocks.Heading(facts.mooring)
+        yield Prose(tuple(lines))
 
 
-def _column(code: str, name: str) -> Field:
-    return number(code, lambda row: _shown(row.cells.get(name)))
-
-
-def _shown(cell: MatrixCell | None) -> Cell:
-    if cell is None:
-        return Cell("–")
-    text = percent_text(cell.use)
-    if cell.state is State.FAIL:
-        return Cell(text if cell.use is not None else "✗", strong=True, tone="fail")
-    if cell.state is State.UNKNOWN:
-        return Cell(f"? {text}" if cell.use is not None else "?", strong=True)
-    if (cell.use or 0.0) > 1.0:
-        return Cell(text, strong=True, tone="over")
-    return Cell(text, tone="near" if (cell.use or 0.0) >= _NEAR else "")
-
-
-def _failure(row: SummaryRow, codes: Mapping[str, str]) -> str:
-    found = row.first_failure
-    return "none" if found is None else f"{codes.get(found[0], found[0])}: {short(found[1], 60)}"
-
-
-def mooring_page(signed: SignedMooring) -> Iterator[Block]:
-    """A mooring on one page: the verdict, the cases, and a row a rule with what governs it."""
-    findings = [*signed.assessment.every_finding()]
-    yield title_block(signed)
-    yield verdict_box(signed)
-    yield cases_table(signed)
-    groups = by_rule(findings)
-    leads = governing_rows(findings)
-    others = [worst_of(groups[name]) for name in groups if name not in {one.rule for one in leads}]
-    yield table_of(
-        "Checks",
-        [*leads, *others],
-        words("", lambda one: Cell(state=worst_of(groups[one.rule]).state), 0.0),
-        words("Rule", lambda one: RULES[one.rule].title, 1.0),
-        number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
-        number("Found", lambda one: figure_text(one, one.value)),
-        words("Limit", lambda one: limit_text(one) or "–", 0.0),
-        words("Where, case", lambda one: short(where_text(one), 36), 1.1),
-        number("Over 100, of", lambda one: _over(groups[one.rule])),
-        words("What to do", lambda one: Cell(detail=_advice(groups[one.rule])), 1.5),
-        aside="a row a rule; over 100 % and judged, in all environments",
-        ruled=False,
-    )
-    yield sign_off(signed)
-
-
-def _over(found: Sequence[Finding]) -> str:
-    return f"{sum((one.utilisation or 0.0) > 1.0 for one in found)} of {len(found)}"
-
-
-def _advice(found: Sequence[Finding]) -> str:
-    worst = worst_of(found)
-    if worst.state in (State.PASS, State.NOT_JUDGED):
-        return ""
-    if worst.accept is not None:
-        return short(f"Accepted: {worst.accept.reason}", 90)
-    return short(plain(worst.remedy or worst.message), 90)
+def _sentence(found: Sequence[Finding]) -> blocks.Line:
+    """Return what is found alike of some components, told of the worst of them."""
+    worst = found[0]
+    sign, quiet = Span(f"{worst.state.sign} ", worst.state), worst.state is not State.FAIL
+    if worst.missing is not None:
+        return sign, Span(f"{worst.message} {worst.remedy}", quiet=True)
+    if worst.state is State.UNKNOWN and worst.component is not None and worst.limit is None:
+        names = check_tables.named((one.component or "" for one in found), _LACKING)
+        return sign, Span(f"{worst.rule} of {names} is unknown. {worst.remedy}", quiet=True)
+    others = check_tables.named_components(found[1:])
+    others = others and f" The same holds for {others}."
+    told = Span(f"{worst.rule}, {place_of(worst)}: {worst.message}{others}")
+    return (sign, told, Span(f" {worst.remedy}", quiet=quiet)) if worst.remedy else (sign, told)

@@ -1,0 +1,167 @@
+"""A design check as JSON and as CSV."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment, Situation
+from calm.checks.finding import Finding, State, worst_state
+from calm.checks.inventory import total_of
+from calm.checks.recovery import Recovery
+from calm.drop.launch import Launch
+from calm.files.check_limits import LimitKey
+from calm.quantities import QUANTITIES
+from calm.records.delimited import table_csv
+from calm.report import provenance
+from calm.report.check_facts import facts_of
+from calm.report.result_files import members
+from calm.version import __version__
+
+
+def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
+    """The JSON object of a design check; what could not be solved is null.
+
+    Returns
+    -------
+    dict
+        `state`, the worst there is; how many findings are `estimated`; what is `accepted`, and why;
+        `findings`, and as `tighter` those of other situations that leave less margin; of each
+        mooring by its name the `key_figures` of page one, `launch`, `recovery`, `backup`,
+        `inventory` and its `totals`, and its `document` where files give any; and `situations`,
+        what was solved of each mooring in each environment.
+    """
+
+    def by_name(told: Callable[[Assessment], Any]) -> dict[str, Any]:
+        return {each.name: told(each) for each in assessments}
+
+    def listed(told: Callable[[Assessment], Iterable[Any]]) -> list[Any]:
+        return [one for each in assessments for one in told(each)]
+
+    stands = [stand for each in assessments for stand in each.stands]
+    seen = provenance.BY_WAVES if all(one.leg.file.environment.waves for one in stands) else ()
+    given = by_name(lambda each: each.file.document)
+    documents = {name: one.to_dict() for name, one in given.items() if one is not None}
+    return {
+        "calm": __version__,
+        **({"document": documents} if documents else {}),
+        "state": worst_state(each.state for each in assessments),
+        "estimated": sum(one.state is State.ESTIMATED for one in listed(Assessment.all_findings)),
+        "accepted": listed(_accepted),
+        "limits": listed(
+            lambda each: ({"mooring": each.name} | limit_document(key) for key in each.limits)
+        ),
+        "key_figures": by_name(lambda each: facts_of(each).to_dict()),
+        "not_judged": [one for one in provenance.UNJUDGED if one not in seen],
+        "findings": listed(lambda each: _findings(each, each.all_findings())),
+        "tighter": listed(lambda each: _findings(each, each.tighter_findings())),
+        "situations": by_name(
+            lambda each: [
+                {"environment": stand.environment, **_situation(situation)}
+                for stand in each.stands
+                for situation in stand.situations
+            ]
+        ),
+        "launch": by_name(lambda each: _handled(each.launch, _OF_LAUNCH)),
+        "recovery": by_name(lambda each: _handled(each.recovery, _OF_RECOVERY)),
+        "backup": by_name(lambda each: [*map(asdict, each.backup)]),
+        "losses": by_name(lambda each: [members(one, *_OF_LOSS) for one in each.losses]),
+        "inventory": by_name(lambda each: [*map(asdict, each.inventory)]),
+        "totals": by_name(lambda each: asdict(total_of(each.inventory))),
+    }
+
+
+def limit_document(key: LimitKey) -> dict[str, Any]:
+    """The JSON object of a limit as used."""
+    return members(key, "name", "value", "default", "source", "departs")
+
+
+def _findings(assessment: Assessment, findings: Iterable[Finding]) -> Iterator[dict[str, Any]]:
+    """Yield findings, with their probability if those were counted: null without a limit."""
+    for one in findings:
+        yield one.to_dict() | (members(one, "probability") if assessment.draws else {})
+
+
+def _accepted(assessment: Assessment) -> Iterator[dict[str, Any]]:
+    for one in assessment.accepted_findings():
+        by = members(one.accept, "reason", "by", "date", "until")
+        yield {"mooring": assessment.name, **members(one, "rule", "component"), **by}
+
+
+def _situation(situation: Situation) -> dict[str, Any]:
+    said: dict[str, Any] = {"situation": situation.name}
+    if situation.failure is not None:
+        return said | situation.failure.to_dict()
+    result = situation.result
+    assert result is not None
+    return {
+        **said,
+        **members(result, "status", "type"),
+        "top_depth": result.top.depth,
+        "knockdown": result.top.knockdown,
+        "anchor_vertical": result.anchor.vertical,
+        "anchor_horizontal": result.anchor.horizontal,
+        "required_weight": result.anchor.required_weight,
+        "accuracy": asdict(result.accuracy),
+        "warnings": result.warnings,
+    }
+
+
+_OF_LAUNCH = (
+    "fall_speed", "fall_speed_band", "anchor_tension", "anchor_drag_known", "greatest_speed",
+    "drift",
+)  # fmt: skip
+_OF_LOSS = ("index", "label", "margin", "weight_lifted", "required")
+_OF_RECOVERY = ("released", "rise_speed", "time_to_surface", "net_buoyancy", "order")
+
+
+def _handled(way: Launch | Recovery | None, names: Sequence[str]) -> dict[str, Any] | None:
+    """Return what a launch or a recovery comes to; null where it is not known."""
+    return None if way is None else members(way, *names) | {"components": way.components()}
+
+
+_OF_FINDING = ("mooring", "environment", "situation", "rule", "component")
+_TEXTS = ("message", "remedy", "source")
+CHECKS_HEADER = (
+    *_OF_FINDING, "state", "value", "limit", "margin", "unit", *_TEXTS, "reason", "probability",
+)  # fmt: skip
+"""First row of `checks_csv`; value, limit and margin are in the unit of their row."""
+
+_OF_ITEM = (
+    "index", "label", "use", "name", "role", "kind", "clamped_on", "cut_length", "dry_mass",
+    "wet_weight", "lift_mass", "at",
+)  # fmt: skip
+INVENTORY_HEADER = (
+    "mooring",
+    *(QUANTITIES[name].header if name in QUANTITIES else name for name in _OF_ITEM),
+)
+"""First row of `inventory_csv`; weights in water are positive downward."""
+
+
+def checks_csv(assessments: Sequence[Assessment]) -> str:
+    """A row for every finding, of one mooring after the other; what is unknown is left empty."""
+    findings = (finding for each in assessments for finding in each.all_findings())
+    return table_csv(CHECKS_HEADER, map(_finding_row, findings))
+
+
+def inventory_csv(assessments: Sequence[Assessment]) -> str:
+    """A row for every piece and clamp, from the top of each mooring to its anchor."""
+    rows = (
+        [each.name, *members(item, *_OF_ITEM).values()]
+        for each in assessments
+        for item in each.inventory
+    )
+    return table_csv(INVENTORY_HEADER, rows)
+
+
+def _finding_row(finding: Finding) -> Sequence[object]:
+    quantity = QUANTITIES.get(RULES[finding.rule].quantity)
+    return (
+        *members(finding, *_OF_FINDING).values(),
+        finding.state.value,
+        *members(finding, "value", "limit", "margin").values(),
+        quantity.unit if quantity else None,
+        *members(finding, *_TEXTS).values(),
+        None if finding.accept is None else finding.accept.reason,
+        finding.probability,
+    )
