@@ -1,15 +1,12 @@
 """Many moorings in many environments: one matrix, and a page of each mooring."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import Conclusion, Finding, State, by_rule, governing, worst_of
-from calm.quantities import say
-from calm.report import blocks
-from calm.report.blocks import Block, Cell, Field, Prose, Span, Table, number, table_of, words
-from calm.report.load_cases import LoadCase
+from calm.report.blocks import Block, Cell, Field, Prose, Span, number, table_of, words
 from calm.report.open_items import figure_text, limit_text, percent_text, plain, where_text
 from calm.report.page_one import (
     SignedMooring,
@@ -119,15 +116,7 @@ def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
 
 def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
     """The matrix, and what governs each mooring."""
-    names = list(dict.fromkeys(name for row in rows for name in row.cells))
-    shown = names
-    if len(names) > _MOST_ENVIRONMENTS:
-        def worst(name: str) -> float:
-            return max((row.cells[name].use or 0.0 for row in rows if name in row.cells), default=0.0)
-
-        kept = set(sorted(names, key=worst, reverse=True)[:_MOST_ENVIRONMENTS])
-        shown = [name for name in names if name in kept]
-    codes = {name: f"E{at}" for at, name in enumerate(names, 1)}
+    names, shown, codes = environments_of(rows)
     failing = [row for row in rows if row.conclusion is Conclusion.FAILS]
     incomplete = [row for row in rows if row.conclusion is Conclusion.INCOMPLETE]
     state = State.FAIL if failing else State.UNKNOWN if incomplete else State.PASS
@@ -159,6 +148,20 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
         "mooring follows, with a row a rule. Use leaves out fish bite, metals and least tension, "
         "which are limits of another kind.",
     )
+
+
+def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], dict[str, str]]:
+    """The environments of all moorings, the worst of them that have room, and their codes."""
+    names = list(dict.fromkeys(name for row in rows for name in row.cells))
+    codes = {name: f"E{at}" for at, name in enumerate(names, 1)}
+    if len(names) <= _MOST_ENVIRONMENTS:
+        return names, names, codes
+
+    def worst(name: str) -> float:
+        return max((row.cells[name].use or 0.0 for row in rows if name in row.cells), default=0.0)
+
+    kept = set(sorted(names, key=worst, reverse=True)[:_MOST_ENVIRONMENTS])
+    return names, [name for name in names if name in kept], codes
 
 
 def _column(code: str, name: str) -> Field:

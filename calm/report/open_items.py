@@ -16,7 +16,7 @@ from calm.report.blocks import OpenItem
 from calm.report.check_tables import grouped, joined, named_components
 from calm.report.load_cases import LOAD
 
-OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ESTIMATED, State.ACCEPTED, State.NOT_JUDGED)
+OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED)
 """States of what is open, in the order in which it is listed."""
 
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
@@ -131,9 +131,10 @@ def _told(group: Sequence[Finding], worst: Finding) -> str:
         by = worst.accept.by or "nobody"
         figures = figures or f"{found}{where}, no figure is published." * bool(found)
         example = " Replace before signing." if by == EXAMPLE else ""
-        return f"{figures} Accepted: “{worst.accept.reason}” ({by}{until}).{example}"
+        return f"{figures} Accepted: “{worst.accept.reason}” ({by}{until}).{example}".strip()
     if worst.state is State.ESTIMATED:
-        estimate = worst.message.rpartition(" Its ")[2]
+        found_estimate = re.search(r" Its (`?[a-z_ ]+`? is estimated.*)", worst.message)
+        estimate = plain(found_estimate[1] if found_estimate else worst.message)
         return f"{figures} {_capital(estimate)} Obtain the maker’s figure."
     if figures:
         return f"{figures} {worst.remedy or ''}"

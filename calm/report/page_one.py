@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import nan
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
@@ -144,6 +145,7 @@ class _Figure:
     of: Callable[[LoadCase], float | tuple[float, str] | None]
     text: Callable[[float], str]
     least: bool = False
+    short: str | None = None
 
     def value(self, case: LoadCase) -> tuple[float, str] | None:
         """Return the figure of a case, and where it is."""
@@ -159,26 +161,35 @@ class _Figure:
                 return Cell("–")
             return Cell(self.text(found[0]), strong=found[0] == lead)
 
-        return number(self.heading, show)
+        return number(self.heading, show, short=self.short)
 
 
 def _figures() -> tuple[_Figure, ...]:
     depth, offset, tilt = (QUANTITIES[name].format for name in ("height", "offset", "tilt"))
     return (
-        _Figure("Top depth\nm", lambda one: one.top and one.top.top.depth, depth),
-        _Figure("Knock-\ndown m", lambda one: one.knockdown, depth),
-        _Figure("Offset\nm", lambda one: one.offset, offset),
-        _Figure(f"Largest\ntension {LOAD.display_unit}", lambda one: one.tension, LOAD.format),
-        _Figure("Safety\nfactor", lambda one: one.factor, "{:.1f}".format, least=True),
-        _Figure("Strength\nuse %", lambda one: one.strength, percent_text),
-        _Figure("Anchor\nuse %", lambda one: one.anchor, percent_text),
-        _Figure("Instrument\ntilt °", lambda one: one.tilt, tilt),
-    )
+        _Figure("Top depth\nm", lambda one: one.top and one.top.top.depth, depth, short="top\nm"),
+        _Figure("Knock-\ndown m", lambda one: one.knockdown, depth, short="knock-\ndown m"),
+        _Figure("Offset\nm", lambda one: one.offset, offset, short="offset\nm"),
+        _Figure(
+            f"Largest\ntension {LOAD.display_unit}", lambda one: one.tension, LOAD.format,
+            short=f"tension\n{LOAD.display_unit}",
+        ),
+        _Figure("Safety\nfactor", lambda one: one.factor, "{:.1f}".format, True, "safety\nfactor"),
+        _Figure("Strength\nuse %", lambda one: one.strength, percent_text, short="strength\nuse %"),
+        _Figure("Anchor\nuse %", lambda one: one.anchor, percent_text, short="anchor\nuse %"),
+        _Figure("Instrument\ntilt °", lambda one: one.tilt, tilt, short="tilt\n°"),
+    )  # fmt: skip
 
 
-def cases_table(signed: SignedMooring) -> Table:
-    """The load cases, what governs in bold, and where that is in the last row."""
-    cases, note = [*signed.cases], ""
+def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
+    """The figures of load cases, of those that any has, without what governs."""
+    known = [one for one in _figures() if any(one.value(case) for case in cases)]
+    return [figure.field(nan) for figure in known]
+
+
+def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
+    """The cases that have room in a table, and what is said of those that have not."""
+    cases, note = [*cases], ""
     if len(cases) > MOST_CASES:
         cases = worst_of_each_environment(cases)
         note = "Of each environment the case with the greatest knockdown."
@@ -186,6 +197,12 @@ def cases_table(signed: SignedMooring) -> Table:
         kept = sorted(cases, key=lambda one: -one.knockdown)[:MOST_CASES]
         note += f" {len(cases) - MOST_CASES} less severe ones are left out."
         cases = [one for one in cases if one in kept]
+    return cases, note
+
+
+def cases_table(signed: SignedMooring) -> Table:
+    """The load cases, what governs in bold, and where that is in the last row."""
+    cases, note = shown_cases(signed.cases)
 
     def named(case: LoadCase) -> str:
         return short(case.words, 40) if case.results else f"{case.words}: no equilibrium"
