@@ -1,16 +1,13 @@
 """Many moorings in many environments: one matrix, and a page of each mooring."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import Conclusion, Finding, State, by_rule, governing, worst_of
-from calm.quantities import say
-from calm.report import blocks
-from calm.report.blocks import Block, Cell, Field, Prose, Span, Table, number, table_of, words
-from calm.report.load_cases import LoadCase
-from calm.report.open_items import figure_text, limit_text, percent_text, plain, where_text
+from calm.report.blocks import Block, Cell, Field, Prose, Span, number, table_of, words
+from calm.report.open_items import advice, figure_text, limit_text, percent_text, where_text
 from calm.report.page_one import (
     SignedMooring,
     cases_table,
@@ -98,9 +95,7 @@ def summary_row(assessment: Assessment) -> SummaryRow:
 
 
 def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
-    used = [
-        one for one in findings if one.utilisation is not None and one.rule not in _OTHER_KIND
-    ]
+    used = [one for one in findings if one.utilisation is not None and one.rule not in _OTHER_KIND]
     worst = worst_of(findings) if findings else None
     state = State.UNKNOWN if lacking else State.PASS
     if worst is not None and worst.state in (State.FAIL, State.UNKNOWN):
@@ -122,8 +117,11 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
     names = list(dict.fromkeys(name for row in rows for name in row.cells))
     shown = names
     if len(names) > _MOST_ENVIRONMENTS:
+
         def worst(name: str) -> float:
-            return max((row.cells[name].use or 0.0 for row in rows if name in row.cells), default=0.0)
+            return max(
+                (row.cells[name].use or 0.0 for row in rows if name in row.cells), default=0.0
+            )
 
         kept = set(sorted(names, key=worst, reverse=True)[:_MOST_ENVIRONMENTS])
         shown = [name for name in names if name in kept]
@@ -134,16 +132,20 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
     said = f"{len(failing)} of {len(rows)} moorings fail in at least one environment"
     said += f", {len(incomplete)} more lack figures" if incomplete else ""
     head = "Fails: " if failing else "Incomplete: " if incomplete else "Passes: "
-    yield Prose(((Span(head, state), Span(f"{said}; the first failure of each is named below.")),), state)
+    yield Prose(
+        ((Span(head, state), Span(f"{said}; the first failure of each is named below.")),), state
+    )
     legend = ", ".join(f"{codes[name]} {short(name, 24)}" for name in shown)
-    left = f" {len(names) - len(shown)} milder environments are left out." * (len(shown) < len(names))
+    left = f" {len(names) - len(shown)} milder environments are left out." * (
+        len(shown) < len(names)
+    )
     yield table_of(
         "Greatest use, %",
         rows,
         words("Mooring", lambda row: short(row.mooring, 44), 1.0),
-        number("Water m", lambda row: row.depth),
+        number("Water\nm", lambda row: row.depth, share=0.2),
         *(_column(codes[name], name) for name in shown),
-        number("Launch", lambda row: _shown(row.handling)),
+        number("Launch", lambda row: _shown(row.handling), share=0.24),
         aside="of any standing check, rounded up. White on black: fails. Hatched: over 100 without "
         "failing. ?: not known. Grey: 90 and more",
         note=f"{legend}. Launch: greatest use in launch, recovery and breaks.{left}",
@@ -162,7 +164,7 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
 
 
 def _column(code: str, name: str) -> Field:
-    return number(code, lambda row: _shown(row.cells.get(name)))
+    return number(code, lambda row: _shown(row.cells.get(name)), share=0.2)
 
 
 def _shown(cell: MatrixCell | None) -> Cell:
@@ -201,8 +203,12 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
         number("Found", lambda one: figure_text(one, one.value)),
         words("Limit", lambda one: limit_text(one) or "–", 0.0),
         words("Where, case", lambda one: short(where_text(one), 36), 1.1),
-        number("Over 100, of", lambda one: _over(groups[one.rule])),
-        words("What to do", lambda one: Cell(detail=_advice(groups[one.rule])), 1.5),
+        number("Over 100\nof judged", lambda one: _over(groups[one.rule])),
+        words(
+            "What to do",
+            lambda one: Cell(detail=short(advice(worst_of(groups[one.rule])), 90)),
+            1.5,
+        ),
         aside="a row a rule; over 100 % and judged, in all environments",
         ruled=False,
     )
@@ -211,12 +217,3 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
 
 def _over(found: Sequence[Finding]) -> str:
     return f"{sum((one.utilisation or 0.0) > 1.0 for one in found)} of {len(found)}"
-
-
-def _advice(found: Sequence[Finding]) -> str:
-    worst = worst_of(found)
-    if worst.state in (State.PASS, State.NOT_JUDGED):
-        return ""
-    if worst.accept is not None:
-        return short(f"Accepted: {worst.accept.reason}", 90)
-    return short(plain(worst.remedy or worst.message), 90)
