@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from calm.cli import options, reading
 from calm.cli.outputs import ExitCode, narrate
-from calm.errors import NoEquilibrium, UsageError
+from calm.errors import NoEquilibrium
 from calm.version import __version__
 
 if TYPE_CHECKING:
@@ -192,10 +191,4 @@ def _folders(designs: Sequence[reading.DesignFile], output: Path) -> list[Path]:
     """
     if len(designs) == 1:
         return [output]
-    # signs that systems refuse become a stroke
-    plain = (re.sub(r'[\x00-\x1f<>:"/\\|?*]+', "-", each.name).strip(" .") for each in designs)
-    folders = [output / (name or "mooring") for name in plain]
-    for folder in folders:
-        if [str(one).casefold() for one in folders].count(str(folder).casefold()) > 1:
-            raise UsageError(f"two moorings would go to {folder}; give them other names")
-    return folders
+    return [output / name for name in reading.names_of_files(designs, output)]

@@ -36,6 +36,7 @@ _FLOW = 38.0  # for the profile of the current
 _SYMBOLS = 44.0
 _ABOVE, _BELOW = 14.0, 10.0
 _NEAREST = 9.5  # of two labels
+_LEAST = 0.45  # of the height that the water is to fill
 
 
 @dataclass(frozen=True)
@@ -103,9 +104,10 @@ def elevation(
     listed = [*labels[: int((height - _ABOVE) / _NEAREST)]]
     flow = _LEFT + _FLOW
     room = width - flow - _SYMBOLS - _longest(listed)
-    if span / max(room, 1.0) > depth / tall:  # too wide to have the labels beside it
+    scale = max((depth + rise) / tall, span / max(room, 1.0))
+    if depth / scale < _LEAST * tall:  # too wide to have the labels beside it
         listed, flow, room = [], _LEFT, width - _LEFT - 8.0
-    scale = max((depth + rise) / tall, span / room)
+        scale = max((depth + rise) / tall, span / room)
     sea = _ABOVE + rise / scale
     start = flow + max(0.5 * (room - span / scale), 0.0) * (not listed)
 
@@ -123,8 +125,12 @@ def elevation(
         left = _LEFT + 6.0 * at
         page.line(left + 4.0, bed, left, bed + 4.5, stroke=INK, stroke_width=0.4)
     for level in round_numbers(0.0, depth, max(2, min(7, int(depth / scale / 12.0)))):
-        page.line(_LEFT - 3.0, float(y(level)), _LEFT, float(y(level)), stroke=INK, stroke_width=0.5)
-        page.letters(_LEFT - 5.0, float(y(level)), number(level), size=FONT, colour=INK, anchor="end")
+        page.line(
+            _LEFT - 3.0, float(y(level)), _LEFT, float(y(level)), stroke=INK, stroke_width=0.5
+        )
+        page.letters(
+            _LEFT - 5.0, float(y(level)), number(level), size=FONT, colour=INK, anchor="end"
+        )
     if listed:
         _draw_flow(page, legs[0], sea, scale)
     for code, drawn in reversed(lines.items()):
@@ -157,14 +163,16 @@ _STROKES: dict[str, dict[str, float | str]] = {
 }
 """By the last letter of a code."""
 _HOLLOW = (*BALLS, Symbol.SPHERE, Symbol.FOAM, Symbol.STREAMLINED, Symbol.BUOY)
-_WIDEST_LABEL, _FIGURES = 106.0, 30.0
+_WIDEST_LABEL, _FIGURES = 106.0, 26.0
+_REAL = 0.78
+"""Width of letters as they are set over the upper bound that `text_width` gives."""
 _MOST_LEVELS = 7
 
 
 def _longest(labels: Sequence[Label]) -> float:
     """Width of the labels with their depths."""
     widths = (text_width(f"{one.text} {one.tag}", FONT, bold=True) for one in labels)
-    return min(max(widths, default=0.0), _WIDEST_LABEL) + _FIGURES
+    return min(_REAL * max(widths, default=0.0), _WIDEST_LABEL) + _FIGURES
 
 
 def _level(place: int, count: int, height: float) -> float:
@@ -212,18 +220,12 @@ def _draw_labels(
             scale = min(CLAMP_SCALE, (pitch - 1.0) / figure.height)
             figure.draw(pen.group(at, y, scale))
         room = width - left - _FIGURES
-        bold, tag = one.at is not None, text_width(f" {one.tag}", FONT, bold=True)
-        text = shortened(one.text, room - tag * bool(one.tag), FONT, bold=bold)
+        bold = one.at is not None
+        tag = f" {one.tag}" if one.tag else ""
+        told = shortened(one.text, room / _REAL - text_width(tag, FONT, bold=bold), FONT, bold=bold)
         style = {} if bold else {"font_style": "italic"}
-        page.draw("g", **style).letters(left, y, text, size=FONT, bold=bold)
-        if one.tag:
-            beside = left + _REAL * text_width(text, FONT, bold=bold) + 3.0
-            page.letters(beside, y, one.tag, size=FONT, bold=True)
+        page.draw("g", **style).letters(left, y, told + tag, size=FONT, bold=bold)
         page.letters(width, y, one.depth, size=FONT, anchor="end")
-
-
-_REAL = 0.78
-"""Width of letters as they are set over the upper bound that `text_width` gives."""
 
 
 def load_chart(

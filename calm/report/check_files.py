@@ -26,7 +26,6 @@ from calm.report.check_facts import key_figures
 from calm.report.result_files import members
 from calm.version import __version__
 
-
 MUCH_USED = 0.5
 """Utilisation from which a finding that passes is listed though another governs its rule."""
 

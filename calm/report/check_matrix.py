@@ -7,7 +7,7 @@ from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import Conclusion, Finding, State, by_rule, governing, worst_of
 from calm.report.blocks import Block, Cell, Field, Prose, Span, number, table_of, words
-from calm.report.open_items import figure_text, limit_text, percent_text, plain, where_text
+from calm.report.open_items import advice, figure_text, limit_text, percent_text, where_text
 from calm.report.page_one import (
     SignedMooring,
     cases_table,
@@ -95,9 +95,7 @@ def summary_row(assessment: Assessment) -> SummaryRow:
 
 
 def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
-    used = [
-        one for one in findings if one.utilisation is not None and one.rule not in _OTHER_KIND
-    ]
+    used = [one for one in findings if one.utilisation is not None and one.rule not in _OTHER_KIND]
     worst = worst_of(findings) if findings else None
     state = State.UNKNOWN if lacking else State.PASS
     if worst is not None and worst.state in (State.FAIL, State.UNKNOWN):
@@ -123,16 +121,20 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
     said = f"{len(failing)} of {len(rows)} moorings fail in at least one environment"
     said += f", {len(incomplete)} more lack figures" if incomplete else ""
     head = "Fails: " if failing else "Incomplete: " if incomplete else "Passes: "
-    yield Prose(((Span(head, state), Span(f"{said}; the first failure of each is named below.")),), state)
+    yield Prose(
+        ((Span(head, state), Span(f"{said}; the first failure of each is named below.")),), state
+    )
     legend = ", ".join(f"{codes[name]} {short(name, 24)}" for name in shown)
-    left = f" {len(names) - len(shown)} milder environments are left out." * (len(shown) < len(names))
+    left = f" {len(names) - len(shown)} milder environments are left out." * (
+        len(shown) < len(names)
+    )
     yield table_of(
         "Greatest use, %",
         rows,
         words("Mooring", lambda row: short(row.mooring, 44), 1.0),
-        number("Water m", lambda row: row.depth),
+        number("Water\nm", lambda row: row.depth, share=0.2),
         *(_column(codes[name], name) for name in shown),
-        number("Launch", lambda row: _shown(row.handling)),
+        number("Launch", lambda row: _shown(row.handling), share=0.24),
         aside="of any standing check, rounded up. White on black: fails. Hatched: over 100 without "
         "failing. ?: not known. Grey: 90 and more",
         note=f"{legend}. Launch: greatest use in launch, recovery and breaks.{left}",
@@ -165,7 +167,7 @@ def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], d
 
 
 def _column(code: str, name: str) -> Field:
-    return number(code, lambda row: _shown(row.cells.get(name)))
+    return number(code, lambda row: _shown(row.cells.get(name)), share=0.2)
 
 
 def _shown(cell: MatrixCell | None) -> Cell:
@@ -204,8 +206,12 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
         number("Found", lambda one: figure_text(one, one.value)),
         words("Limit", lambda one: limit_text(one) or "–", 0.0),
         words("Where, case", lambda one: short(where_text(one), 36), 1.1),
-        number("Over 100, of", lambda one: _over(groups[one.rule])),
-        words("What to do", lambda one: Cell(detail=_advice(groups[one.rule])), 1.5),
+        number("Over 100\nof judged", lambda one: _over(groups[one.rule])),
+        words(
+            "What to do",
+            lambda one: Cell(detail=short(advice(worst_of(groups[one.rule])), 90)),
+            1.5,
+        ),
         aside="a row a rule; over 100 % and judged, in all environments",
         ruled=False,
     )
@@ -214,12 +220,3 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
 
 def _over(found: Sequence[Finding]) -> str:
     return f"{sum((one.utilisation or 0.0) > 1.0 for one in found)} of {len(found)}"
-
-
-def _advice(found: Sequence[Finding]) -> str:
-    worst = worst_of(found)
-    if worst.state in (State.PASS, State.NOT_JUDGED):
-        return ""
-    if worst.accept is not None:
-        return short(f"Accepted: {worst.accept.reason}", 90)
-    return short(plain(worst.remedy or worst.message), 90)

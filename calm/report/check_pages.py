@@ -1,5 +1,6 @@
 """Pages 4 to 6 of a design check: every rule, the handling at sea, and what all rests on."""
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from math import ceil
 
@@ -10,6 +11,7 @@ from calm.checks.assessment import Assessment
 from calm.checks.criterion import said
 from calm.checks.finding import Finding, State, by_rule, governing, worst_of
 from calm.checks.inventory import InventoryItem, total_of
+from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss
 from calm.files import MooringFile
 from calm.files.check_limits import LimitKey
@@ -23,7 +25,6 @@ from calm.report.blocks import (
     Cell,
     Listing,
     Prose,
-    Span,
     Table,
     number,
     quantity,
@@ -32,8 +33,9 @@ from calm.report.blocks import (
 )
 from calm.report.check_tables import grouped
 from calm.report.drawing_page import item_numbers
-from calm.report.load_cases import LOAD
+from calm.report.load_cases import LOAD, length_text, load_text
 from calm.report.open_items import (
+    advice,
     figure_text,
     limit_text,
     percent_text,
@@ -60,28 +62,28 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         if lead.utilisation is None:
             lead = worst_of(found)
         worst = worst_of(found)
-        components = {one.component for one in found}
-        rows.append((name, lead, worst, len(components)))
+        if worst.state.severity < State.WARN.severity and lead.state is not State.PASS:
+            worst = lead
+        rows.append((name, lead, worst, len({one.component for one in found})))
     rows.sort(key=lambda row: (-(row[1].utilisation if row[1].utilisation is not None else -1.0),
                                -row[2].state.severity))  # fmt: skip
     counts = {state: sum(one.state is state for one in findings) for state in State}
-    told = ", ".join(f"{count} {state.value.replace('-', ' ')}" for state, count in counts.items() if count)
+    told = ", ".join(
+        f"{count} {state.value.replace('-', ' ')}" for state, count in counts.items() if count
+    )
 
     def basis(row: tuple[str, Finding, Finding, int]) -> Cell:
         _, lead, worst, _ = row
-        todo = ""
-        if worst.state not in (State.PASS, State.NOT_JUDGED):
-            tag = tags.get(worst.component or "", "")
-            todo = f"{worst.remedy or worst.message if worst.accept is None else 'Accepted'}"
-            todo = plain(todo) + (f" ({tag})" if tag else "")
-        return Cell(detail=plain(lead.source), then=todo)
+        source, todo = plain(lead.source).rstrip("."), advice(worst)
+        tag = tags.get((worst.rule, worst.component))
+        return Cell(detail=f"{source}.", then=f"{todo} ({tag})" if todo and tag else todo)
 
     return table_of(
         "Checks in full",
         rows,
         words("", lambda row: Cell(state=row[2].state), 0.0),
         words("Rule", lambda row: Cell(
-            RULES[row[0]].title, f"({row[3]})" if row[3] > 1 else "", goes_on=True), 1.0),
+            RULES[row[0]].title, f"({row[3]})" if row[3] > 1 else "", goes_on=True), 1.2),
         number("Use %", lambda row: Cell(percent_text(row[1].utilisation), strong=True)),
         number("Found", lambda row: figure_text(row[1], row[1].value)),
         words("Limit", lambda row: limit_text(row[1]) or "–", 0.0),
@@ -92,6 +94,10 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         aside="a row a rule: the piece and the case with the greatest use; in brackets the pieces "
         "judged",
     )  # fmt: skip
+
+
+_A_DIFFERENCE = 0.1
+"""Of two knockdowns, that is told of [m]."""
 
 
 def _trust(signed: SignedMooring) -> str:
@@ -111,7 +117,7 @@ def _trust(signed: SignedMooring) -> str:
     )
     given = signed.standing[0]
     strums = next((one for one in signed.standing if one.code == f"{given.code}s"), None)
-    if strums is not None and given.knockdown and strums.knockdown:
+    if strums is not None and strums.knockdown - given.knockdown >= _A_DIFFERENCE:
         text += (
             f" If the cables strum (case {strums.code}), the knockdown grows from "
             f"{say('knockdown', given.knockdown)} to {say('knockdown', strums.knockdown)}."
@@ -135,9 +141,7 @@ def handling_page(signed: SignedMooring) -> Iterator[Block]:
 
 
 def _pairs(title: str, rows: Iterable[tuple[str, str, str]]) -> Table:
-    return table_of(
-        title, rows, words("", 0, 1.6), words("", 1, 1.0), words("limit, use", 2, 0.0), ruled=False
-    )
+    return table_of(title, rows, words("", 0), number("", 1), number("", 2), ruled=False)
 
 
 def _launch(assessment: Assessment) -> Table:
@@ -171,7 +175,11 @@ def _recovery(assessment: Assessment) -> Table:
     tensions = np.fmax(rise.tension_top, rise.tension_bottom)
     rows = [
         ("Net buoyancy of all that rises", LOAD.say(rise.net_buoyancy), ""),
-        (f"Speed of the rise{still}", say("speed", rise.rise_speed), _limit(assessment, "recovery")),
+        (
+            f"Speed of the rise{still}",
+            say("speed", rise.rise_speed),
+            _limit(assessment, "recovery"),
+        ),
         ("First float at the surface after", "–" if first is None else duration(first), ""),
         ("Last float at the surface after", "–" if last is None else duration(last), ""),
     ]
@@ -235,10 +243,10 @@ def _breaks(assessment: Assessment) -> Table:
         "Breaks and losses",
         rows,
         words("Break or loss", 0, 2.0),
-        number(f"Weight to lift {unit}", lambda row: LOAD.format(row[1].weight_lifted)),
-        number(f"Buoyancy over {unit}", lambda row: LOAD.format(row[1].margin)),
-        number(f"Required {unit}", lambda row: LOAD.format(row[1].required)),
-        number(f"Comes loose {unit}", lambda row: LOAD.format(row[1].loose)
+        number(f"Weight to\nlift {unit}", lambda row: load_text(row[1].weight_lifted)),
+        number(f"Buoyancy\nover {unit}", lambda row: load_text(row[1].margin)),
+        number(f"Required {unit}", lambda row: load_text(row[1].required)),
+        number(f"Comes\nloose {unit}", lambda row: load_text(row[1].loose)
                if isinstance(row[1], Break) else None),
         number("Use %", used),
         note=note.strip(),
@@ -255,7 +263,7 @@ def _inventory(signed: SignedMooring) -> Table:
 
     def length(group: Sequence[InventoryItem]) -> str | None:
         known = [one.cut_length for one in group if one.kind in FLEXIBLE_KINDS and one.cut_length]
-        return QUANTITIES["length"].format(sum(known)) if known else None
+        return length_text(sum(known)) if known else None
 
     def mass(group: Sequence[InventoryItem]) -> str:
         known = [one.dry_mass for one in group if one.dry_mass is not None]
@@ -266,13 +274,16 @@ def _inventory(signed: SignedMooring) -> Table:
 
     def weight(group: Sequence[InventoryItem]) -> str:
         known = [one.wet_weight for one in group if one.wet_weight is not None]
-        return LOAD.format(sum(known)) if known else "–"
+        return load_text(sum(known)) if known else "–"
 
     def places(group: Sequence[InventoryItem]) -> Cell:
         if group is items:
             missing = total_of(items).missing_masses
             return Cell(detail=f"{missing} give no mass" if missing else "")
-        known = [numbers[one.label] for one in group if one.label in numbers]
+        known = list(dict.fromkeys(
+            numbers[one.label] if one.clamped_on is None else f"on {numbers[one.clamped_on]}"
+            for one in group if one.label in numbers
+        ))  # fmt: skip
         text = ", ".join(known[:8]) + (f" and {len(known) - 8} more" if len(known) > 8 else "")
         return Cell(detail=text)
 
@@ -284,7 +295,9 @@ def _inventory(signed: SignedMooring) -> Table:
         grouped(items, lambda one: one.use),
         number("Pieces", len),
         words("Component", name, 1.6),
-        words("Catalogue", lambda group: None if group is items else Cell(detail=group[0].use), 0.9),
+        words(
+            "Catalogue", lambda group: None if group is items else Cell(detail=group[0].use), 0.9
+        ),
         number("Cut length\nm", length),
         number("Mass in\nair kg", mass),
         number(f"Weight in\nwater {unit}", weight),
@@ -305,7 +318,7 @@ def basis_page(signed: SignedMooring) -> Iterator[Block]:
     text = provenance.source_text(assessment.file)
     name = provenance.file_name(assessment.file)
     yield Beside(
-        (_limits(assessment.limits),),
+        (_limits([*_limits_that_count(signed)]),),
         (_environment(waters), blocks.Heading("Not judged"), Prose(unseen)),
         0.62,
     )
@@ -330,19 +343,43 @@ def _limits(limits: Iterable[LimitKey]) -> Table:
         return text[:1].upper() + text[1:]
 
     def source(key: LimitKey) -> Cell:
-        usual = "" if key.default is None else f"; the default is {said(key, key.default)}"
-        return Cell(detail=plain(f"the design’s own{usual}" if own(key) else key.source))
+        usual = "" if key.default is None else f"; the default is {_value(key, key.default)}"
+        return Cell(detail=plain(f"the design’s own{usual}" if own(key) else _in_short(key.source)))
 
-    used = [key for key in limits if key.value is not None]
     return table_of(
         "Limits used",
-        used,
+        limits,
         words("Limit", lambda key: Cell(called(key), strong=own(key))),
-        number("Value", lambda key: Cell(said(key, key.value), strong=own(key))),
+        number("Value", lambda key: Cell(_value(key, key.value), strong=own(key))),
         words("Source", source, 1.6),
         aside="the design’s own in bold",
         ruled=False,
     )
+
+
+def _value(key: LimitKey, value: float | None) -> str:
+    return plain(LOAD.say(value) if key.dimension == "force" else said(key, value))
+
+
+def _in_short(source: str) -> str:
+    """Who gives a limit, without what is quoted."""
+    head = re.split(r"[:;]", source)[0]
+    return head if len(head) <= 45 else head.split(",")[0]
+
+
+_OF_WAVES = ("waves_safety_factor", "fatigue_factor", "service_time")
+_OF_SURFACE = ("safety_factor.surface", "minimum_reserve")
+
+
+def _limits_that_count(signed: SignedMooring) -> Iterator[LimitKey]:
+    """The limits that a rule has used: not those of waves, or of the surface, for others."""
+    assessment = signed.assessment
+    waves = any(one.leg.file.environment.waves for one in assessment.stands)
+    surface = any(reaches_the_surface(one.leg) for one in assessment.stands if one.result)
+    for key in assessment.limits:
+        idle = (key.name in _OF_WAVES and not waves) or (key.name in _OF_SURFACE and not surface)
+        if key.value is not None and not idle:
+            yield key
 
 
 _MOST_LEVELS = 12

@@ -7,8 +7,8 @@ from calm.checks.assessment import Assessment
 from calm.checks.comparison import Comparison
 from calm.report import blocks, provenance
 from calm.report.blocks import Block, PageBreak, ReportPart, Running, Section
-from calm.report.check_pages import basis_page, checks_page, handling_page
 from calm.report.check_matrix import SummaryRow, mooring_page, summary_page, summary_row
+from calm.report.check_pages import basis_page, checks_page, handling_page
 from calm.report.drawing_page import drawing_pages
 from calm.report.explanation import comparison_part
 from calm.report.line_page import line_page
@@ -88,6 +88,4 @@ def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
     foot = f"CALM {__version__}  inputs of each mooring: on its own page"
     running = Running("", title, worst.words, provenance.date() or "", foot)
     front = _page([blocks.TitleBlock("", title, "", ()), *summary_page(rows)])
-    return blocks.Report(
-        title, "", (front,), tuple(sections), provenance.date(), running=running
-    )
+    return blocks.Report(title, "", (front,), tuple(sections), provenance.date(), running=running)

@@ -4,13 +4,12 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from calm.deck.deck_items import DeckItem, deck_items_of
 from calm.drawing.check_figures import beside_row, row_height, seabed_row, surface_row
-from calm.drawing.schematic.deck_parts import parts_of
 from calm.drawing.schematic.pen import wrapped
 from calm.drawing.schematic.shown_parts import ShownPart, place_text
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Block, Cell, PageBreak, Table, number, table_of, words
-from calm.report.load_cases import LOAD
-from calm.report.page_one import SignedMooring
+from calm.report.load_cases import LOAD, load_text
+from calm.report.page_one import SignedMooring, afloat, drawn_parts
 from calm.report.sheet import leg_title
 
 _SHEET = {"a4": 660.0, "letter": 612.0}
@@ -79,21 +78,21 @@ def _sheets(
             plan = still.rows[first].upper[0]
         levels = (one.rows[first].upper[0] if first in one.rows else None for one in cases)
         loads = [tension[one.label] for one in items if one.on is None]
-        length = lengths[0] if items[0].on is None else place_text(items[0].places[0])
+        length = _length(items, lengths[0])
         pieces = [one for one in items if one.on is None] or items
         return (
             run_of([numbers[one.label] for one in pieces]),
             length,
-            f"{-sum(known) * LOAD.scale:+.2f}" if len(known) == len(own) else "?",
+            _buoyancy(-sum(known)) if len(known) == len(own) else "?",
             "" if plan is None else depth(plan),
             *(depth(level) for level in levels),
-            LOAD.format(max(loads)) if loads else "",
+            load_text(max(loads)) if loads else "",
         )
 
     result = case.results[leg]
     items = deck_items_of(result)
-    surface = result.type == "surface" and result.leg.top.free
-    parts = parts_of(result.file, items, items, cells, surface=surface)
+    surface = afloat(result)
+    parts = drawn_parts(result, items, cells)
     rows = [_row(part, first=part is parts[0], last=part is parts[-1]) for part in parts]
     sea = _end_row(surface_row(_SEA_ROW), "sea surface", depth(0.0), len(cases))
     bed = _end_row(seabed_row(_SEA_ROW), "seabed", depth(result.water.depth), len(cases))
@@ -121,6 +120,19 @@ def _sheets(
             aside="from the top, not to scale; item numbers are those of all tables",
             note=_DRAWING_NOTE if end == len(rows) else "",
         )
+
+
+def _length(items: Sequence[DeckItem], given: str) -> str:
+    """The cut length of a row, or where it is clamped."""
+    if items[0].on is not None:
+        return place_text(items[0].places[0]).removesuffix(".00")
+    return " ".join(word.removesuffix(".00") for word in given.split(" "))
+
+
+def _buoyancy(force: float) -> str:
+    """A net buoyancy with its sign; none where it rounds to nothing."""
+    text = load_text(force)
+    return f"+{text}" if force > 0.0 and text.strip("0.") else text
 
 
 _DRAWING_NOTE = (

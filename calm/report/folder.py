@@ -126,9 +126,7 @@ def write_file(path: Path, content: bytes) -> None:
         raise UsageError(f"cannot write {path}: {error.strerror}") from None
 
 
-def printed(
-    report: Report, paper: str = "a4", leaves: Sequence[str] | None = None
-) -> bytes:
+def printed(report: Report, paper: str = "a4", leaves: Sequence[str] | None = None) -> bytes:
     """Any report on pages; its texts reach the template as data, never as markup.
 
     The same report gives the same bytes: the fonts are those of the package, and the only date is

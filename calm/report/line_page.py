@@ -1,9 +1,7 @@
 """Page 3 of a design check: what every piece bears in all load cases, and what it may bear."""
 
 from collections.abc import Callable, Iterator, Sequence
-from math import inf
 
-from calm.case.leg_result import LegResult
 from calm.checks.finding import Finding, State
 from calm.drawing.check_figures import load_chart
 from calm.drawing.line_picture import alike, together
@@ -11,7 +9,14 @@ from calm.quantities import QUANTITIES
 from calm.report.blocks import Block, Cell, Figure, Table, number, table_of, words
 from calm.report.check_tables import grouped
 from calm.report.drawing_page import run_of
-from calm.report.load_cases import LOAD, LoadCase, PieceLoads, capacity_text, piece_loads
+from calm.report.load_cases import (
+    LOAD,
+    LoadCase,
+    PieceLoads,
+    capacity_text,
+    load_text,
+    piece_loads,
+)
 from calm.report.open_items import percent_text
 from calm.report.page_one import SignedMooring
 
@@ -57,7 +62,11 @@ def _loads_table(loads: Sequence[PieceLoads]) -> Table:
     groups: list[list[PieceLoads]] = []
     for one in loads:
         last = groups[-1][-1] if groups else None
-        same = last is not None and last.row.use == one.row.use and alike(last.row.label, one.row.label)
+        same = (
+            last is not None
+            and last.row.use == one.row.use
+            and alike(last.row.label, one.row.label)
+        )
         if same and one.row.role in ("float", "line"):
             groups[-1].append(one)
         else:
@@ -69,7 +78,7 @@ def _loads_table(loads: Sequence[PieceLoads]) -> Table:
         return lambda row: show(row[0])  # type: ignore[index]
 
     def case(one: PieceLoads) -> Cell:
-        return Cell(LOAD.format(one.tension), one.case, goes_on=True)
+        return Cell(load_text(one.tension), one.case, goes_on=True)
 
     passes = ("float", "anchor")
     return table_of(
@@ -79,7 +88,7 @@ def _loads_table(loads: Sequence[PieceLoads]) -> Table:
         words("Item", lambda row: together([one.row.label for one in row[1]])),
         number(f"Largest tension {unit}", of(case)),
         number(f"Least {unit}", of(
-            lambda one: None if one.row.role in passes else LOAD.format(one.least))),
+            lambda one: None if one.row.role in passes else load_text(one.least))),
         number("Largest tilt °", of(
             lambda one: None if one.row.role == "anchor" else QUANTITIES["tilt"].format(one.tilt))),
         number(f"Capa-\ncity {unit}", of(lambda one: capacity_text(one.standing))),
@@ -103,7 +112,7 @@ def _most_used(one: PieceLoads) -> tuple[float, float]:
 
 
 def _force(value: float | None) -> str:
-    return "" if not value else LOAD.format(value)
+    return "" if not value else load_text(value)
 
 
 def _bar(finding: Finding | None) -> Cell | None:
@@ -137,7 +146,7 @@ def _hardware_table(loads: Sequence[PieceLoads]) -> Table:
         words("Type", lambda row: row[0].row.part.component.name or row[0].row.use, 1.2),
         number("Pieces", lambda row: len(row[1])),
         words("Governing piece", lambda row: f"{row[0].number} {row[0].row.label}"),
-        number(f"Standing {unit}", lambda row: LOAD.format(row[0].tension)),
+        number(f"Standing {unit}", lambda row: load_text(row[0].tension)),
         number(f"Capacity {unit}", lambda row: capacity_text(row[0].standing)),
         number("Use %", lambda row: _use(row[0].standing)),
         number(f"Launch {unit}", lambda row: _force(worst_launch(row).launch_tension)),
@@ -150,10 +159,7 @@ def _hardware_table(loads: Sequence[PieceLoads]) -> Table:
 def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
     """What each case asks of the anchor, or of each anchor of a net the worst case."""
     rows = [
-        (case, result)
-        for case in signed.standing
-        for result in case.results
-        if result.leg.anchored
+        (case, result) for case in signed.standing for result in case.results if result.leg.anchored
     ]
     if not rows:
         return
@@ -182,10 +188,10 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
         words("", lambda row: Cell(row[0].code, strong=True), 0.0),
         words("Case" if one_anchor else "Anchor, case", lambda row: row[0].words if one_anchor
               else f"{row[1].file.pieces[-1].label}, {row[0].words}"),
-        number(f"Vertical {unit}", lambda row: LOAD.format(row[1].anchor.vertical)),
-        number(f"Horizontal {unit}", lambda row: LOAD.format(row[1].anchor.horizontal)),
+        number(f"Vertical {unit}", lambda row: load_text(row[1].anchor.vertical)),
+        number(f"Horizontal {unit}", lambda row: load_text(row[1].anchor.horizontal)),
         number("Angle from\nvertical °", lambda row: QUANTITIES["angle"].format(row[1].anchor.angle)),
-        number(f"Weight\nrequired {unit}", lambda row: LOAD.format(row[1].anchor.required_weight)),
+        number(f"Weight\nrequired {unit}", lambda row: load_text(row[1].anchor.required_weight)),
         number("Weight use %", lambda row: percent_text(
             row[1].anchor.required_weight / row[1].anchor.weight)),
         number("Uplift use %", lambda row: percent_text(uplift(row))),

@@ -4,7 +4,7 @@ A case is a situation of an environment; a net has a result of each of its legs 
 stands behind the figures that it governs, as in findings.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import hypot, isnan
@@ -20,10 +20,21 @@ from calm.checks.situations import FOULED, STILL, STILL_LOW, STRUMMING, case_of
 from calm.checks.strength import allowable_load
 from calm.errors import NoEquilibrium
 from calm.files.pieces import STAND_IN
-from calm.quantities import Quantity, say
+from calm.quantities import QUANTITIES, Quantity, say
 
 LOAD = Quantity("load", "load", "N", "Force on paper.", 2, "", "kN")
 """Forces on paper: kN to 0.01, or what a person chooses."""
+
+
+def load_text(value: float | None) -> str:
+    """A force on paper, with a true minus; a dash where it is not known."""
+    text = LOAD.format(value)
+    return "–" if text == "-" else text.replace("-", "−")
+
+
+def length_text(value: float | None) -> str:
+    """A cut length on paper, whole metres without decimals."""
+    return QUANTITIES["length"].format(value).removesuffix(".00")
 
 
 @dataclass(frozen=True)
@@ -235,13 +246,4 @@ def capacity_text(finding: Finding | None) -> str:
     if finding is None:
         return "–"
     sign = "≈\u00a0" if finding.state is State.ESTIMATED else ""
-    return "?" if finding.limit is None else sign + LOAD.format(finding.limit)
-
-
-def by_label(findings: Iterable[Finding], told: Callable[[Finding], str]) -> dict[str, str]:
-    """What is told of the component of each finding; of several the first."""
-    found: dict[str, str] = {}
-    for one in findings:
-        if one.component is not None:
-            found.setdefault(one.component, told(one))
-    return found
+    return "?" if finding.limit is None else sign + load_text(finding.limit)

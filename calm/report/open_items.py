@@ -131,14 +131,25 @@ def _told(group: Sequence[Finding], worst: Finding) -> str:
         by = worst.accept.by or "nobody"
         figures = figures or f"{found}{where}, no figure is published." * bool(found)
         example = " Replace before signing." if by == EXAMPLE else ""
-        return f"{figures} Accepted: “{worst.accept.reason}” ({by}{until}).{example}".strip()
+        said = f"Accepted: “{worst.accept.reason}” ({by}{until}).{example}"
+        return f"{figures} {said}" if figures else said
     if worst.state is State.ESTIMATED:
-        found_estimate = re.search(r" Its (`?[a-z_ ]+`? is estimated.*)", worst.message)
-        estimate = plain(found_estimate[1] if found_estimate else worst.message)
-        return f"{figures} {_capital(estimate)} Obtain the maker’s figure."
+        estimate = plain(re.split(r" \(", worst.message.partition(" Its ")[2])[0])
+        return f"{figures} {_capital(estimate)}. Obtain the maker’s figure."
     if figures:
         return f"{figures} {worst.remedy or ''}"
     return f"{worst.message} {worst.remedy or ''}"
+
+
+def advice(finding: Finding) -> str:
+    """What is to be done about a finding, in short."""
+    if finding.state in (State.PASS, State.NOT_JUDGED):
+        return ""
+    if finding.accept is not None:
+        return "Accepted."
+    if finding.state is State.ESTIMATED:
+        return "On an estimate: obtain the maker’s figure."
+    return plain(finding.remedy or finding.message)
 
 
 def _once(group: Iterable[Finding]) -> list[Finding]:
@@ -181,10 +192,12 @@ def verdict_sentence(assessment: Assessment) -> str:
         f"{_many(counts[State.NOT_JUDGED], 'check')} without data"
         * (counts[State.NOT_JUDGED] > 0),
     ]  # fmt: skip
+    failing = {one.rule for group in groups for one in group if one.state is State.FAIL}
     over = [
-        f"{RULES[one.rule].title.lower()} {percent_text(one.utilisation)} %"
+        f"{RULES[one.rule].title.lower()} of {one.component or 'the line'} "
+        f"{percent_text(one.utilisation)} %"
         for one in map(governing, groups)
-        if (one.utilisation or 0.0) > 1.0 and one.state is not State.FAIL
+        if (one.utilisation or 0.0) > 1.0 and one.rule not in failing
     ]
     beyond = f" Over 100 % without failing: {', '.join(dict.fromkeys(over))}." if over else ""
     return f"{_capital(', '.join(filter(None, said)))}.{beyond}"

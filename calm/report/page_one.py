@@ -4,13 +4,16 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import nan
 
+from calm.case.leg_result import LegResult
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import Finding, State, governing_of_each_rule
-from calm.deck.deck_items import deck_items_of
+from calm.deck.deck_items import DeckItem, deck_items_of
 from calm.drawing.check_figures import DrawnCase, Label, elevation
-from calm.drawing.schematic.deck_parts import parts_of
-from calm.quantities import QUANTITIES, bearing_of, bearing_text, say
+from calm.drawing.line_picture import alike, together
+from calm.drawing.schematic.deck_parts import Cells, parts_of
+from calm.drawing.schematic.shown_parts import ShownPart
+from calm.quantities import QUANTITIES, Quantity, bearing_of, bearing_text
 from calm.report import blocks, provenance
 from calm.report.blocks import (
     Beside,
@@ -29,7 +32,7 @@ from calm.report.blocks import (
     table_of,
     words,
 )
-from calm.report.load_cases import LOAD, LoadCase, worst_of_each_environment
+from calm.report.load_cases import LOAD, LoadCase, load_text, worst_of_each_environment
 from calm.report.open_items import (
     draft,
     figure_text,
@@ -53,7 +56,7 @@ _LONGEST = 30  # letters of a name in a table of page one
 
 TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
 """Height of a page between its head and its foot [pt]."""
-_FIXED, _ROW = 348.0, 12.6
+_FIXED, _ROW = 250.0, 12.6
 _FIGURE_WIDTH, _WIDTH = 281.0, 510.0
 
 
@@ -90,7 +93,9 @@ class SignedMooring:
     def verdict(self) -> str:
         """The verdict in the head of every page."""
         said = self.assessment.verdict.words
-        return f"DRAFT, {said}" if draft(self.assessment) else verdict_words(self.assessment.verdict)
+        return (
+            f"DRAFT, {said}" if draft(self.assessment) else verdict_words(self.assessment.verdict)
+        )
 
     def running(self) -> Running:
         """What stands at the head and the foot of every page."""
@@ -123,8 +128,8 @@ def title_block(signed: SignedMooring) -> TitleBlock:
         (
             ("Document", field("id")), ("Rev.", field("revision")),
             ("Date", field("date") or provenance.date() or ""), ("Page", ""),
-            ("Position", place), ("Author", field("author")),
-            ("Water depth", "" if depth is None else say("depth", depth)),
+            ("Position", place),
+            ("Water depth", "" if depth is None else _whole("depth_rating").say(depth)),
             ("Type", kind or ("surface" if surface else "sub-surface")),
         ),
     )  # fmt: skip
@@ -164,21 +169,30 @@ class _Figure:
         return number(self.heading, show, short=self.short)
 
 
+def _whole(name: str) -> Quantity:
+    """A quantity in metres without decimals, as page one has depths."""
+    return QUANTITIES[name]
+
+
 def _figures() -> tuple[_Figure, ...]:
-    depth, offset, tilt = (QUANTITIES[name].format for name in ("height", "offset", "tilt"))
+    depth, metres = QUANTITIES["depth"].format, _whole("depth_rating").format
     return (
-        _Figure("Top depth\nm", lambda one: one.top and one.top.top.depth, depth, short="top\nm"),
+        _Figure("Top depth\nm", lambda one: one.top and one.top.top.depth, metres, short="top\nm"),
         _Figure("Knock-\ndown m", lambda one: one.knockdown, depth, short="knock-\ndown m"),
-        _Figure("Offset\nm", lambda one: one.offset, offset, short="offset\nm"),
+        _Figure("Offset\nm", lambda one: one.offset, metres, short="offset\nm"),
         _Figure(
-            f"Largest\ntension {LOAD.display_unit}", lambda one: one.tension, LOAD.format,
+            f"Largest\ntension {LOAD.display_unit}",
+            lambda one: one.tension,
+            load_text,
             short=f"tension\n{LOAD.display_unit}",
         ),
         _Figure("Safety\nfactor", lambda one: one.factor, "{:.1f}".format, True, "safety\nfactor"),
         _Figure("Strength\nuse %", lambda one: one.strength, percent_text, short="strength\nuse %"),
         _Figure("Anchor\nuse %", lambda one: one.anchor, percent_text, short="anchor\nuse %"),
-        _Figure("Instrument\ntilt °", lambda one: one.tilt, tilt, short="tilt\n°"),
-    )  # fmt: skip
+        _Figure(
+            "Instrument\ntilt °", lambda one: one.tilt, QUANTITIES["tilt"].format, short="tilt\n°"
+        ),
+    )
 
 
 def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
@@ -248,7 +262,9 @@ def governing_table(signed: SignedMooring) -> Table:
     """The checks that use most of what is there, with bars."""
     rows = governing_rows(signed.assessment.every_finding())
     over = sum((one.utilisation or 0.0) > 1.0 for one in rows)
-    kept = rows[: max(over, min(MOST_CHECKS, sum((one.utilisation or 0.0) >= _HALF for one in rows)))]
+    kept = rows[
+        : max(over, min(MOST_CHECKS, sum((one.utilisation or 0.0) >= _HALF for one in rows)))
+    ]
     kept = kept or rows[:3]
     rest = rows[len(kept) :]
     note = "✓ passes  ≈ on an estimate  ▲ warning  ○ accepted  ? not known  ✗ fails.  "
@@ -345,16 +361,19 @@ def _round(value: float) -> str:
 def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
     """What is named beside the line: floats, instruments, releases, anchors, and the lines between
     them, as long as they have room."""
-    tags = item_tags(signed)
+    tags: dict[str | None, str] = {}
+    for (_, label), tag in item_tags(signed).items():
+        if not tag.startswith(MARKS[State.NOT_JUDGED]):
+            tags.setdefault(label, tag)
     found: list[tuple[bool, Label]] = []
     for result in case.results:
         items = deck_items_of(result)
         own = {one.label: one for one in items}
-        for part in parts_of(result.file, items, items, lambda *_: (), surface=False):
+        for part in drawn_parts(result, items, lambda *_: ()):
             if part.junction:
                 continue
             first = own[part.labels[0]]
-            cable = part.cable is not None and not part.clamped and part.floats is None
+            cable = part.cable is not None and not part.clamped
             tag = next((tags[label] for label in part.labels if label in tags), "")
             label = part.rows[0].label
             if cable:
@@ -362,7 +381,7 @@ def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
                 found.append((True, Label(part, f"{label}{length}", "", None, tag)))
             else:
                 at = case.rows[first.label].upper
-                found.append((False, Label(part, label, f"{at[0]:.0f}", at, tag)))
+                found.append((False, Label(part, label, f"{at[0]:z.0f}", at, tag)))
     if len(found) > MOST_LABELS:
         found = [one for one in found if not one[0]]
     kept = [label for _, label in found]
@@ -372,11 +391,34 @@ def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
     return kept
 
 
-def item_tags(signed: SignedMooring) -> dict[str, str]:
-    """The mark and number of the first item of each component."""
-    tags: dict[str, str] = {}
+def afloat(result: LegResult) -> bool:
+    """Whether a leg's own top is at the surface."""
+    return result.type == "surface" and result.leg.top.free
+
+
+def drawn_parts(
+    result: LegResult, items: Sequence[DeckItem], cells: Cells
+) -> tuple[ShownPart, ...]:
+    """The parts of a leg as they are drawn: glass as so many balls, runs of names in short."""
+    clamped = {one.label for one in items if one.on is not None}
+    found = []
+    for part in parts_of(result.file, items, items, cells, surface=afloat(result)):
+        (row,) = part.rows
+        first, _, last = row.label.partition(" – ")
+        if last and not part.junction and alike(first, last):
+            part = replace(part, rows=(replace(row, label=together([first, last])),))
+        if part.floats is not None:
+            count = sum(label in clamped for label in part.labels)
+            sign = replace(part.floats, count=count)
+            part = replace(part, sign=sign, floats=None, cable=None)
+        found.append(part)
+    return tuple(found)
+
+
+def item_tags(signed: SignedMooring) -> dict[tuple[str, str | None], str]:
+    """The mark and number of the first item of each rule and component."""
+    tags: dict[tuple[str, str | None], str] = {}
     for item, group in zip(signed.items, open_groups(signed.assessment), strict=True):
         for one in group:
-            if one.component is not None and item.state is not State.NOT_JUDGED:
-                tags.setdefault(one.component, f"{MARKS[item.state]}{item.number}")
+            tags.setdefault((one.rule, one.component), f"{MARKS[item.state]}{item.number}")
     return tags

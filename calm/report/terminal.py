@@ -159,7 +159,7 @@ _BAR, _BEYOND = 10, 3  # cells of a bar up to its mark, and beyond it
 
 
 def bar_text(share: float, state: State | None) -> str:
-    """A share of a limit as a bar with a mark at the limit, hatched beyond it if that does not fail.
+    """A share of a limit as a bar with a mark at the limit; hatched beyond it unless that fails.
 
     A cell stands for a tenth, rounded up.
     """

@@ -14,12 +14,13 @@ from calm.files import MooringFile
 from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
 
-
 Cells = Callable[[Sequence[DeckItem], tuple[str, str]], tuple[str, ...]]
 """The figures beside some items, by these and by their cut length, or place, and stretched one."""
 
 
-def parts_of_deck(deck: Deck, listed: Sequence[DeckItem], *, surface: bool) -> tuple[ShownPart, ...]:
+def parts_of_deck(
+    deck: Deck, listed: Sequence[DeckItem], *, surface: bool
+) -> tuple[ShownPart, ...]:
     """The parts listed, down a line or a leg, whose top is at the `surface` or below it.
 
     Beside each stand cut length or place on the wire, stretched length, depth, planned depth if any
@@ -95,10 +96,11 @@ def _piece(
     row: DeckRow, cable: Symbol | None, codes: Mapping[str | None, str], cells: Cells
 ) -> ShownPart:
     first, label = row.first, one_line(row.label)
+    joints = row.joints if len(row.items) > 1 else ()
     words = [
         "" if (name := one_line(row.name)) == label else name,
         f"on {one_line(first.name)}" if row.floats else "",
-        f"with {one_line(row.joined)}" if row.joined and len(row.items) > 1 else "",
+        f"with {one_line(row.joined)}" if joints else "",
         "" if first.serial is None else f"no. {one_line(first.serial)}",
         one_line(codes.get(first.serial, "")) if first.role == "release" else "",
     ]
@@ -112,13 +114,13 @@ def _piece(
     row_beside = TextRow(
         label,
         " · ".join(filter(None, words)),
-        cells([*row.items, *row.floats], lengths),
+        cells([*row.items, *row.floats, *joints], lengths),
         strong=first.role != "line" or bool(row.floats),
     )
     return ShownPart(
         _sign(first),
         (row_beside,),
-        labels=tuple(one.label for one in (*row.items, *row.floats)),
+        labels=tuple(one.label for one in (*row.items, *row.floats, *joints)),
         cable=cable,
         length=first.cut_length if first.cut_length is not None else nan,
         floats=_sign(row.floats[0]) if row.floats else None,
