@@ -187,13 +187,6 @@ class Verdict:
         return demand / capacity if capacity > 0.0 else inf
 
     @property
-    def share(self) -> float | None:
-        """The margin as a share of the limit; None if unknown."""
-        if self.margin is None or not self.limit:
-            return None
-        return self.margin / abs(self.limit)
-
-    @property
     def rank(self) -> tuple[int, float]:
         """Return what sorts verdicts, the worst first: the state, then the utilisation."""
         used = self.utilisation

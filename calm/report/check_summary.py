@@ -5,7 +5,6 @@ moorings it is a matrix of their greatest use.
 """
 
 import re
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from math import ceil
@@ -19,7 +18,6 @@ from calm.checks.finding import (
     by_rule,
     governing,
     governing_of_each_rule,
-    worst_of,
 )
 from calm.checks.situations import FOULED, STILL, STILL_LOW, STRUMMING
 from calm.quantities import say
@@ -29,7 +27,8 @@ from calm.report.check_matrix import MatrixCell, environments_of, summary_row
 from calm.report.likelihood import likelihood_tables
 from calm.report.load_cases import LoadCase, load_cases
 from calm.report.open_items import (
-    OPEN,
+    STATES,
+    counts_text,
     limit_text,
     open_groups,
     open_items,
@@ -87,24 +86,8 @@ def _head(assessment: Assessment) -> Line:
 def _verdict(assessment: Assessment) -> Line:
     """The verdict, and how much is open."""
     said = assessment.verdict.words.upper() + ", DRAFT" * assessment.draft
-    counts = Counter(worst_of(group).state for group in open_groups(assessment))
-    told = [_counted(counts[state], state) for state in OPEN if counts[state]]
-    text = _apart(said, ", ".join(told) or "nothing is open")
-    return (Span(text, _STATE_OF[assessment.verdict]),)
-
-
-_STATE_OF = {
-    Conclusion.FAILS: State.FAIL, Conclusion.INCOMPLETE: State.UNKNOWN,
-    Conclusion.BY_ACCEPTANCE: State.WARN, Conclusion.OPEN_ITEMS: State.WARN,
-    Conclusion.PASSES: State.PASS,
-}  # fmt: skip
-"""How a verdict looks."""
-
-
-def _counted(count: int, state: State) -> str:
-    word = {State.FAIL: "failure", State.WARN: "warning", State.NOT_JUDGED: "not judged"}
-    told = word.get(state, state.value)
-    return f"{count} {told}{'s' * (count != 1 and state in (State.FAIL, State.WARN))}"
+    told = counts_text(open_groups(assessment)) or "nothing is open"
+    return (Span(_apart(said, told), STATES[assessment.verdict]),)
 
 
 def _apart(left: str, right: str) -> str:
@@ -296,7 +279,7 @@ def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
         *(_of_environment(name, codes[name]) for name in kept),
         number("launch", lambda row: _matrix_text(row.handling)),
         note="! fails  ~ over 100, a warning or accepted  ? not known\n"
-        + ", ".join(f"{codes[name]} {name}" for name in kept)
+        + ", ".join(f"{codes[name]} {name}" for name in kept if codes[name] != name)
         + milder,
         dense=True,
     )
