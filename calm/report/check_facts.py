@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import accumulate, product
+from itertools import product
 from math import ceil, hypot
 from operator import attrgetter
 from pathlib import Path
@@ -22,22 +22,16 @@ from calm.checks.finding import AS_GIVEN, ON_THE_WAY, OWN, Finding, State, by_ru
 from calm.files.check_limits import LimitKey
 from calm.quantities import say
 from calm.report import blocks, check_tables
-from calm.report.blocks import Cell, Column, Pairs, ReportPart, Table, number, table_of, words
+from calm.report.blocks import Cell, Pairs, Table, number, table_of, words
 from calm.report.check_tables import figure_of, named_components, place_of
 from calm.report.provenance import title_pairs
 from calm.report.result_files import members
 from calm.units import KILOGRAM_FORCE, KNOT
-from calm.version import __version__
 
 _ABREAST = 5
 """Environments beside each other in a table; more of them take another table."""
 
-PAGE_ONE = 9.0
-"""Size of the smallest text of page one [pt]."""
 
-_TITLES = ("document", "revision", "date", "author")
-
-_MENDING = "What fails, is unknown or warns"
 _LINES, _SIGNS = 44.0, 76.0  # lines of page one, and letters of a line of a table's words
 
 
@@ -231,51 +225,6 @@ def _both(quantity: str, value: float, scale: float, unit: str, decimals: int) -
     return said if said.endswith(unit) else f"{said} ({value / scale:.{decimals}f} {unit})"
 
 
-def facts_part(facts: CheckFacts, title: str = "") -> ReportPart:
-    """Return page one of a mooring, but for the verdict above it and the signatures below."""
-    lacking = [name for name in _TITLES if name not in dict(facts.titles)]
-    origin = [("not given", ", ".join(lacking))] if lacking else []
-    origin += [("computed with", f"CALM {__version__}")]
-    origin.append(("SHA-256 of the file", facts.sha256 or "the file could not be read again"))
-    pairs = (Pairs((*facts.titles, *origin)), key_pairs(facts))
-    said = [text for each in pairs for _, value in each.pairs for text in value.split("\n")]
-    room = _LINES - sum(ceil(len(text) / 75) for text in said)
-    shown: list[Table] = []
-    for table in (*reversed(list(settled_tables(facts))), *_mending(facts.findings)):
-        room -= 4.0  # the title, the heads and the note
-        shown.insert(0, _cut(table, room if table.title == _MENDING else room / 2))
-        room -= sum(_lines_of(row, table.columns, _SIGNS / 4) for row in shown[0].rows)
-    return ReportPart(title, (*pairs, *shown), least=PAGE_ONE)
-
-
-def left_out(facts: CheckFacts) -> Iterator[Table]:
-    """Return what is accepted and what departs, where page one has not room for all of it."""
-    shown = facts_part(facts).blocks
-    return (table for table in settled_tables(facts) if table not in shown)
-
-
-def _cut(table: Table, lines: float) -> Table:
-    """The first rows of a table, as many as fit in some lines but one at least."""
-    signs = _SIGNS / sum(column.share for column in table.columns)
-    total = accumulate(_lines_of(row, table.columns, signs) for row in table.rows)
-    kept = max(sum(each <= lines for each in total), 1)
-    left = len(table.rows) - kept
-    if not left:
-        return table
-    shown = replace(table, rows=table.rows[:kept], note=f"{left} more under Checks.")
-    return shown.without_empty_columns()
-
-
-def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> float:
-    """About how many lines a row takes on page one; its rule and room count as a half.
-
-    A line of a column has so many signs for each of its shares of the width.
-    """
-    pairs = [pair for pair in zip(row, columns, strict=True) if pair[1].share]
-    return 0.5 + max(ceil(len(f"{cell.text} {cell.detail}") / (signs * column.share))
-                     for cell, column in pairs)  # fmt: skip
-
-
 def settled_tables(facts: CheckFacts) -> Iterator[Table]:
     """Return what the designer has decided: what is accepted, and limits of the design's own."""
     terms = attrgetter("accept.reason", "accept.by", "accept.date", "accept.until")
@@ -296,35 +245,6 @@ def settled_tables(facts: CheckFacts) -> Iterator[Table]:
     if facts.departures:
         title = "Limits that depart from their defaults"
         yield check_tables.limits_table(facts.departures, title)
-
-
-def _mending(findings: Sequence[Finding]) -> Iterator[Table]:
-    """The gravest of what fails, is unknown or warns; like findings are one row."""
-    groups = check_tables.to_mend(findings)
-    if groups:
-        yield table_of(
-            _MENDING,
-            groups,
-            *blocks.of_first(
-                check_tables.FIGURES[0], words("rule", lambda one: RULES[one.rule].title, 0.8)
-            ),
-            words("component", named_components),
-            words("finding", lambda found: check_tables.said_of(found[0]).text, 2.2),
-        )
-
-
-def rules_tables(facts: CheckFacts) -> Iterator[Table]:
-    """Rules by environments: state, margin and component of the worst finding of each."""
-    rows = [
-        (
-            rule.title,
-            {column: {name: of[name]} for column, of in facts.columns.items() if name in of},
-        )
-        for name, rule in RULES.items()
-    ]
-    note = "Under each state: the least margin, its component, and what is unknown."
-    return _states("Rules by environment", [*facts.columns], rows, note,
-                   lambda one: f"{figure_of(one, 'margin')} {one.component or ''}")  # fmt: skip
 
 
 def matrix_tables(moorings: Sequence[CheckFacts]) -> Iterator[Table]:

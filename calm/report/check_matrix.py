@@ -114,31 +114,19 @@ def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
 
 def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
     """The matrix, and what governs each mooring."""
-    names = list(dict.fromkeys(name for row in rows for name in row.cells))
-    shown = names
-    if len(names) > _MOST_ENVIRONMENTS:
-
-        def worst(name: str) -> float:
-            return max(
-                (row.cells[name].use or 0.0 for row in rows if name in row.cells), default=0.0
-            )
-
-        kept = set(sorted(names, key=worst, reverse=True)[:_MOST_ENVIRONMENTS])
-        shown = [name for name in names if name in kept]
-    codes = {name: f"E{at}" for at, name in enumerate(names, 1)}
+    names, shown, codes = environments_of(rows)
     failing = [row for row in rows if row.conclusion is Conclusion.FAILS]
     incomplete = [row for row in rows if row.conclusion is Conclusion.INCOMPLETE]
     state = State.FAIL if failing else State.UNKNOWN if incomplete else State.PASS
     said = f"{len(failing)} of {len(rows)} moorings fail in at least one environment"
     said += f", {len(incomplete)} more lack figures" if incomplete else ""
+    said += "; the first failure of each is named below." if failing else "."
     head = "Fails: " if failing else "Incomplete: " if incomplete else "Passes: "
-    yield Prose(
-        ((Span(head, state), Span(f"{said}; the first failure of each is named below.")),), state
-    )
-    legend = ", ".join(f"{codes[name]} {short(name, 24)}" for name in shown)
-    left = f" {len(names) - len(shown)} milder environments are left out." * (
-        len(shown) < len(names)
-    )
+    yield Prose(((Span(head, state), Span(said)),), state)
+    note = ", ".join(f"{codes[name]} {short(name, 24)}" for name in shown)
+    note += ". Launch: greatest use in launch, recovery and breaks."
+    if len(shown) < len(names):
+        note += f" {len(names) - len(shown)} milder environments are left out."
     yield table_of(
         "Greatest use, %",
         rows,
@@ -148,7 +136,7 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
         number("Launch", lambda row: _shown(row.handling), share=0.24),
         aside="of any standing check, rounded up. White on black: fails. Hatched: over 100 without "
         "failing. ?: not known. Grey: 90 and more",
-        note=f"{legend}. Launch: greatest use in launch, recovery and breaks.{left}",
+        note=note,
     )
     yield table_of(
         "What governs",
@@ -161,6 +149,20 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
         "mooring follows, with a row a rule. Use leaves out fish bite, metals and least tension, "
         "which are limits of another kind.",
     )
+
+
+def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], dict[str, str]]:
+    """The environments of all moorings, the worst of them that have room, and their codes."""
+    names = list(dict.fromkeys(name for row in rows for name in row.cells))
+    codes = {name: f"E{at}" for at, name in enumerate(names, 1)}
+    if len(names) <= _MOST_ENVIRONMENTS:
+        return names, names, codes
+
+    def worst(name: str) -> float:
+        return max((row.cells[name].use or 0.0 for row in rows if name in row.cells), default=0.0)
+
+    kept = set(sorted(names, key=worst, reverse=True)[:_MOST_ENVIRONMENTS])
+    return names, [name for name in names if name in kept], codes
 
 
 def _column(code: str, name: str) -> Field:

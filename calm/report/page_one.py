@@ -50,7 +50,7 @@ MARKS = {
     State.NOT_JUDGED: "–", State.PASS: "✓",
 }  # fmt: skip
 """Signs of the states on paper."""
-_HALF = 0.5  # of the capacity: what is used more is shown on page one
+_HALF = 0.4999  # of the capacity: what is used more is shown on page one
 _LONGEST = 30  # letters of a name in a table of page one
 
 TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
@@ -175,7 +175,7 @@ def _whole(name: str) -> Quantity:
 def _figures() -> tuple[_Figure, ...]:
     depth, metres = QUANTITIES["depth"].format, _whole("depth_rating").format
     return (
-        _Figure("Top depth\nm", lambda one: one.top and one.top.top.depth, metres),
+        _Figure("Top depth\nm", lambda one: one.depth, metres),
         _Figure("Knock-\ndown m", lambda one: one.knockdown, depth),
         _Figure("Offset\nm", lambda one: one.offset, metres),
         _Figure(f"Largest\ntension {LOAD.display_unit}", lambda one: one.tension, load_text),
@@ -240,11 +240,8 @@ def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
 def governing_table(signed: SignedMooring) -> Table:
     """The checks that use most of what is there, with bars."""
     rows = governing_rows(signed.assessment.every_finding())
-    over = sum((one.utilisation or 0.0) > 1.0 for one in rows)
-    kept = rows[
-        : max(over, min(MOST_CHECKS, sum((one.utilisation or 0.0) >= _HALF for one in rows)))
-    ]
-    kept = kept or rows[:3]
+    over, half = (sum((one.utilisation or 0.0) > share for one in rows) for share in (1.0, _HALF))
+    kept = rows[: max(over, min(MOST_CHECKS, half))] or rows[:3]
     rest = rows[len(kept) :]
     note = "✓ passes  ≈ on an estimate  ▲ warning  ○ accepted  ? not known  ✗ fails.  "
     note += "Cases: L launch, R rise, B break."
