@@ -397,11 +397,6 @@ def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
     return found
 
 
-def worst_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:
-    """The first of those that are as bad as any of their rule."""
-    return [worst_of(each) for each in by_rule(findings).values()]
-
-
 def worst_of(findings: Iterable[Finding]) -> Finding:
     """The first of those that are as bad as any; one that is not judged only if all are."""
     found = [*findings]

@@ -32,6 +32,7 @@ def check(
     page: Literal["a4", "letter"] = "a4",
     full: bool = False,
     against: Path | None = None,
+    all_findings: bool = False,
     missing: bool = False,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     allow_unknown: bool = False,
@@ -46,8 +47,8 @@ def check(
     Each mooring is solved as given, in still water, with cables that strum and,
     where its file asks for it, at high and low water and with growth; then launched
     anchor last, released, and broken at each connection. The exit code is 0 when
-    every finding is a pass, a warning or accepted, 1 when a rule fails or lacks a
-    figure, 3 when a mooring has no equilibrium.
+    nothing fails and nothing is incomplete, 1 when a rule fails or lacks a figure,
+    3 when a mooring has no equilibrium.
 
     Parameters
     ----------
@@ -55,7 +56,8 @@ def check(
         An environment named in the files, or an environment file. Repeatable. By default, every
         environment of each file.
     json
-        Write every finding as JSON, - to print it.
+        Write the findings as JSON, - to print it: what governs each rule, what does not pass,
+        and what uses half of its limit or more.
     report
         Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder:
         of one mooring six pages and more, of several one matrix and a page of each.
@@ -65,6 +67,8 @@ def check(
         Write all the pages of each of several moorings too, as PDF files of their own.
     against
         An earlier design, with which the report compares the mooring; needs --report.
+    all_findings
+        Write every finding in the JSON and in checks.csv, of every piece in every situation.
     missing
         Print, in place of the findings, a block of YAML to complete: the figures that
         each component lacks, with the rules that need them.
@@ -130,7 +134,7 @@ def check(
     if missing:
         _write_missing(assessments, output)
     else:
-        _answer(assessments, drawings, outputs, report, page, own)
+        _answer(assessments, drawings, outputs, report, page, own, every=all_findings)
     return gravest(_code(each, allow_unknown) for each in assessments)
 
 
@@ -224,6 +228,8 @@ def _answer(
     folder: Path | None,
     paper: str,
     names: Sequence[str],
+    *,
+    every: bool,
 ) -> None:
     """Print what was found, and write the report if it is asked for.
 
@@ -237,7 +243,7 @@ def _answer(
     from calm.report.check_summary import check_part
     from calm.report.folder import write_report
 
-    document = cache(lambda: check_document(assessments))
+    document = cache(lambda: check_document(assessments, every=every))
     if folder is None:
         outputs.write_answer(document, check_part(assessments))
         return
@@ -252,7 +258,7 @@ def _answer(
         texts = {
             "report.html": page(report, [each.html for each in drawings]),
             "report.json": result_files.to_json([document()]),
-            "checks.csv": checks_csv(assessments),
+            "checks.csv": checks_csv(assessments, every=every),
             "inventory.csv": inventory_csv(assessments),
         }
         files = {name: text.encode("utf-8", "replace") for name, text in texts.items()}
@@ -266,11 +272,9 @@ def _answer(
 
 
 def _code(assessment: Assessment, allow_unknown: bool) -> ExitCode:
-    from calm.checks.finding import State
+    from calm.checks.finding import Conclusion
 
     if any(stand.result is None for stand in assessment.stands):
         return ExitCode.NO_EQUILIBRIUM
-    passes = {State.PASS, State.ESTIMATED, State.WARN} | (
-        {State.UNKNOWN} if allow_unknown else set()
-    )
-    return ExitCode.DONE if assessment.state in passes else ExitCode.FINDING
+    stops = {Conclusion.FAILS} | ({Conclusion.INCOMPLETE} if not allow_unknown else set())
+    return ExitCode.FINDING if assessment.verdict in stops else ExitCode.DONE

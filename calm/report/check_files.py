@@ -1,12 +1,20 @@
 """A design check as JSON and as CSV."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment, Situation
-from calm.checks.finding import Finding, State, worst_state
+from calm.checks.finding import (
+    Conclusion,
+    Finding,
+    State,
+    by_rule,
+    governing_of_each_rule,
+    worst_of,
+    worst_state,
+)
 from calm.checks.inventory import total_of
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
@@ -14,19 +22,56 @@ from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
 from calm.report import provenance
-from calm.report.check_facts import facts_of
+from calm.report.check_facts import key_figures
 from calm.report.result_files import members
 from calm.version import __version__
 
+MUCH_USED = 0.5
+"""Utilisation from which a finding that passes is listed though another governs its rule."""
 
-def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
+
+def listed_findings(
+    assessment: Assessment, *, every: bool = False
+) -> Iterator[tuple[Finding, bool]]:
+    """Findings of a mooring, and whether each governs its rule.
+
+    Listed are those that govern, those that do not pass, and those whose utilisation is `MUCH_USED`
+    or more; of what is not judged one of each rule and component, and what is found in still water
+    once; with `every`, all of all situations.
+    """
+    found = [*assessment.every_finding()]
+    first = {id(one) for one in governing_of_each_rule(found)}
+    worst = {id(worst_of(each)) for each in by_rule(found).values()}
+    told: set[Hashable] = set()
+    for one in found:
+        leads = id(one) in first
+        if every or leads or id(one) in worst:
+            yield one, leads
+            continue
+        if one.state is State.NOT_JUDGED:
+            key: Hashable = one.rule, one.place
+        elif one.state is State.PASS and (one.utilisation or 0.0) < MUCH_USED:
+            continue
+        else:
+            place = one.case if one.case == "0" else one.environment
+            key = one.rule, one.place, place, one.state, one.value, one.message
+        if key not in told:
+            told.add(key)
+            yield one, leads
+
+
+def check_document(assessments: Sequence[Assessment], *, every: bool = False) -> dict[str, Any]:
     """The JSON object of a design check; what could not be solved is null.
+
+    Parameters
+    ----------
+    every : list every finding, and not only those that `listed_findings` chooses
 
     Returns
     -------
     dict
-        `state`, the worst there is; how many findings are `estimated`; what is `accepted`, and why;
-        `findings`, and as `tighter` those of other situations that leave less margin; of each
+        `verdict`, what all findings come to, and `state`, the worst there is; how many findings are
+        `estimated`; what is `accepted`, and why; `findings`, and how many there are in all; of each
         mooring by its name the `key_figures` of page one, `launch`, `recovery`, `backup`,
         `inventory` and its `totals`, and its `document` where files give any; and `situations`,
         what was solved of each mooring in each environment.
@@ -45,16 +90,17 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
     return {
         "calm": __version__,
         **({"document": documents} if documents else {}),
+        "verdict": max((each.verdict for each in assessments), key=[*Conclusion].index),
         "state": worst_state(each.state for each in assessments),
         "estimated": sum(one.state is State.ESTIMATED for one in listed(Assessment.all_findings)),
         "accepted": listed(_accepted),
         "limits": listed(
             lambda each: ({"mooring": each.name} | limit_document(key) for key in each.limits)
         ),
-        "key_figures": by_name(lambda each: facts_of(each).to_dict()),
+        "key_figures": by_name(key_figures),
         "not_judged": [one for one in provenance.UNJUDGED if one not in seen],
-        "findings": listed(lambda each: _findings(each, each.all_findings())),
-        "tighter": listed(lambda each: _findings(each, each.tighter_findings())),
+        "findings": listed(lambda each: _findings(each, every)),
+        "findings_in_all": len(listed(Assessment.every_finding)),
         "situations": by_name(
             lambda each: [
                 {"environment": stand.environment, **_situation(situation)}
@@ -76,10 +122,11 @@ def limit_document(key: LimitKey) -> dict[str, Any]:
     return members(key, "name", "value", "default", "source", "departs")
 
 
-def _findings(assessment: Assessment, findings: Iterable[Finding]) -> Iterator[dict[str, Any]]:
+def _findings(assessment: Assessment, every: bool) -> Iterator[dict[str, Any]]:
     """Yield findings, with their probability if those were counted: null without a limit."""
-    for one in findings:
-        yield one.to_dict() | (members(one, "probability") if assessment.draws else {})
+    for one, leads in listed_findings(assessment, every=every):
+        counted = members(one, "probability") if assessment.draws else {}
+        yield one.to_dict() | {"governing": leads} | counted
 
 
 def _accepted(assessment: Assessment) -> Iterator[dict[str, Any]]:
@@ -120,10 +167,11 @@ def _handled(way: Launch | Recovery | None, names: Sequence[str]) -> dict[str, A
     return None if way is None else members(way, *names) | {"components": way.components()}
 
 
-_OF_FINDING = ("mooring", "environment", "situation", "rule", "component")
+_OF_FINDING = ("mooring", "environment", "situation", "case", "rule", "component")
+_FIGURES = ("value", "sense", "limit", "margin", "utilisation")
 _TEXTS = ("message", "remedy", "source")
 CHECKS_HEADER = (
-    *_OF_FINDING, "state", "value", "limit", "margin", "unit", *_TEXTS, "reason", "probability",
+    *_OF_FINDING, "state", "governing", *_FIGURES, "unit", *_TEXTS, "reason", "probability",
 )  # fmt: skip
 """First row of `checks_csv`; value, limit and margin are in the unit of their row."""
 
@@ -138,10 +186,19 @@ INVENTORY_HEADER = (
 """First row of `inventory_csv`; weights in water are positive downward."""
 
 
-def checks_csv(assessments: Sequence[Assessment]) -> str:
-    """A row for every finding, of one mooring after the other; what is unknown is left empty."""
-    findings = (finding for each in assessments for finding in each.all_findings())
-    return table_csv(CHECKS_HEADER, map(_finding_row, findings))
+def checks_csv(assessments: Sequence[Assessment], *, every: bool = False) -> str:
+    """A row for each finding listed, of one mooring after the other; what is unknown is empty.
+
+    Parameters
+    ----------
+    every : list every finding, as in `check_document`
+    """
+    rows = (
+        _finding_row(*listed)
+        for each in assessments
+        for listed in listed_findings(each, every=every)
+    )
+    return table_csv(CHECKS_HEADER, rows)
 
 
 def inventory_csv(assessments: Sequence[Assessment]) -> str:
@@ -154,12 +211,13 @@ def inventory_csv(assessments: Sequence[Assessment]) -> str:
     return table_csv(INVENTORY_HEADER, rows)
 
 
-def _finding_row(finding: Finding) -> Sequence[object]:
+def _finding_row(finding: Finding, leads: bool) -> Sequence[object]:
     quantity = QUANTITIES.get(RULES[finding.rule].quantity)
     return (
         *members(finding, *_OF_FINDING).values(),
         finding.state.value,
-        *members(finding, "value", "limit", "margin").values(),
+        "yes" if leads else "no",
+        *members(finding, *_FIGURES).values(),
         quantity.unit if quantity else None,
         *members(finding, *_TEXTS).values(),
         None if finding.accept is None else finding.accept.reason,

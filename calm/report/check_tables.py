@@ -18,7 +18,7 @@ from calm.files.check_limits import LimitKey
 from calm.files.components import FLEXIBLE_KINDS
 from calm.quantities import QUANTITIES
 from calm.report import blocks
-from calm.report.blocks import Cell, Field, Prose, Span, Table, number, quantity, table_of, words
+from calm.report.blocks import Cell, Field, Span, Table, number, quantity, table_of, words
 
 Item = TypeVar("Item")
 
@@ -62,12 +62,6 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
 def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
     """Return together the findings of one rule that say the same of several components."""
     return grouped(findings, lambda one: (one.rule, one.state, _wording(one)))
-
-
-def to_mend(findings: Iterable[Finding]) -> list[list[Finding]]:
-    """Return what fails, is unknown or warns, the gravest first, what says the same together."""
-    states = (State.FAIL, State.UNKNOWN, State.WARN)
-    return joined(one for one in worst_by_part(findings) if one.state in states)
 
 
 def _wording(finding: Finding) -> str:
@@ -148,12 +142,6 @@ def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
         f"{nobody} of them by nobody" if nobody else "",
     ]
     return state, ", ".join(filter(None, told))
-
-
-def verdict_prose(findings: Iterable[Finding]) -> Prose:
-    """The verdict with its sign, such as ``? nothing fails, 34 figures unknown``."""
-    state, told = verdict_of(findings)
-    return Prose(((Span(f"{state.sign} {told}", state),),), state)
 
 
 def short_verdict(findings: Iterable[Finding]) -> Span:

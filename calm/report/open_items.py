@@ -16,7 +16,7 @@ from calm.report.blocks import OpenItem
 from calm.report.check_tables import grouped, joined, named_components
 from calm.report.load_cases import LOAD
 
-OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ESTIMATED, State.ACCEPTED, State.NOT_JUDGED)
+OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED)
 """States of what is open, in the order in which it is listed."""
 
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import nan
 
 from calm.case.leg_result import LegResult
 from calm.checks.assess import RULES
@@ -91,10 +92,8 @@ class SignedMooring:
     @property
     def verdict(self) -> str:
         """The verdict in the head of every page."""
-        said = self.assessment.verdict.words
-        return (
-            f"DRAFT, {said}" if draft(self.assessment) else verdict_words(self.assessment.verdict)
-        )
+        said = self.assessment.verdict
+        return f"DRAFT, {said.words}" if draft(self.assessment) else verdict_words(said)
 
     def running(self) -> Running:
         """What stands at the head and the foot of every page."""
@@ -149,6 +148,7 @@ class _Figure:
     of: Callable[[LoadCase], float | tuple[float, str] | None]
     text: Callable[[float], str]
     least: bool = False
+    short: str | None = None
 
     def value(self, case: LoadCase) -> tuple[float, str] | None:
         """Return the figure of a case, and where it is."""
@@ -164,7 +164,7 @@ class _Figure:
                 return Cell("–")
             return Cell(self.text(found[0]), strong=found[0] == lead)
 
-        return number(self.heading, show)
+        return number(self.heading, show, short=self.short)
 
 
 def _whole(name: str) -> Quantity:
@@ -175,20 +175,33 @@ def _whole(name: str) -> Quantity:
 def _figures() -> tuple[_Figure, ...]:
     depth, metres = QUANTITIES["depth"].format, _whole("depth_rating").format
     return (
-        _Figure("Top depth\nm", lambda one: one.depth, metres),
-        _Figure("Knock-\ndown m", lambda one: one.knockdown, depth),
-        _Figure("Offset\nm", lambda one: one.offset, metres),
-        _Figure(f"Largest\ntension {LOAD.display_unit}", lambda one: one.tension, load_text),
-        _Figure("Safety\nfactor", lambda one: one.factor, "{:.1f}".format, least=True),
-        _Figure("Strength\nuse %", lambda one: one.strength, percent_text),
-        _Figure("Anchor\nuse %", lambda one: one.anchor, percent_text),
-        _Figure("Instrument\ntilt °", lambda one: one.tilt, QUANTITIES["tilt"].format),
+        _Figure("Top depth\nm", lambda one: one.depth, metres, short="top\nm"),
+        _Figure("Knock-\ndown m", lambda one: one.knockdown, depth, short="knock-\ndown m"),
+        _Figure("Offset\nm", lambda one: one.offset, metres, short="offset\nm"),
+        _Figure(
+            f"Largest\ntension {LOAD.display_unit}",
+            lambda one: one.tension,
+            load_text,
+            short=f"tension\n{LOAD.display_unit}",
+        ),
+        _Figure("Safety\nfactor", lambda one: one.factor, "{:.1f}".format, True, "safety\nfactor"),
+        _Figure("Strength\nuse %", lambda one: one.strength, percent_text, short="strength\nuse %"),
+        _Figure("Anchor\nuse %", lambda one: one.anchor, percent_text, short="anchor\nuse %"),
+        _Figure(
+            "Instrument\ntilt °", lambda one: one.tilt, QUANTITIES["tilt"].format, short="tilt\n°"
+        ),
     )
 
 
-def cases_table(signed: SignedMooring) -> Table:
-    """The load cases, what governs in bold, and where that is in the last row."""
-    cases, note = [*signed.cases], ""
+def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
+    """The figures of load cases, of those that any has, without what governs."""
+    known = [one for one in _figures() if any(one.value(case) for case in cases)]
+    return [figure.field(nan) for figure in known]
+
+
+def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
+    """The cases that have room in a table, and what is said of those that have not."""
+    cases, note = [*cases], ""
     if len(cases) > MOST_CASES:
         cases = worst_of_each_environment(cases)
         note = "Of each environment the case with the greatest knockdown."
@@ -196,6 +209,12 @@ def cases_table(signed: SignedMooring) -> Table:
         kept = sorted(cases, key=lambda one: -one.knockdown)[:MOST_CASES]
         note += f" {len(cases) - MOST_CASES} less severe ones are left out."
         cases = [one for one in cases if one in kept]
+    return cases, note
+
+
+def cases_table(signed: SignedMooring) -> Table:
+    """The load cases, what governs in bold, and where that is in the last row."""
+    cases, note = shown_cases(signed.cases)
 
     def named(case: LoadCase) -> str:
         return short(case.words, 40) if case.results else f"{case.words}: no equilibrium"
