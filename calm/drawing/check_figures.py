@@ -6,6 +6,7 @@ They are black on white: nothing hangs on colour. Lengths are in points.
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -121,16 +122,13 @@ def elevation(
     page.line(_LEFT, sea, edge, sea, stroke=INK, stroke_width=0.9)
     bed = float(y(depth))
     page.line(_LEFT, bed, edge, bed, stroke=INK, stroke_width=0.9)
-    for at in range(int((edge - _LEFT) / 6.0)):
-        left = _LEFT + 6.0 * at
+    for count in range(int((edge - _LEFT) / 6.0)):
+        left = _LEFT + 6.0 * count
         page.line(left + 4.0, bed, left, bed + 4.5, stroke=INK, stroke_width=0.4)
     for level in round_numbers(0.0, depth, max(2, min(7, int(depth / scale / 12.0)))):
-        page.line(
-            _LEFT - 3.0, float(y(level)), _LEFT, float(y(level)), stroke=INK, stroke_width=0.5
-        )
-        page.letters(
-            _LEFT - 5.0, float(y(level)), number(level), size=FONT, colour=INK, anchor="end"
-        )
+        at = float(y(level))
+        page.line(_LEFT - 3.0, at, _LEFT, at, stroke=INK, stroke_width=0.5)
+        page.letters(_LEFT - 5.0, at, number(level), size=FONT, colour=INK, anchor="end")
     if listed:
         _draw_flow(page, legs[0], sea, scale)
     for code, drawn in reversed(lines.items()):
@@ -228,27 +226,34 @@ def _draw_labels(
         page.letters(width, y, one.depth, size=FONT, anchor="end")
 
 
-def load_chart(
-    title: str,
-    loads: Sequence[tuple[int, float, float | None, float | None, float | None, bool]],
-    unit: str,
-    size: tuple[float, float],
-) -> str:
+class PieceBar(NamedTuple):
+    """A piece in a chart: its tensions and capacities, in the unit of the chart.
+
+    Attributes
+    ----------
+    number : in the line
+    tension, capacity : the greatest that stands, and what it may bear; None where not known
+    launch, launch_capacity : the same in the launch
+    judged : whether a capacity is asked of it
+    """
+
+    number: int
+    tension: float
+    capacity: float | None
+    launch: float | None
+    launch_capacity: float | None
+    judged: bool
+
+
+def load_chart(title: str, loads: Sequence[PieceBar], size: tuple[float, float]) -> str:
     """Tension and capacity of every piece as SVG, from the top of the line to the left.
 
-    Parameters
-    ----------
-    loads : of each piece its number, the greatest tension that stands, the capacity, the tension in
-        the launch and the capacity there, in the unit; None where it is not known; and whether a
-        capacity is asked of it
-    unit : of the scale
-    size : width and height
+    `size` is its width and height.
     """
     width, height = size
     page = picture(width, height, title)
     left, top, bottom = 24.0, 8.0, height - 12.0
-    tensions = [one for _, stands, _, falls, _, _ in loads for one in (stands, falls or 0.0)]
-    highest = 1.3 * max(tensions) or 1.0
+    highest = 1.3 * max(max(one.tension, one.launch or 0.0) for one in loads) or 1.0
     step = (width - left - 4.0) / max(len(loads), 1)
 
     def y(value: float) -> float:
@@ -258,23 +263,27 @@ def load_chart(
         page.line(left, y(level), width, y(level), stroke=PALE, stroke_width=0.4)
         page.letters(left - 4.0, y(level), number(level), size=FONT, colour=INK, anchor="end")
     named = -1e9
-    for place, (piece, stands, capacity, falls, most, asked) in enumerate(loads):
+    for place, one in enumerate(loads):
+        capacity, falls, stands = one.capacity, one.launch, one.tension
+        most = None if one.launch_capacity == capacity else one.launch_capacity
         x = left + 3.0 + place * step
         middle = x + 0.37 * step
         if falls:
             page.box(middle, (y(falls) + bottom) / 2, 0.74 * step, bottom - y(falls), fill=PALE)
         page.box(middle, (y(stands) + bottom) / 2, 0.4 * step, bottom - y(stands), fill=INK)
-        for load, dashes in ((capacity, "none"), (most if most != capacity else None, "1.2 1.2")):
+        for load, dashes in ((capacity, "none"), (most, "1.2 1.2")):
             if load is not None and load <= highest:
                 page.line(x - 0.06 * step, y(load), x + 0.82 * step, y(load), stroke=INK,
                           stroke_width=1.3, stroke_dasharray=dashes)  # fmt: skip
-        if asked and capacity is None:
+        if one.judged and capacity is None:
             page.letters(middle, top - 3.0, "?", size=FONT, bold=True, anchor="middle")
         elif capacity is not None and capacity > highest:
             page.path(f"M{middle - 2:.1f} {top - 1:.1f}h4l-2 -3.4Z", fill=INK)
         if x - named >= 11.0:
             named = x
-            page.letters(middle, bottom + 7.0, str(piece), size=FONT, colour=INK, anchor="middle")
+            page.letters(
+                middle, bottom + 7.0, str(one.number), size=FONT, colour=INK, anchor="middle"
+            )
     return grey(svg_text(page))
 
 

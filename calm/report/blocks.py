@@ -19,8 +19,9 @@ class Column:
     """Head of a column: title, unit below it, and whether its cells are numbers.
 
     `share` is that of the width which numbers and short words leave: 0 of a column of short words,
-    1 of names, more of sentences; a column of numbers has one if it is not 1. `short` is the title, in lines, where there is little room; a
-    column that is not `narrow` is left out there. In one that is `marked` cells may carry a mark.
+    1 of names, more of sentences; a column of numbers has one if it is not 1. `short` is the title,
+    in lines, where there is little room; a column that is not `narrow` is left out there. In one
+    that is `marked` cells may carry a mark.
     """
 
     heading: str

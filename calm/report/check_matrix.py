@@ -120,14 +120,13 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
     state = State.FAIL if failing else State.UNKNOWN if incomplete else State.PASS
     said = f"{len(failing)} of {len(rows)} moorings fail in at least one environment"
     said += f", {len(incomplete)} more lack figures" if incomplete else ""
+    said += "; the first failure of each is named below." if failing else "."
     head = "Fails: " if failing else "Incomplete: " if incomplete else "Passes: "
-    yield Prose(
-        ((Span(head, state), Span(f"{said}; the first failure of each is named below.")),), state
-    )
-    legend = ", ".join(f"{codes[name]} {short(name, 24)}" for name in shown)
-    left = f" {len(names) - len(shown)} milder environments are left out." * (
-        len(shown) < len(names)
-    )
+    yield Prose(((Span(head, state), Span(said)),), state)
+    note = ", ".join(f"{codes[name]} {short(name, 24)}" for name in shown)
+    note += ". Launch: greatest use in launch, recovery and breaks."
+    if len(shown) < len(names):
+        note += f" {len(names) - len(shown)} milder environments are left out."
     yield table_of(
         "Greatest use, %",
         rows,
@@ -137,7 +136,7 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
         number("Launch", lambda row: _shown(row.handling), share=0.24),
         aside="of any standing check, rounded up. White on black: fails. Hatched: over 100 without "
         "failing. ?: not known. Grey: 90 and more",
-        note=f"{legend}. Launch: greatest use in launch, recovery and breaks.{left}",
+        note=note,
     )
     yield table_of(
         "What governs",

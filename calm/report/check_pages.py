@@ -155,7 +155,8 @@ def _launch(assessment: Assessment) -> Table:
     return _pairs(
         "Launch, anchor last",
         [
-            ("Anchor at touchdown" + drag, say("speed", launch.fall_speed), _limit(assessment, "launch-speed")),
+            ("Anchor at touchdown" + drag, say("speed", launch.fall_speed),
+             _limit(assessment, "launch-speed")),
             ("with twice and half the drag",
              f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
             ("Pull of the falling anchor", LOAD.say(launch.anchor_tension), ""),
@@ -400,7 +401,7 @@ def _environment(waters: dict[str, Water]) -> Table:
             quantity("speed", 1, "strongest current"),
             quantity("depth", 2, "at depth"),
             ruled=False,
-            note=_water_note([*waters.values()][0]),
+            note=_water_note(next(iter(waters.values()))),
         )
     (water,) = waters.values()
     count = len(water.level)

@@ -1,9 +1,11 @@
 """Page 3 of a design check: what every piece bears in all load cases, and what it may bear."""
 
 from collections.abc import Callable, Iterator, Sequence
+from math import inf
 
+from calm.case.leg_result import LegResult
 from calm.checks.finding import Finding, State
-from calm.drawing.check_figures import load_chart
+from calm.drawing.check_figures import PieceBar, load_chart
 from calm.drawing.line_picture import alike, together
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Block, Cell, Figure, Table, number, table_of, words
@@ -31,9 +33,9 @@ def line_page(signed: SignedMooring) -> Iterator[Block]:
     yield _loads_table(main)
     unit = LOAD.display_unit
     points = [
-        (
+        PieceBar(
             one.number, one.tension * LOAD.scale, _scaled(one.standing), _known(one.launch_tension),
-            _scaled(one.launch), one.row.role not in ("float", "anchor") or bool(_scaled(one.standing)),
+            _scaled(one.launch), one.standing is not None,
         )
         for one in loads
     ]  # fmt: skip
@@ -42,15 +44,14 @@ def line_page(signed: SignedMooring) -> Iterator[Block]:
         "by item; black: standing, grey: launch; tick: capacity, dotted: in the launch; "
         "▲ beyond the scale; ? not known"
     )
-    yield Figure(title, load_chart(title, points, unit, (508.0, 130.0)), aside=aside)
+    yield Figure(title, load_chart(title, points, (508.0, 130.0)), aside=aside)
     if hardware:
         yield _hardware_table(hardware)
     yield from _anchor_table(signed)
 
 
 def _scaled(finding: Finding | None) -> float | None:
-    known = finding is not None and finding.limit is not None
-    return finding.limit * LOAD.scale if finding is not None and known and finding.limit else None
+    return None if finding is None else _known(finding.limit)
 
 
 def _known(value: float | None) -> float | None:
@@ -84,7 +85,7 @@ def _loads_table(loads: Sequence[PieceLoads]) -> Table:
     return table_of(
         "The line",
         rows,
-        number("No.", lambda row: run_of([str(one.number) for one in row[1][:: len(row[1]) - 1 or 1]])),
+        number("No.", lambda row: run_of([str(one.number) for one in row[1]])),
         words("Item", lambda row: together([one.row.label for one in row[1]])),
         number(f"Largest tension {unit}", of(case)),
         number(f"Least {unit}", of(
@@ -166,21 +167,21 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
     anchors = grouped(rows, lambda row: row[1].file.pieces[-1].label)
     if len(anchors) > 1 or len(rows) > 12:
         rows = [max(group, key=lambda row: row[1].anchor.required_weight) for group in anchors]
-    checks = signed.assessment.file.checks
+    checks, angle = signed.assessment.file.checks, QUANTITIES["angle"].format
     factor, unit = checks.anchor_factor, LOAD.display_unit
     first = rows[0][1]
     name = first.file.pieces[-1].component.name or first.file.pieces[-1].label
     one_anchor = len(anchors) == 1
     weighs = f", {LOAD.say(first.anchor.weight)} in water" if one_anchor else ""
 
-    def uplift(row: tuple[LoadCase, object]) -> float:
-        anchor = row[1].anchor  # type: ignore[attr-defined]
-        return factor * anchor.vertical / anchor.weight
+    def uplift(row: tuple[LoadCase, LegResult]) -> str:
+        anchor = row[1].anchor
+        return percent_text(factor * anchor.vertical / anchor.weight)
 
-    def sliding(row: tuple[LoadCase, object]) -> str:
-        anchor = row[1].anchor  # type: ignore[attr-defined]
+    def sliding(row: tuple[LoadCase, LegResult]) -> str:
+        anchor = row[1].anchor
         holds = anchor.friction * (anchor.weight / factor - anchor.vertical)
-        return percent_text(anchor.horizontal / holds if holds > 0.0 else float("inf"))
+        return percent_text(anchor.horizontal / holds if holds > 0.0 else inf)
 
     yield table_of(
         f"Anchor: {name}{weighs}" if one_anchor else "Anchors, each in its worst case",
@@ -190,11 +191,11 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
               else f"{row[1].file.pieces[-1].label}, {row[0].words}"),
         number(f"Vertical {unit}", lambda row: load_text(row[1].anchor.vertical)),
         number(f"Horizontal {unit}", lambda row: load_text(row[1].anchor.horizontal)),
-        number("Angle from\nvertical °", lambda row: QUANTITIES["angle"].format(row[1].anchor.angle)),
+        number("Angle from\nvertical °", lambda row: angle(row[1].anchor.angle)),
         number(f"Weight\nrequired {unit}", lambda row: load_text(row[1].anchor.required_weight)),
         number("Weight use %", lambda row: percent_text(
             row[1].anchor.required_weight / row[1].anchor.weight)),
-        number("Uplift use %", lambda row: percent_text(uplift(row))),
+        number("Uplift use %", uplift),
         number("Sliding use %", sliding),
         note=f"Required: {factor:g} (V + H / {first.anchor.friction:.3g}). Uplift: V against "
         f"weight / {factor:g}. Sliding: H against {first.anchor.friction:.3g} "

@@ -77,17 +77,16 @@ class LoadCase:
     @cached_property
     def rows(self) -> Mapping[str, ComponentRow | ClampRow]:
         """Every piece and clamp by its label."""
-        return {
-            row.part.label: row
-            for result in self.results
-            for piece, clamps in rows_down(result)
-            for row in (piece, *clamps)
-        }
+        every: list[ComponentRow | ClampRow] = []
+        for result in self.results:
+            for piece, clamps in rows_down(result):
+                every += (piece, *clamps)
+        return {row.part.label: row for row in every}
 
-    @cached_property
-    def top(self) -> LegResult | None:
-        """The leg whose top is the least deep; None without equilibrium."""
-        return min(self.results, key=lambda one: one.top.depth, default=None)
+    @property
+    def depth(self) -> float:
+        """The least of all tops [m]."""
+        return min(one.top.depth for one in self.results)
 
     @property
     def knockdown(self) -> float:
@@ -210,7 +209,8 @@ def piece_loads(assessment: Assessment, cases: Sequence[LoadCase]) -> list[Piece
     found = []
     first = (row for result in standing[0].results for row in result.components)
     for number, row in enumerate((one for one in first if one.use != STAND_IN), 1):
-        rows = [(one.rows[row.label], one.code) for one in standing if row.label in one.rows]
+        every = ((one.rows.get(row.label), one.code) for one in standing)
+        rows = [(each, code) for each, code in every if isinstance(each, ComponentRow)]
         tension, case = max(((each.tension, code) for each, code in rows), key=lambda one: one[0])
         falls = None if launch is None else _at(launch.greatest_tension, row.index)
         rises = None

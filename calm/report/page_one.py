@@ -51,7 +51,7 @@ MARKS = {
     State.NOT_JUDGED: "–", State.PASS: "✓",
 }  # fmt: skip
 """Signs of the states on paper."""
-_HALF = 0.5  # of the capacity: what is used more is shown on page one
+_HALF = 0.4999  # of the capacity: what is used more is shown on page one
 _LONGEST = 30  # letters of a name in a table of page one
 
 TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
@@ -92,10 +92,8 @@ class SignedMooring:
     @property
     def verdict(self) -> str:
         """The verdict in the head of every page."""
-        said = self.assessment.verdict.words
-        return (
-            f"DRAFT, {said}" if draft(self.assessment) else verdict_words(self.assessment.verdict)
-        )
+        said = self.assessment.verdict
+        return f"DRAFT, {said.words}" if draft(self.assessment) else verdict_words(said)
 
     def running(self) -> Running:
         """What stands at the head and the foot of every page."""
@@ -177,7 +175,7 @@ def _whole(name: str) -> Quantity:
 def _figures() -> tuple[_Figure, ...]:
     depth, metres = QUANTITIES["depth"].format, _whole("depth_rating").format
     return (
-        _Figure("Top depth\nm", lambda one: one.top and one.top.top.depth, metres, short="top\nm"),
+        _Figure("Top depth\nm", lambda one: one.depth, metres, short="top\nm"),
         _Figure("Knock-\ndown m", lambda one: one.knockdown, depth, short="knock-\ndown m"),
         _Figure("Offset\nm", lambda one: one.offset, metres, short="offset\nm"),
         _Figure(
@@ -261,11 +259,8 @@ def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
 def governing_table(signed: SignedMooring) -> Table:
     """The checks that use most of what is there, with bars."""
     rows = governing_rows(signed.assessment.every_finding())
-    over = sum((one.utilisation or 0.0) > 1.0 for one in rows)
-    kept = rows[
-        : max(over, min(MOST_CHECKS, sum((one.utilisation or 0.0) >= _HALF for one in rows)))
-    ]
-    kept = kept or rows[:3]
+    over, half = (sum((one.utilisation or 0.0) > share for one in rows) for share in (1.0, _HALF))
+    kept = rows[: max(over, min(MOST_CHECKS, half))] or rows[:3]
     rest = rows[len(kept) :]
     note = "✓ passes  ≈ on an estimate  ▲ warning  ○ accepted  ? not known  ✗ fails.  "
     note += "Cases: L launch, R rise, B break."

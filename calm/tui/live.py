@@ -279,7 +279,9 @@ def rows_of(
                 part.label,
                 length,
                 figures,
-                use=max((use for each in own if (use := each.utilisation) is not None), default=None),
+                use=max(
+                    (use for each in own if (use := each.utilisation) is not None), default=None
+                ),
                 state=gravest.state if gravest else None,
                 lacks_strength=any(map(_lacks_strength, own)),
             )
