@@ -107,6 +107,7 @@ def assessment_of(
     """
     if not stands[0].leg.of_several:
         return assess.assessment_of(name, stands, day)
+    stands = assess.with_cases(stands)
     own: dict[str, MooringInEnvironment] = {}
     for stand in stands:
         if stand.result is not None:
@@ -132,15 +133,16 @@ def assessment_of(
         once.append((planned_depth, planned_depth.judge(alone), first))
     waters = {stand.leg.file.environment.name: stand.leg for stand in stands}
     findings = list(assess.findings_of_currents(list(waters.values()), name, acceptance))
+    findings += assess.findings_of_drag(found, name, acceptance)
     for rule, verdicts, environment in once:
         findings += acceptance.findings(rule, verdicts, name, environment)
+    findings = assess.cased(findings, stands)
     lacking = [one for stand in stands for one in stand.lacking]
     findings = with_missing((*lacking, *findings), acceptance.parts, name, first)
     fast = (float(np.hypot(each.water.u, each.water.v).max()) for each in waters.values())
     if found and max(fast) < situations.LEAST_CURRENT:
-        findings.insert(
-            0, situations.equilibrium.find(situations.STILL_ONLY, name, first, AS_GIVEN)
-        )
+        still = situations.equilibrium.find(situations.STILL_ONLY, name, first)
+        findings.insert(0, replace(still, case=situations.case_of(1, AS_GIVEN)))
     surface = bool(whole.for_surface)
     accepted = [*(one for stand in stands for one in stand.accepted), *findings]
     return Assessment(

@@ -257,6 +257,7 @@ def anchor_weight(leg: Leg) -> Iterator[Criterion]:
         source=cited(leg.file, "anchor_factor", "anchor_friction"),
         lacks="weight",
         stated=lambda required, result: (result.anchor.weight, required),
+        stated_least=True,
     )
 
 

@@ -20,6 +20,7 @@ class RuleText:
     source : of the rule and its limit as it is by default
     unseen : why no profile of a batch can be judged by it, where none can
     figures : of a component, without which the rule does not know
+    has_ratio : whether its values and limits are demand and capacity
     """
 
     title: str
@@ -29,6 +30,7 @@ class RuleText:
     source: str
     unseen: str = ""
     figures: tuple[str, ...] = ()
+    has_ratio: bool = True
 
 
 _WAVES = "waves are judged of an environment, by `calm check`"
@@ -47,6 +49,13 @@ RULES = {
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 of its speed, 0.2 "
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
+    "drag-coefficient": RuleText("Drag coefficient", "",
+        "spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond the curve of "
+        "`drag: reynolds`",
+        "a warning if the curve of a smooth shape makes the knockdown, or the offset at the "
+        "surface, greater by 5 %; else not judged, with the effect",
+        "Constant coefficients hold up to 2e5; beyond it, the drag of smooth shapes falls",
+        "the profiles of a record are solved with one law of drag"),
     "missing": RuleText("Missing figures", "",
         "figures that a component does not give and rules need: one finding for each component id "
         "and figure, with these rules and the pieces that they cannot judge",
@@ -68,7 +77,7 @@ RULES = {
         figures=("working_load", "opening_load")),
     "clamp-grip": RuleText("Grip of the clamps", "tension",
         "weight in water and drag of what is clamped, in the current, the fall and the rise",
-        "its `grip`, else its `breaking_load`; reported where neither is given",
+        "its `grip`, else its `breaking_load`; not judged where neither is given",
         "The maker's figures of the clamp",
         "the result does not hold the current at each clamp", figures=("grip",)),
     "profiler": RuleText("Profiler on its wire", "tension",
@@ -177,12 +186,12 @@ RULES = {
         "the result does not hold how the float lies in the water"),
     "watch-circle": RuleText("Watch circle", "offset",
         "√(L² − h²): the line as stretched, the water above the anchor's top",
-        "`maximum_excursion`; reported where that is not given",
+        "`maximum_excursion`; not judged where that is not given",
         "Worst case √(L² - h²), h above the anchor, against the design's own `maximum_excursion`",
         "the result does not hold the stretched length of the line"),
     "scope": RuleText("Scope", "scope",
         "cut length over depth",
-        "none: it is reported",
+        "none: it is reported, not judged",
         "Reported, not judged",
         "it is reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
@@ -228,7 +237,7 @@ RULES = {
         "0.2 V apart in sea water: a warning",
         "Galvanic series in sea water (Professional Boatbuilder 100, 2006); 0.15 to 0.2 V in harsh "
         "surroundings (Pantaenius)",
-        _ONCE),
+        _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "tension",
         "net buoyancy of the part that still holds the release after the worst break that is "
         "judged (below)",
@@ -265,3 +274,6 @@ RULES = {
 
 ACCEPTABLE = tuple(name for name in RULES if name != "equilibrium")
 """The rules of `checks: accept:`; of a mooring that does not stand nothing is known to accept."""
+
+LOADED = ("strength", "release-load", "clamp-grip", "wave-strength", "launch-strength", "missing")
+"""The rules of which an accept may give the greatest tension that it accepts."""

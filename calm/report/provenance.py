@@ -68,6 +68,11 @@ def source_text(file: MooringFile) -> str | None:
         return None
 
 
+def file_name(file: MooringFile) -> str:
+    """The name of the mooring file without its folder."""
+    return Path(file.path).name
+
+
 def input_hash(files: Sequence[MooringFile]) -> str:
     """SHA-256 of the inputs, in hexadecimal digits, as read in each of the environments.
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from calm.report.check_report import CHECKS_HEADER, INVENTORY_HEADER, checks_csv, inventory_csv
+from calm.report.check_files import CHECKS_HEADER, INVENTORY_HEADER, checks_csv, inventory_csv
 from tests.judged import FORMULA, LINES, LONG, RIGHT_TO_LEFT, SCRIPT, judged, judged_hostile
 
 

@@ -9,7 +9,7 @@ from calm.report.check_tables import counted_states, verdict_of
 
 def _finding(component: str, place: Place, state: State = State.FAIL, **others: str) -> Finding:
     return Finding(
-        component=component, place=place, state=state, value=983.2, limit=400.0, margin=-583.2,
+        component=component, place=place, state=state, value=983.2, limit=400.0, sense="<=",
         message="", **({"mooring": "m", "environment": "own", "rule": "depth-rating"} | others),
     )  # fmt: skip
 

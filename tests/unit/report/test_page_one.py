@@ -10,7 +10,9 @@ import calm
 import calm.report.html
 from calm.checks.finding import State
 from calm.report.check_facts import facts_of
-from calm.report.check_report import check_document, check_part, check_report, mooring_section
+from calm.report.check_files import check_document
+from calm.report.check_report import check_report, mooring_section
+from calm.report.check_summary import check_part
 from calm.report.check_tables import named
 from calm.report.folder import printed
 from calm.units import KILOGRAM_FORCE, KNOT
