@@ -16,8 +16,7 @@ Back-up buoyancy is what brings up the release when the line breaks above it.
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from itertools import islice
-from math import ceil, isnan, nan
+from math import isnan, nan
 from typing import Any
 
 import numpy as np
@@ -32,11 +31,8 @@ from calm.physics.line import Floats, Line, Water
 from calm.physics.materials import materials_in
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.track import head_count
-from calm.solve import FreeMotion, Settings, part_of, solve_rise
+from calm.solve import FreeMotion, Settings, part_of, plumb_speed, solve_rise
 from calm.solve.solution import standing_lift
-
-MOST_SOLVED = 48
-"""Buoyant pieces whose rise is solved one by one; of more, some rise as the one before them."""
 
 
 @dataclass(frozen=True)
@@ -107,13 +103,12 @@ class Recovery:
         ]
 
 
-def recovery_of(leg: Leg, result: LegResult, *, first_only: bool = False) -> Recovery:
+def recovery_of(leg: Leg, result: LegResult) -> Recovery:
     """The recovery of a mooring from where it stands.
 
     Parameters
     ----------
     result : of the mooring; tells where it stands and how long its pieces are
-    first_only : follow the first float alone: one solve in place of one for each
 
     Raises
     ------
@@ -136,8 +131,7 @@ def recovery_of(leg: Leg, result: LegResult, *, first_only: bool = False) -> Rec
     if not speed > 0.0:
         return at_rest
     length = result.components.length[: released + 1]
-    risen = _risers(line, water.still(), length, lifts, top, speed, leg.settings)
-    risers = dict(islice(risen, 1 if first_only else None))
+    risers = dict(_risers(line, water, length, lifts, top, speed))
     arrival = none.copy()
     head = head_count(line)
     for piece, time in risers.items():
@@ -179,32 +173,24 @@ def _rise(line: Line, water: Water, top: float, settings: Settings) -> tuple[Fre
 
 
 def _risers(
-    line: Line,
-    water: Water,
-    length: Floats,
-    lifts: Floats,
-    top: float,
-    speed: float,
-    settings: Settings,
+    line: Line, water: Water, length: Floats, lifts: Floats, top: float, speed: float
 ) -> Iterator[tuple[int, float]]:
     """The pieces that come up by themselves, and when [s].
 
     They have stretched lengths [m] and net forces [N], (n,); the line's upper end stands at `top`
-    [m] and has a speed at first [m/s]. The water is without current.
+    [m] and has a speed at first [m/s]. What is below a float that is up rises plumb, as in still
+    water.
     """
     time, up, count = 0.0, 0, len(length)
-    rising = np.flatnonzero(lifts > 0.0).tolist()
-    apart = ceil(len(rising) / MOST_SOLVED)
-    for number, piece in enumerate(rising):
+    for piece in np.flatnonzero(lifts > 0.0).tolist():
         # a rope is up when its lower end is, a rigid piece when its upper end is
         way = float(length[up : piece + bool(line.flexible[piece])].sum())
         if up == 0:
             way = top if piece < head_count(line) else top + way
         elif not lifts[up:].sum() > 0.0:
             return
-        elif way > 0.0 and number % apart == 0:
-            rest = solve_rise(part_of(line, up, count), water, 0.0, settings)
-            speed = float(rest.velocity[2])
+        elif way > 0.0:
+            speed = plumb_speed(part_of(line, up, count), water, 0.0)
             if not speed > 0.0:
                 return
         time += way / speed

@@ -66,7 +66,7 @@ def line_facts(result: Result) -> tuple[str, ...]:
 
 def _rise(result: LegResult) -> Iterator[str]:
     with suppress(NoEquilibrium):
-        rise = recovery_of(result.leg, result, first_only=True)
+        rise = recovery_of(result.leg, result)
         if rise.time_to_surface is None:
             yield "Once released, it does not rise by itself"
         elif rise.time_to_surface > 0.0:

@@ -7,8 +7,9 @@ from math import copysign, sqrt
 
 import numpy as np
 
-from calm.physics.line import Floats, MarchError
+from calm.physics.line import Floats, Line, MarchError, Water
 from calm.physics.march import NO_CUTS, Cuts
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve.free_march import Rising
 from calm.solve.least_change import root_near
 from calm.solve.solution import Status
@@ -64,38 +65,69 @@ def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
     return replace(rising, water=replace(water, u=u, v=v))
 
 
-def _plumb(rising: Rising, angle_step: float) -> FreePlace:
-    """The motion of the line if it were plumb, drifting with the mean current.
+def plumb_speed(line: Line, water: Water, top: float) -> float:
+    """Terminal speed of a line that hangs plumb in still water [m/s], + up.
 
-    The drag goes with the square of the speed or nearly so: secants in that find it at once. Where
-    smooth pieces in the drag crisis allow several speeds, it is one of them.
+    Weight, buoyancy and drag cancel in sum, whether the parts pull at one another, push, or do
+    neither, as along a bare buoyant rope. The drag goes with the square of the speed or nearly so:
+    secants in that find it at once. Where smooth pieces in the drag crisis allow several speeds, it
+    is one of them.
+
+    Parameters
+    ----------
+    line, water : see `calm.physics.line`; the current and the stretch are left out
+    top : depth of the line's upper end [m]
+
+    Raises
+    ------
+    NoEquilibrium
+        ``no-equilibrium`` where nothing limits the speed.
     """
-    none = np.zeros_like(rising.water.u)
-    upright = replace(rising, water=replace(rising.water, u=none, v=none))
-    depth = rising.guessed_depth
-
-    def meeting(squared: float) -> tuple[FreePlace, float]:
-        """Return where the line is at the signed square of a speed, and what lifts it there [N]."""
-        velocity = np.array([0.0, 0.0, copysign(sqrt(abs(squared)), squared)])
-        met = upright.meet(upright.flow(velocity), depth, COARSE * angle_step)
-        return FreePlace(velocity, depth + met.gap), float(met.force[2])
+    whole = np.where(line.flexible, line.length, 1.0)
+    middle = top + np.cumsum(line.length) - 0.5 * line.length
+    density, on = water.density_at(middle), line.clamp_piece
+    lift = float(line.net_force((density - REFERENCE_DENSITY) * water.gravity).sum())
+    across = np.concatenate([np.where(line.directional, 0.0, line.normal_drag), line.clamp_drag])
+    along = np.append(np.where(line.directional, line.tangential_drag, 0.0), 0.0 * line.clamp_drag)
+    upward = np.append(line.lift, line.clamp_lift)
+    share = np.append(whole * density, density[on]) / REFERENCE_DENSITY
+    viscosity = water.viscosity_at(middle)
+    curves = (line.drag_curve or (None,) * len(whole)) + line.clamp_drag_curve
+    viscosity = np.append(viscosity, viscosity[on])
+    smooth = [
+        (place, curve, curve.diameter / viscosity[place])
+        for place, curve in enumerate(curves)
+        if curve is not None
+    ]
 
     def lifted(_: None, squared: float) -> float:
-        return meeting(squared)[1]
+        """What lifts the line at the signed square of a speed [N]."""
+        drag = across.copy()
+        for place, curve, reynolds in smooth:
+            drag[place] *= curve.factor(reynolds * sqrt(abs(squared)))
+        return lift + float(share @ (upward * abs(squared) - (drag + along) * squared))
 
-    resting = lifted(None, 0.0)
-    slope = lifted(None, copysign(1.0, resting)) - resting
+    slope = lifted(None, copysign(1.0, lift)) - lift
     limit = FASTEST**2
     found, squared, _, _ = root_near(
-        lifted, None, 0.0, -abs(slope), -limit, limit, NEAR * abs(resting), 1e-9
+        lifted, None, 0.0, -abs(slope), -limit, limit, CLOSE * abs(lift), 1e-12
     )
     if not found:
         raise Status.NO_EQUILIBRIUM.because(
             "Nothing limits the rise speed of the line: none of its pieces has any drag.",
             advice="Set the drag of its pieces.",
         )
-    place, _ = meeting(squared)
-    return replace(place, velocity=place.velocity + _mean_current(rising, place, angle_step))
+    return copysign(sqrt(abs(squared)), squared)
+
+
+def _plumb(rising: Rising, angle_step: float) -> FreePlace:
+    """The motion of the line if it were plumb, drifting with the mean current."""
+    still, depth = rising.water.still(), rising.guessed_depth
+    velocity = np.array([0.0, 0.0, plumb_speed(rising.line, still, rising.top)])
+    upright = replace(rising, water=still)
+    met = upright.meet(upright.flow(velocity), depth, COARSE * angle_step)
+    place = FreePlace(velocity, depth + met.gap)
+    return replace(place, velocity=velocity + _mean_current(rising, place, angle_step))
 
 
 def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats:
@@ -115,13 +147,21 @@ def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats
     return mean * [1.0, 1.0, 0.0]
 
 
+_FOLLOWED = 8
+"""Times at most that the depth of a plumb line's lower end follows; two or three are enough."""
+
+
 def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
     """The motion near a place, on the segments that the march chooses there; None if there is none.
 
     With its free choice of segments the march is not quite continuous, so it is closed on given
     ones: first on coarse ones, then on those that it chooses at that answer.
+
+    Along a plumb line the forces alone are closed, and the depth of the lower end follows: where
+    the line doubles back within a cable, that depth is not continuous.
     """
-    unknown = np.array([not rising.plumb, not rising.plumb, True, True])
+    sheared = not rising.plumb
+    unknown = np.array([sheared, sheared, True, sheared])
     speed, span = max(float(np.linalg.norm(place.velocity)), SLOWEST), rising.water.depth
     units = np.array([speed, speed, speed, span])[unknown]
     values = np.append(place.velocity, place.depth)
@@ -143,10 +183,17 @@ def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePl
             cuts = rising.meet(rising.flow(here.velocity), here.depth, step).cuts
         except MarchError:
             return None
-        root = system_root(partial(left, step, cuts), x, small, slopes)
-        if root is None:
-            return None
-        x, slopes = root
+        for _ in range(1 if sheared else _FOLLOWED):
+            root = system_root(partial(left, step, cuts), x, small, slopes)
+            if root is None:
+                return None
+            x, slopes = root
+            here = at(x)
+            if not sheared:
+                gap = rising.meet(rising.flow(here.velocity), here.depth, step, cuts).gap
+                values[3] += gap
+                if abs(gap) <= CLOSE * span:
+                    break
     return at(x), cuts
 
 
