@@ -200,21 +200,33 @@ def _span(clamp: Clamp, middle: float) -> tuple[float, float, Clamp]:
 
 @rule("metals", once=True)
 def metals(handling: Handling) -> Iterator[Verdict]:
-    """Metals far apart in the galvanic series that touch, wherever both materials are known."""
+    """Metals far apart in the galvanic series that touch, wherever both materials are known.
+
+    Pieces and clamps that are `insulated` touch nothing. The jaws of clamps for instruments are of
+    plastic, so a clamp touches its line only where its component says `insulated: false`.
+    """
     warned: set[str] = set()
     for base, noble, volts in unlike_metals(handling.leg.file.pieces):
-        if base.label not in warned:
+        if base.label not in warned and not (_is_insulated(base) or _is_insulated(noble)):
             warned.add(base.label)
             message = (
                 f"{base.label} ({base.component.material}) touches {noble.label} "
                 f"({noble.component.material}), {volts:.2f} V nobler in sea water, and corrodes."
             )
-            remedy = "Insulate them from each other, or give an anode."
+            remedy = "Insulate them from each other and set `insulated: true`, or fit an anode."
             yield at_most(base, volts, GREATEST_DIFFERENCE, message, remedy, State.WARN)
 
 
+def _is_insulated(part: Piece | Clamp) -> bool:
+    insulated = part.component.insulated
+    return isinstance(part, Clamp) if insulated is None else insulated
+
+
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
-    """Return what touches far apart in the galvanic series: base, noble, and how far [V]."""
+    """Return neighbours far apart in the galvanic series: base, noble, and how far [V].
+
+    Those of them that are `insulated` are among them: what insulates them is to be fitted.
+    """
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
         said = _words(piece.use, piece.component.name, piece.component.material)

@@ -28,7 +28,9 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     """Net buoyancy of what holds the release after the worst break, or the worst loss of a float.
 
     Breaks are those above the back-up floats; lost is any one buoyant element. It should be a tenth
-    of the weight it lifts, and 250 N.
+    of the weight it lifts, and raise it at `minimum_rise_speed`. A compact line below a single
+    float has no back-up. A surface mooring without floats below its buoy has none either, and is
+    hauled in by it.
     """
     if handling.leg.file.release is None:
         if reaches_the_surface(handling.leg):
@@ -55,7 +57,12 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     else:
         part = handling.leg.file.pieces[worst.break_after]
         after = f"After a break below {worst.label}"
-    alone = not breaks and len(handling.losses) == 1
+    if not breaks and len(handling.losses) == 1:
+        message = f"{handling.losses[0].label} alone brings up the line: it has no back-up."
+        remedy = "Divide the buoyancy among several floats if it has to come up without one."
+        yield verdict_on(handling.losses[0], State.NOT_JUDGED, message, remedy)
+        return
+    hauled_in = reaches_the_surface(handling.leg) and len(handling.losses) == 1
     yield at_least(
         part,
         worst.margin,
@@ -63,8 +70,8 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         f"{after} the part that holds the release has a buoyancy of "
         f"{say('tension', worst.margin)}; {say('tension', worst.required)} would raise it.",
         f"Add {say('tension', worst.required - worst.margin)} of buoyancy above the release.",
-        State.WARN if alone else State.FAIL,
-        source=cited(handling.leg.file, "backup_margin"),
+        State.WARN if hauled_in else State.FAIL,
+        source=cited(handling.leg.file, "backup_margin", "minimum_rise_speed"),
     )
 
 

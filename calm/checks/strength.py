@@ -12,6 +12,7 @@ from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, pieces
 from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
 from calm.checks.posture import reaches_the_surface
+from calm.checks.recovery import SHORT_LEAD
 from calm.files import Cable, Component, Flexible, MooringFile, Piece, SafetyFactors
 from calm.files.mooring_file import legs_of
 from calm.quantities import say
@@ -210,10 +211,13 @@ def slack(leg: Leg) -> Iterator[Criterion]:
 
     A line that falls slack wears, kinks and snatches. Mooring groups ask for some 500 to 1000 N
     above the release at slack water; no rule is published, so 500 N of wire and 300 N of rope are
-    the defaults. A piece with ``slack: allowed`` is not judged, nor what lies on the seabed.
+    the defaults. A piece with ``slack: allowed`` is not judged, nor what lies on the seabed. A line
+    that is short down to its release (`SHORT_LEAD`) is as taut as its floats pull: it is judged by
+    a limit of the design alone.
     """
     file = leg.file
     lowest = len(file.pieces) - 1 if file.release is None else file.release
+    short = file.release is not None and float(leg.line.length[:lowest].sum()) <= SHORT_LEAD
     for part in pieces_of(leg)[:lowest]:
         if not isinstance(part.component, Cable) or part.component.slack == "allowed":
             continue
@@ -221,6 +225,8 @@ def slack(leg: Leg) -> Iterator[Criterion]:
         limit = getattr(file.checks.minimum_tension, name)
         words = partial(_words, part, limit, name)
         source = cited(file, f"minimum_tension.{name}")
+        if short and not source:
+            continue
         yield Criterion(part, "least_tension", limit, words, least=True, silent=True, source=source)
 
 

@@ -290,6 +290,11 @@ class Definition(Model):
     grip: PositiveForce = optional(
         "pull at which its clamp slips along the line, e.g. 1 kN", "1 kN"
     )
+    insulated: bool | None = optional(
+        "whether plastic or rubber keeps its metal from what it touches: jaws of its clamp, bushes "
+        "in its eyes; taken as true of what is clamped, and else as false",
+        True,
+    )
     max_tilt: Annotated[float | None, TILT] = optional(
         "tilt beyond which it is not to be trusted", "20 deg"
     )

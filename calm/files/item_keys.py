@@ -61,6 +61,10 @@ class LengthAt(definition.Model):
     )
 
 
+ASSEMBLY_FIGURES = (
+    "working_load", "breaking_load", "opening_load", "grip", "max_tilt", "depth_rating"
+)  # fmt: skip
+"""Figures of an assembly, which are those of its parts that lack them."""
 MOST_PIECES = 10_000
 """Pieces a line may have, after assemblies and counts are expanded."""
 

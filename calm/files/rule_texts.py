@@ -153,7 +153,8 @@ RULES = {
         "of a deadweight",
         figures=("weight", "density")),
     "slack": RuleText("Least tension", "tension",
-        "least tension of every wire and rope above the release that does not lie on the seabed",
+        "least tension of every wire and rope above the release that does not lie on the seabed, "
+        "of a line that is longer than 50 m above its release",
         "`minimum_tension`: 500 N wire, 300 N rope; `slack: allowed` on a piece exempts it",
         "Practice of mooring groups, 50 to 100 kgf above the release; no figure is published"),
     "wave-strength": RuleText("Strength in waves", "tension",
@@ -233,16 +234,18 @@ RULES = {
         "A default of this program: wire that twists under load kinks when the load goes",
         _ONCE),
     "metals": RuleText("Dissimilar metals", "potential",
-        "pieces that touch, clamps and what they are on, where both give a metal as `material`",
+        "pieces that touch, and what is clamped on with `insulated: false`, where both give a "
+        "metal as `material` and neither is `insulated`",
         "0.2 V apart in sea water: a warning",
         "Galvanic series in sea water (Professional Boatbuilder 100, 2006); 0.15 to 0.2 V in harsh "
         "surroundings (Pantaenius)",
         _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "tension",
-        "net buoyancy of the part that still holds the release after the worst break that is "
-        "judged (below)",
-        "`backup_margin`, 0.1 of the weight lifted, and 250 N; a warning of a compact line of one "
-        "float",
+        "net buoyancy of the part that still holds the release after the worst break or loss of a "
+        "float that is judged (below)",
+        "`backup_margin`, 0.1 of the weight lifted, or its drag at `minimum_rise_speed` if that is "
+        "more; not judged of a float that alone brings up a line, over 50 m at most above the "
+        "release; a warning of a surface mooring without floats below its buoy",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
         "floats",
         _ONCE),

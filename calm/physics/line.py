@@ -355,6 +355,16 @@ class Line(_Arrays):
         np.add.at(total, on, self.clamp_buoyancy + excess[on] * self.clamp_volume)
         return total
 
+    @property
+    def plumb_drag(self) -> Floats:
+        """(n,) drag of each whole piece with its clamps in a flow along the plumb line
+        [N/(m/s)²], in reference water and by constant coefficients.
+        """
+        along = np.where(self.directional, self.tangential_drag, self.normal_drag)
+        total: Floats = along * np.where(self.flexible, self.length, 1.0)
+        np.add.at(total, self.clamp_piece, self.clamp_drag)
+        return total
+
     def with_length(self, piece: int, length: float) -> Line:
         """Return a copy of the line with another unstretched length of one piece [m]."""
         lengths = self.length.copy()
