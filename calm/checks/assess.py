@@ -27,8 +27,10 @@ from calm.checks import (
     arrangement,
     catalogue_rules,
     handling,
+    joints,
     planned,
     posture,
+    serials_and_dates,
     situations,
     strength,
 )
@@ -42,6 +44,7 @@ from calm.checks.assessment import (
     estimated_result,
 )
 from calm.checks.criterion import limits_used
+from calm.checks.environments import environment
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, worst_of_each_rule
 from calm.checks.inventory import inventory_of
 from calm.checks.missing import is_lacking, missing, with_missing
@@ -138,10 +141,14 @@ def assessment_of(
 def findings_of_currents(
     legs: Sequence[Leg], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
-    """Return what the rule of the currents finds in the environments of a mooring of a name."""
-    for leg, verdict in currents.judge(legs):
-        environment = leg.file.environment.name or OWN
-        yield acceptance.of(currents.find(verdict, name, environment))
+    """What the rules of the environments find in those of a mooring of a name."""
+    for each in OF_ENVIRONMENTS:
+        for leg, verdict in each.judge(legs):
+            yield acceptance.of(each.find(verdict, name, leg.file.environment.name or OWN))
+
+
+OF_ENVIRONMENTS = (currents, environment)
+"""What is judged of all environments of a mooring together."""
 
 
 def moving(legs: Iterable[Leg]) -> bool:
@@ -227,7 +234,17 @@ def _handled(stand: MooringInEnvironment) -> Handling:
     return Handling(leg, failure, failure, breaks_of(leg), losses_of(leg))
 
 
-_MODULES = (arrangement, catalogue_rules, handling, planned, posture, situations, strength)
+_MODULES = (
+    arrangement,
+    catalogue_rules,
+    handling,
+    joints,
+    planned,
+    posture,
+    serials_and_dates,
+    situations,
+    strength,
+)
 
 
 _ORDER = list(TEXTS)
@@ -251,7 +268,10 @@ STANDING = _judging(once=False)
 ONCE = _judging(once=True)
 """What is judged once of a mooring: its breaks, its launch and its recovery."""
 
-RULES = {each.name: each for each in (equilibrium, currents, missing, *STANDING, *IN_WAVES, *ONCE)}
+RULES = {
+    each.name: each
+    for each in (equilibrium, *OF_ENVIRONMENTS, missing, *STANDING, *IN_WAVES, *ONCE)
+}
 """Every rule by its name."""
 
 

@@ -179,9 +179,10 @@ def impossible(component: Component) -> Iterator[str]:
 def _of_a_load(component: Component) -> Iterator[str]:
     """Yield a load that no piece of its kind, size and mass has."""
     most, size = inf, ""
-    rigid = not isinstance(component, Flexible) and not materials.fibre_of(component.material)
-    if rigid and component.mass is not None and component.length:
-        most, size = STRONGEST_METAL * component.mass / component.length, "mass and length"
+    if not isinstance(component, Flexible) and not materials.fibre_of(component.material):
+        mass, length = component.mass, component.length
+        if mass is not None and length:
+            most, size = STRONGEST_METAL * mass / length, "mass and length"
     yield from load_out_of_bounds(component, most, size)
 
 
