@@ -27,8 +27,10 @@ from calm.checks import (
     arrangement,
     catalogue_rules,
     handling,
+    joints,
     planned,
     posture,
+    serials_and_dates,
     situations,
     strength,
 )
@@ -43,6 +45,7 @@ from calm.checks.assessment import (
 )
 from calm.checks.criterion import limits_used
 from calm.checks.drag_range import drag_coefficient
+from calm.checks.environments import environment
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, governing
 from calm.checks.inventory import inventory_of
 from calm.checks.missing import is_lacking, missing, with_missing
@@ -207,10 +210,14 @@ def _numbers(stands: Sequence[MooringInEnvironment]) -> dict[str, int]:
 def findings_of_currents(
     legs: Sequence[Leg], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
-    """Return what the rule of the currents finds in the environments of a mooring of a name."""
-    for leg, verdict in currents.judge(legs):
-        environment = leg.file.environment.name or OWN
-        yield acceptance.of(currents.find(verdict, name, environment))
+    """What the rules of the environments find in those of a mooring of a name."""
+    for each in OF_ENVIRONMENTS:
+        for leg, verdict in each.judge(legs):
+            yield acceptance.of(each.find(verdict, name, leg.file.environment.name or OWN))
+
+
+OF_ENVIRONMENTS = (currents, environment)
+"""What is judged of all environments of a mooring together."""
 
 
 def findings_of_drag(
@@ -305,7 +312,17 @@ def _handled(stand: MooringInEnvironment) -> Handling:
     return Handling(leg, failure, failure, breaks_of(leg), losses_of(leg))
 
 
-_MODULES = (arrangement, catalogue_rules, handling, planned, posture, situations, strength)
+_MODULES = (
+    arrangement,
+    catalogue_rules,
+    handling,
+    joints,
+    planned,
+    posture,
+    serials_and_dates,
+    situations,
+    strength,
+)
 
 
 _ORDER = list(TEXTS)
@@ -331,7 +348,7 @@ ONCE = _judging(once=True)
 
 _WAVE_RULES = {each.name for each in IN_WAVES}
 
-_WHOLE = equilibrium, currents, drag_coefficient, missing
+_WHOLE = equilibrium, *OF_ENVIRONMENTS, drag_coefficient, missing
 
 RULES = {each.name: each for each in (*_WHOLE, *STANDING, *IN_WAVES, *ONCE)}
 """Every rule by its name."""

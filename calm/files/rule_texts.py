@@ -56,6 +56,15 @@ RULES = {
         "surface, greater by 5 %; else not judged, with the effect",
         "Constant coefficients hold up to 2e5; beyond it, the drag of smooth shapes falls",
         "the profiles of a record are solved with one law of drag"),
+    "environment": RuleText("Environment", "",
+        "what is possible in an environment, and mostly is a mistake: directions that are radians, "
+        "a level opposite to both its neighbours, a current that grows down to the seabed or is "
+        "stronger than any in deep water, the density of no sea, tides of more than 20 m, wind of "
+        "more than 75 m/s; levels of a storm weaker than half of the ordinary current; no `wind` "
+        "on a float at the surface that has a `wind_area`",
+        "a warning",
+        "Defaults of this program: what the sea has, and people type",
+        "environments are judged beside each other, by `calm check`"),
     "missing": RuleText("Missing figures", "",
         "figures that a component does not give and rules need: one finding for each component id "
         "and figure, with these rules and the pieces that they cannot judge",
@@ -203,10 +212,11 @@ RULES = {
         _ONCE),
     "figures": RuleText("Figures of components", "",
         "figures of pieces and clamps that are impossible for their size and material: lift, "
-        "mass, stiffness, strength, depth rating, coefficients of drag",
-        "a failure; of a tilt warned of after the limit a warning; unknown where the line gives a "
-        "figure that flatters more than its component's, without a `source`, and of a `material` "
-        "that names none of those known",
+        "mass, density, stiffness, strength, depth rating, coefficients of drag",
+        "a failure; a warning of a tilt warned of after the limit, of an instrument that floats "
+        "and of a `wind_area` out of proportion; unknown where the line gives a figure that "
+        "flatters more than its component's, without a `source`, and of a `material` that names "
+        "none of those known, or another than the `name`",
         "The rules of `calm catalog check`",
         _ONCE),
     "release-present": RuleText("Release", "",
@@ -222,10 +232,24 @@ RULES = {
         "a warning where none has",
         "A default of this program: what joins the pieces has weight, drag and a strength",
         _ONCE),
+    "joints": RuleText("Joints", "",
+        "whether a piece with `role: connector` joins every two unlike pieces, of wire, chain and "
+        "what is rigid; ropes are spliced, and a wire with a `termination` says how it ends",
+        "a warning, one for all joints of the line; not of a line without any hardware",
+        "A default of this program: a shackle that is not listed is not bought, nor judged",
+        _ONCE),
     "clamp-place": RuleText("Places of the clamps", "",
         "clamps on a cable or chain that overlap, or stick out over its end",
         "5 cm: a failure",
         "Two things are not in one place",
+        _ONCE),
+    "serials-and-dates": RuleText("Serial numbers and dates", "",
+        "labels of several rows, but for connectors; serial numbers of several items of one "
+        "component; codes of a release that is not in the line, or of two; batteries that end "
+        "before the deployment or the calibration, calibrations after the deployment; a document "
+        "that is not its latest revision, revisions out of order",
+        "a warning",
+        "A default of this program: what sheets and labels print must not contradict itself",
         _ONCE),
     "swivel": RuleText("Swivel", "",
         "steel wire that ends at a float with no chain or rope between",

@@ -102,7 +102,7 @@ def canonical(value: Any) -> str:
 _BESIDE = (
     "obstacles in the beams of a current profiler, such as its own line or float",
     "growth where no `fouling` is given", "the soil below the anchor", "trawls, ice and ships",
-    "terminations and splices", "batteries and memory",
+    "terminations and splices", "batteries and memory", "magnetic steel beside a compass",
 )  # fmt: skip
 
 UNSEEN = (
