@@ -44,10 +44,10 @@ from calm.solve.solution import (
     Solution,
     Status,
     refuse_unsupported,
-    runs_compiled,
     standing_lift,
 )
 from calm.solve.starts import fill_starts
+from calm.solve.two_speeds import Solver, runs_compiled
 
 MOST_DEPTHS = 500
 """The longest line that is solved, in depths: segments are no longer than a hundredth of one."""
@@ -239,7 +239,7 @@ class Nearby:
         self.solution = solve_mooring(line, water, settings)
         self._water, self._settings = water, settings
         self._room = 2 * len(self.solution.cut) + 64
-        self._compiled = compiled = runs_compiled(settings, line)
+        self._compiled = compiled = runs_compiled(settings, line, Solver.NEARBY)
         problem = problem_of(line, water, settings, compiled=compiled, room=self._room)
         search = search_of(problem, compiled)
         closed: Closed = outcome(close_coarsely, compiled, search, self.solution.landed)

@@ -30,9 +30,8 @@ from calm.solve.solution import (
     Settings,
     Solution,
     Status,
-    expect_many,
-    runs_compiled,
 )
+from calm.solve.two_speeds import Solver, count_lines, runs_compiled
 
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
@@ -79,7 +78,7 @@ class NetSearch:
         self, legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
         room: int = ROOM, rough: bool = False,
     ) -> None:  # fmt: skip
-        self.compiled, self.settings = runs_compiled(settings), settings
+        self.compiled, self.settings = runs_compiled(settings, solver=Solver.LEGS), settings
         self.laid = [LaidLeg.of(leg, water, settings, rough) for leg in legs]
         self.nodes, self.room = nodes, room
         self.net = lay_net(self.laid, nodes, self.compiled, room)
@@ -227,7 +226,7 @@ def solve_net(
         None was found, or what was found does not pass the checks.
     """
     settings = settings or Settings()
-    expect_many(4.0 * len(legs))
+    count_lines(4.0 * len(legs), Solver.LEGS)
 
     def solved(net: NetSearch) -> NetSolution:
         found = net.solution(settled_from(net, near))

@@ -1,22 +1,14 @@
-"""The settings of a solve and what it returns: a solution, or the status of having none.
+"""The settings of a solve and what it returns: a solution, or the status of having none."""
 
-Where the settings leave open at which of its two speeds the solver runs, as it stands or compiled
-by numba, it is compiled once that pays: fetching it costs as much as `WARM` moorings, compiling it
-first as much as `COLD`. `CALM_COMPILED=never` and `always` settle what is left open.
-"""
-
-import os
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
-from importlib.util import find_spec
 from math import nan, radians
 from typing import NamedTuple
 
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import is_kept
 from calm.physics.hull import Riding
 from calm.physics.line import Floats, Integers, Line, Trace, Water
 from calm.physics.seawater import REFERENCE_DENSITY
@@ -35,7 +27,7 @@ class Settings:
     tolerance : allowed miss of the anchor, as a share of the water depth
     seabed_friction : of a line that lies on the seabed [-]
     compiled : whether the solver is compiled, or interpreted as it stands, which gives the same
-        digits; None leaves it to `runs_compiled`
+        digits; None leaves it to `calm.solve.two_speeds`
     """
 
     angle_step: float = radians(1.0)
@@ -250,49 +242,6 @@ class Status(Enum):
     # it folds in still water
     FOLDED,
 ) = range(16)  # fmt: skip
-
-
-WARM, COLD = 60, 1200
-"""Moorings to be solved for which it pays to fetch the compiled solver, and to compile it."""
-AS_MANY = 8
-"""Pieces and clamps of which a line's solve takes as long as one of an ordinary mooring."""
-
-
-class _Count:
-    """Count the lines that this process has solved or is to solve, and tell what pays for them."""
-
-    def __init__(self) -> None:
-        self.solves = 0.0
-        self.asked_at = 0.0
-        self.pays = False
-
-
-_count = _Count()
-
-
-def expect_many(solves: float) -> None:
-    """Notice that so many lines are going to be solved."""
-    _add(solves)
-    _count.pays = _count.pays or solves >= COLD
-
-
-def runs_compiled(settings: Settings, line: Line | None = None) -> bool:
-    """Return whether the solver is to be compiled for a line that is now solved."""
-    if settings.compiled is not None:
-        return settings.compiled
-    if line is not None:
-        _add(max((len(line.length) + len(line.clamp_piece)) / AS_MANY, 1.0))
-    wish = os.environ.get("CALM_COMPILED")
-    if wish == "never" or not (_count.pays or wish == "always"):
-        return False
-    return find_spec("numba") is not None
-
-
-def _add(solves: float) -> None:
-    _count.solves += solves
-    if not _count.pays and _count.solves >= max(WARM, 2.0 * _count.asked_at):
-        _count.asked_at = _count.solves
-        _count.pays = is_kept()
 
 
 def standing_lift(line: Line, water: Water) -> Floats:
