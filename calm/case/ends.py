@@ -9,6 +9,7 @@ from math import atan2, degrees, hypot, isnan, nan
 import numpy as np
 
 from calm.case.leg import Leg
+from calm.case.line_figures import LineFigures
 from calm.case.result_tables import (
     Accuracy,
     AnchorLoad,
@@ -56,14 +57,15 @@ def accuracy_of(leg: Leg, solution: Solution) -> Accuracy:
     )
 
 
-def top_of(components: Components, solution: Solution, knockdown: float | None) -> Top:
-    """Upper end of a leg; its knockdown [m] is None without a unique shape in still water."""
-    riding = solution.riding
+def top_of(solution: Solution, still: Solution | None) -> Top:
+    """Upper end of a leg; `still` is None without a unique shape in still water."""
+    riding, line = solution.riding, LineFigures(solution, still)
+    x, y, z = line.top[0]
     return Top(
-        depth=float(components.depth_top[0]),
-        x=float(components.x_top[0]),
-        y=float(components.y_top[0]),
-        knockdown=knockdown,
+        depth=-float(z),
+        x=float(x),
+        y=float(y),
+        knockdown=None if still is None else float(line.knockdown[0]),
         used_buoyancy=solution.buoyancy_used,
         reserve=solution.reserve,
         draft=None if riding is None or isnan(riding.draft) else riding.draft,

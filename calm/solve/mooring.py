@@ -87,11 +87,14 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     """
     settings = settings or Settings()
     refuse_endless(line, water)
-    refuse_unsupported(line, water, standing_lift(line, water))
+    lift = standing_lift(line, water)
+    refuse_unsupported(line, water, lift)
     compiled = runs_compiled(settings, line)
-    room = ROOM
+    room, track = ROOM, Track.of(line)
     while True:
-        problem = problem_of(line, water, settings, compiled=compiled, room=room)
+        problem = problem_of(
+            line, water, settings, compiled=compiled, room=room, track=track, lift=lift
+        )
         search = search_of(problem, compiled)
         referee = referee_of(line, water, 0.0, compiled)
         found = find_compiled(search, referee) if compiled else find_shape(search, referee)
