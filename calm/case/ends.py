@@ -9,7 +9,6 @@ from math import atan2, degrees, hypot, isnan, nan
 import numpy as np
 
 from calm.case.leg import Leg
-from calm.case.line_figures import LineFigures
 from calm.case.result_tables import (
     Accuracy,
     AnchorLoad,
@@ -59,13 +58,13 @@ def accuracy_of(leg: Leg, solution: Solution) -> Accuracy:
 
 def top_of(solution: Solution, still: Solution | None) -> Top:
     """Upper end of a leg; `still` is None without a unique shape in still water."""
-    riding, line = solution.riding, LineFigures(solution, still)
-    x, y, z = line.top[0]
+    riding, upper = solution.riding, -1 if solution.line.towed else 0
+    x, y, z = solution.position[upper]
     return Top(
         depth=-float(z),
         x=float(x),
         y=float(y),
-        knockdown=None if still is None else float(line.knockdown[0]),
+        knockdown=None if still is None else float(still.position[upper, 2] - z),
         used_buoyancy=solution.buoyancy_used,
         reserve=solution.reserve,
         draft=None if riding is None or isnan(riding.draft) else riding.draft,

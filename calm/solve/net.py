@@ -16,7 +16,7 @@ import numpy as np
 from calm.errors import NoEquilibrium
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import FAILURES, GOES_ON, NO_ROOM, Floats, Line, Trace, Water
-from calm.physics.profile import Profile
+from calm.physics.profile import profile_of
 from calm.solve import leg_closing, leg_numbers
 from calm.solve.finish import refuse_unbalanced
 from calm.solve.leg_closing import NetTask, copy_values, do_by_address, do_task
@@ -89,7 +89,7 @@ class NetSearch:
 
     def put_in(self, water: Water) -> None:
         """Replace the water by other water of the same depth and density."""
-        profile = Profile(water)
+        profile = profile_of(water)
         self.water, self.sea = water, profile.packed if self.compiled else profile.sea
 
     def begin(self, start: NetStart) -> Floats:

@@ -10,7 +10,7 @@ from calm.physics.compiled import record_type
 from calm.physics.hull import NEVER_AFLOAT, HullRow, SurfaceFloat
 from calm.physics.line import COLUMNS, Bed, Floats, Line, Water
 from calm.physics.passing import LEFT
-from calm.physics.profile import Interval, Profile, Sea
+from calm.physics.profile import Interval, Sea, profile_of
 from calm.physics.track import ROD, Course, Load, Track
 from calm.solve.solution import (
     SUPPORTED,
@@ -257,7 +257,7 @@ def problem_of(
     lift : the `standing_lift` of the line, if known
     """
     track = track or Track.of(line)
-    profile = Profile(water)
+    profile = profile_of(water)
     span = float(line.length.sum()) if line.towed else water.depth
     floating = None if line.towed else line.floating
     surfacing = []
