@@ -14,6 +14,7 @@ from calm.case.leg_result import LegResult
 from calm.case.profilers import ProfilerTravel
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down, table_columns
 from calm.case.strumming import StrummingBand
+from calm.case.warnings import warnings_of
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import safety_factor
@@ -70,7 +71,7 @@ def title_of(result: LegResult) -> str:
 def summary_of(result: LegResult) -> tuple[Prose, ...]:
     """The two ends of the line in words, the warnings below them."""
     ends = _tow_summary(result) if result.towed else _mooring_summary(result)
-    return (Prose((*ends, *_strumming(result))), *blocks.warned(result.warnings))
+    return (Prose((*ends, *_strumming(result))), *blocks.warned(warnings_of(result)))
 
 
 def quality_of(result: LegResult) -> Prose:
