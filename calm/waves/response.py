@@ -326,6 +326,10 @@ neighbours.
 """
 
 
+_ENTRIES = [(row, column) for row in range(3) for column in range(3)]
+"""Rows and columns of a block of the matrix."""
+
+
 def _undamped(line: LumpedLine) -> tuple[Floats, Floats]:
     """Banded matrices (3n-3, 16) of the springs and of the masses."""
     eye, t, s = np.eye(3), line.tangent, line.spring
@@ -366,7 +370,7 @@ def _solved(
         np.subtract(springs, rate**2 * masses, out=matrix.real)
         np.multiply(rate, damped, out=matrix.imag)
         if top is not None:
-            for row, column in np.ndindex(3, 3):
+            for row, column in _ENTRIES:
                 matrix[column, 2 * _BAND + row - column] += top[0][one, row, column]
         pushed = push[one, :-1].ravel()
         *_, found, singular = zgbsv(_BAND, _BAND, matrix.T, pushed, overwrite_ab=True)
@@ -382,7 +386,7 @@ def _times(matrices: Floats, vectors: Complexes) -> Complexes:
 def _banded(blocks: Floats, springs: Floats | None) -> Floats:
     """Columns of the banded matrix of (n, 3, 3) blocks, with springs between neighbours."""
     columns = np.zeros((len(blocks), 3, 3 * _BAND + 1))
-    for row, column in np.ndindex(3, 3):
+    for row, column in _ENTRIES:
         at = 2 * _BAND + row - column
         columns[:, column, at] = blocks[:, row, column]
         if springs is not None:
