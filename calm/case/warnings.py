@@ -43,11 +43,11 @@ def counted_working_load(component: Component) -> float | None:
     return component.working_load
 
 
-def warnings_of(result: LegResult, solution: Solution) -> tuple[str, ...]:
+def warnings_of(result: LegResult) -> tuple[str, ...]:
     """Return every warning of the result of a leg, the file's own notices first."""
     # a leg that is marched from its other end is no tow
     doubts = (*_OF_ANY, *(_OF_A_TOW if result.leg.towed else _OF_A_MOORING))
-    found = [warning for doubt in doubts for warning in doubt(result, solution)]
+    found = [warning for doubt in doubts for warning in doubt(result, result.solution)]
     return (*result.file.notices, *found)
 
 

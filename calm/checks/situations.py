@@ -34,8 +34,8 @@ from calm.solve import Status
 
 STILL, STILL_LOW = "still water", "still low water"
 HIGH, LOW = "high water", "low water"
-SOLVES = 6.0
-"""About how many equilibria one mooring in one environment takes."""
+SOLVES = 3.0
+"""About how many lines are solved for one mooring in one environment."""
 
 FOULED, STRUMMING, DEPLOYED = "fouling", "strumming", "as deployed"
 

@@ -57,7 +57,7 @@ def result_part(
     table = table_of_line(result)
     quality = quality_of(result.leg).lines if verbose else ()
     summary = Pairs((*summary_pairs(result.leg), *facts))
-    warnings = blocks.warned(result.leg.warnings)
+    warnings = blocks.warned(result.warnings)
     shown: tuple[blocks.Block, ...] = (summary, *warnings, Note((table.note, *map(str, quality))))
     return ReportPart(title_of(result.leg), (replace(table, note=""), *shown))
 
@@ -72,7 +72,7 @@ def title_of(result: LegResult) -> str:
 
 def summary_of(result: LegResult) -> tuple[Pairs | Prose, ...]:
     """The line and its ends in words, the warnings below them."""
-    return (Pairs(summary_pairs(result)), *blocks.warned(result.warnings))
+    return (Pairs(summary_pairs(result)), *blocks.warned(warnings_of(result)))
 
 
 def summary_pairs(result: LegResult) -> tuple[tuple[str, str], ...]:
