@@ -197,7 +197,7 @@ class NetProfiles:
         """The net in still water; None where it does not stand there."""
         settings = replace(self.net.settings, compiled=True)
         try:
-            return solve_together(self.net.legs, self.net.water.still(), settings)
+            return solve_together(self.net.legs, self.net.water.still(), settings, None)
         except NoEquilibrium:
             return None
 

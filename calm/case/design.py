@@ -37,7 +37,6 @@ from calm.case.result_tables import (
     documents,
 )
 from calm.case.strumming import Strumming, StrummingBand
-from calm.case.warnings import warnings_of
 from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 from calm.files import MooringFile, Piece
 from calm.files.environment import Environment
@@ -381,10 +380,10 @@ class Result:
     def warnings(self) -> tuple[str, ...]:
         """Warnings, those of the file first."""
         if not self.several:
-            return warnings_of(self.leg)
+            return self.leg.warnings
         return (
             *self.file.notices,
-            *(said for leg in self.legs for said in warnings_of(leg)),
+            *(said for leg in self.legs for said in leg.warnings),
             *(said for leg in self.legs if (said := _upside_down(leg))),
             *(
                 f"The anchors of legs {one.leg} and {other.leg} stand in one place, and each is "

@@ -22,6 +22,7 @@ from calm.case.result_tables import (
     TowPoint,
 )
 from calm.case.strumming import Strumming, StrummingBand, band_of, strumming_of
+from calm.case.warnings import warnings_of
 from calm.files import MooringFile
 from calm.files.pieces import clamps_down
 from calm.physics.line import Water
@@ -206,6 +207,11 @@ class LegResult:
         if self.other is None:
             return None
         return {"depth": self.other.depth} if self.leg.towed else self.other._asdict()
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """Warnings, those of the file first."""
+        return warnings_of(self)
 
     @cached_property
     def strumming_band(self) -> StrummingBand | None:

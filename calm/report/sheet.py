@@ -72,7 +72,7 @@ def title_of(result: LegResult) -> str:
 
 def summary_of(result: LegResult) -> tuple[Pairs | Prose, ...]:
     """The line and its ends in words, the warnings below them."""
-    return (Pairs(summary_pairs(result)), *blocks.warned(warnings_of(result)))
+    return (Pairs(summary_pairs(result)), *blocks.warned(result.warnings))
 
 
 def summary_pairs(result: LegResult) -> tuple[tuple[str, str], ...]:

@@ -16,24 +16,22 @@ from calm.solve.tow import Towing, solve_tow
 from calm.solve.two_speeds import Solver
 
 COMPILED = Settings(compiled=True)
-WATER = Water(100.0, [0.0], [0.2], [0.0], [0.0], [1025.0])
 
 
 def small_line(buoyancy: float) -> Line:
     """A float or a weight of some net buoyancy [N] above 50 m of cable."""
-    zero = np.zeros(2)
-    none = np.zeros(0)
+    zero, none = np.zeros(2), np.zeros(0)
     return Line(
-        length=[0.0, 50.0],
-        flexible=[False, True],
-        buoyancy=[buoyancy, -1.0],
+        length=np.array([0.0, 50.0]),
+        flexible=np.array([False, True]),
+        buoyancy=np.array([buoyancy, -1.0]),
         volume=zero,
-        normal_drag=[50.0, 5.0],
-        tangential_drag=[0.0, 0.1],
-        directional=[False, True],
+        normal_drag=np.array([50.0, 5.0]),
+        tangential_drag=np.array([0.0, 0.1]),
+        directional=np.array([False, True]),
         compliance=zero,
-        thinning=[0.0, 0.5],
-        clamp_piece=none,
+        thinning=np.array([0.0, 0.5]),
+        clamp_piece=np.zeros(0, np.int64),
         clamp_at=none,
         clamp_buoyancy=none,
         clamp_volume=none,
@@ -43,16 +41,18 @@ def small_line(buoyancy: float) -> Line:
 
 def compile_part(solver: Solver) -> None:
     """Compile a part of the solver into the cache."""
+    speed, rest, density = np.array([0.2]), np.zeros(1), np.array([1025.0])
+    water = Water(100.0, rest, speed, rest, rest, density)
     if solver is Solver.LEGS:
-        solve_tow(small_line(-500.0).reversed(), WATER, Towing(1.0, 0.0), COMPILED)
+        solve_tow(small_line(-500.0).reversed(), water, Towing(1.0, 0.0), COMPILED)
         return
     line = small_line(500.0)
     if solver is Solver.LINE:
-        solve_mooring(line, WATER, COMPILED)
-        solve_rise(line, WATER, 10.0, COMPILED)
+        solve_mooring(line, water, COMPILED)
+        solve_rise(line, water, 10.0, COMPILED)
     else:
-        near = Nearby(line, WATER, COMPILED)
-        near.solved(line, WATER)
+        near = Nearby(line, water, COMPILED)
+        near.solved(line, water)
 
 
 if __name__ == "__main__":
