@@ -40,6 +40,9 @@ _TWICE = re.compile(r"\b(double|dual|pair|twin|tandem|two|releases)\b")
 _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
 
 
+GRAPPLED = 100.0
+"""Depth of water down to which a line is dived or grappled for if its release fails [m]."""
+
 LEAST_BELOW_RELEASE = 1.0
 """How far above its anchor a release should stand [m]."""
 
@@ -82,7 +85,8 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         )
         doubts.append((piece, message, "Hang it higher, on a rope or chain."))
     said = _words(piece.use, piece.component.name, piece.label)
-    if sum(component.role == "release" for component in above) == 1 and not _TWICE.search(said):
+    alone = sum(component.role == "release" for component in above) == 1
+    if alone and leg.water.depth > GRAPPLED and not _TWICE.search(said):
         message = f"{piece.label} is the only release: if it fails, nothing else frees the line."
         doubts.append((piece, message, "Use two in parallel, and call them a `pair`."))
     for index, one in enumerate(pieces[:release]):
@@ -90,7 +94,8 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
             message = f"Nothing above release {one.label} floats: once released, nothing comes up."
             doubts.append((one, message, "Put it below what floats, or give it another role."))
     for one in below:
-        if net_buoyancy(one.component, leg.water.gravity) > 0.0:
+        floats = net_buoyancy(one.component, leg.water.gravity) > 0.0
+        if floats and not isinstance(one.component, Flexible):
             message = f"{one.label} floats, but below the release: it stays on the anchor."
             doubts.append((one, message, "Put it above the release, or use one that sinks."))
     for part, message, remedy in doubts:

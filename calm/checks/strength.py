@@ -171,10 +171,14 @@ def strength_steps(result: LegResult) -> Iterator[Verdict]:
 
     A line whose strength jumps carries weight for nothing, and parts at its weak link. Where there
     is none, the piece nearest to one is reported. Chain is left out of the comparison: it is
-    heavier than its load asks for, against wear.
+    heavier than its load asks for, against wear; and so is what has only the low bound of an
+    estimate, which says nothing of how strong it is beside others.
     """
     factors, surface = result.file.checks.safety_factor, reaches_the_surface(result.leg)
-    loads = [allowable_load(piece.component, factors, surface) for piece in result.file.pieces[:-1]]
+    loads = [
+        None if _is_estimated(one.component) else allowable_load(one.component, factors, surface)
+        for one in result.file.pieces[:-1]
+    ]
     steps = sorted(_steps(result, loads), key=lambda step: (step[0], step[1].label))
     weak = [step for step in steps if step[0] < WEAK_LINK]
     for _, piece, load, cables in weak or steps[:1]:
@@ -187,6 +191,15 @@ def strength_steps(result: LegResult) -> Iterator[Verdict]:
             "Match its strength to that of the cables next to it.",
             State.WARN,
         )
+
+
+def _is_estimated(component: Component) -> bool:
+    """Whether a load of a component, as it is judged, is the low bound of an estimate."""
+    return any(
+        getattr(component, one.quantity) in (one.low, one.low_in_waves)
+        for one in component.estimate or ()
+        if one.quantity in ("working_load", "breaking_load")
+    )
 
 
 def _steps(

@@ -98,7 +98,7 @@ RULES = {
         "the profiles of a record are solved with it at its upper stop", figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "tension",
         "every piece, compared with the cables above and below it",
-        "half of their strength: a warning",
+        "half of their strength, as far as sources give both: a warning",
         "A default of this program: half the strength of the cables on both its sides",
         "the strengths of pieces side by side do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",
@@ -108,7 +108,7 @@ RULES = {
         "sediment trap 10°",
         figures=("max_tilt",)),
     "depth-rating": RuleText("Depth rating", "depth",
-        "depth in the current",
+        "depth in the current; of a surface float only where it gives its rating",
         "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
         "The maker's rating, less a margin for a stronger current than expected",
         figures=("depth_rating",)),
@@ -132,7 +132,8 @@ RULES = {
         "A default of this program: a sounding errs by as much; ropes are measured under "
         "a small load"),
     "fish-bite": RuleText("Fish bite", "depth",
-        "least depth of every synthetic rope, in more than 200 m of water",
+        "least depth of every synthetic rope, in more than 200 m of water and less than 60° from "
+        "the equator",
         "`fishbite_depth`, 1000 m: a warning",
         "Berteaux, Prindle & May, OCEANS '87: far from the shores fish bite from the surface to "
         "1000 m and more",
@@ -180,8 +181,8 @@ RULES = {
         _WAVES),
     "fatigue": RuleText("Fatigue in waves", "life",
         "life of every piece below the float in the seas of `waves: scatter:`",
-        "`fatigue_factor`, 3, × `service_time`, 365 days; unknown without a table of seas, and "
-        "of what no curve is published for",
+        "`fatigue_factor`, 3, × `service_time`, 365 days; not judged without a table of seas, and "
+        "unknown of what no curve is published for",
         "Dirlik 1985 and Miner's sum; curves of DNV-OS-E301 (chain, polyester) and API RP 2SK "
         "(wire); a life of three times the service",
         _WAVES),
@@ -222,9 +223,9 @@ RULES = {
     "release-present": RuleText("Release", "",
         "whether a piece of a sub-surface line has `role: release`, and whether that frees it",
         "unknown where none has, one that is clamped, or is called a shackle, swivel, rope or the "
-        "like; a failure where nothing floats above it; a warning of a single one (none is called "
-        "double, dual, twin or a pair), of less than 1 m between it and the anchor, and where "
-        "something below it floats",
+        "like; a failure where nothing floats above it; a warning of a single one in more than "
+        "100 m of water (none is called double, dual, twin or a pair), of less than 1 m between "
+        "it and the anchor, and where a float is below it",
         "Defaults of this program: a line to be recovered names its release",
         _ONCE),
     "hardware": RuleText("Hardware", "",

@@ -114,8 +114,8 @@ FLAWS = (
         (*IN_WAVES, STRETCHING),
         "fatigue",
         None,
-        "unknown",
-        "one sea is not a wave climate",
+        "not-judged",
+        "One sea is not a wave climate",
     ),
     Flaw(
         "a wire too weak",
