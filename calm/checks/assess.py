@@ -72,7 +72,7 @@ def judged_stand(
 
     The stand lists all findings as given, and findings of other situations with a worse state; as
     tighter, those of other situations with a greater utilisation. A failure only of strumming
-    cables is a warning, since the cables may not strum.
+    cables is a warning, since the cables may not strum; of what fails without that, it is none.
 
     Parameters
     ----------
@@ -83,9 +83,10 @@ def judged_stand(
     if not leg.of_several:
         given += _findings_in_waves(situations[0], name, environment, day)
     states = {_of(finding): finding.state.severity for finding in given}
+    failed = {_of(finding) for finding in given if finding.state is State.FAIL}
     others = [
         replace(one, state=State.WARN)
-        if one.situation == STRUMMING and one.state is State.FAIL
+        if one.situation == STRUMMING and one.state is State.FAIL and _of(one) not in failed
         else one
         for findings in changed
         for one in findings

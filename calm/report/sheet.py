@@ -134,9 +134,9 @@ def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
 def _line_text(result: LegResult) -> str:
     """How long the line is, and where it is loaded most."""
     rows = result.components
-    told = f"{say('depth', float(rows.length.sum()))} under load"
+    told = f"{say('depth', sum(row.length for row in rows))} under load"
     if result.leg.anchored:
-        told += f", scope {float(rows.cut_length.sum()) / result.leg.water.depth:.3f}"
+        told += f", scope {sum(row.cut_length for row in rows) / result.leg.water.depth:.3f}"
     if result.anchor.grounded_length > 0.0:
         told += f", {say('grounded_length', result.anchor.grounded_length)} on the seabed"
     most = max(rows, key=lambda row: row.tension)
@@ -255,8 +255,8 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
             rows.append((Cell(), label, *cells))
     columns += (blocks.quantity_column(one.quantity) for one in figures if one.quantity)
     marked = {cell.state for row in rows for cell in row if cell.mark}
-    legend = (text for state, text in _MARKS.items() if state in marked)
-    note = " ".join((f"{of_an_end}: {_NOTE}", *legend))
+    legend = " ".join(text for state, text in _MARKS.items() if state in marked)
+    note = "\n".join(filter(None, (f"{of_an_end}: {_NOTE}", legend)))
     table = Table(title, tuple(columns), tuple(rows), note, dense=True)
     return table.without_empty_columns()
 

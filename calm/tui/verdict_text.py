@@ -227,7 +227,9 @@ def _found(
     from calm.report.check_tables import grouped, named, named_components
     from calm.report.open_items import percent_text
 
-    for finding in sorted(findings, key=lambda each: each.rank):
+    governs = {(one.rule, one.place, one.state): one for one in (*findings, *tighter)}
+    told_of = dict.fromkeys(governs[one.rule, one.place, one.state] for one in findings)
+    for finding in sorted(told_of, key=lambda each: each.rank):
         if _graver(finding):
             yield _told(finding)
     unknown = [each for each in findings if each.state is State.UNKNOWN]
@@ -267,11 +269,14 @@ def why(view: View, row: Place) -> list[Saying]:
 
 
 def _told(finding: Finding) -> Saying:
-    from calm.report.open_items import limit_text, percent_text
+    from calm.checks.assess import RULES
+    from calm.report.open_items import percent_text
 
     text = f"{finding.message} {finding.remedy or ''}".rstrip()
     if finding.utilisation is not None:
-        text = f"{percent_text(finding.utilisation)} % of {limit_text(finding)}. {text}"
+        sign = "≤" if finding.sense == "<=" else "≥"
+        limit = say(RULES[finding.rule].quantity, finding.limit)
+        text = f"{percent_text(finding.utilisation)} % of {sign} {limit}. {text}"
     heading = f"{_title(finding)}{_situation(finding)}"
     return Saying(text, heading, finding.state, places=_places([finding]))
 
