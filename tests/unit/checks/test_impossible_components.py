@@ -102,6 +102,9 @@ def test_good_components_pass(good):
             "its diameter bears more than 204204",
         ),
         (GOOD_ANCHOR, {"kt": "200 kN/(m/s)^2"}, "falls at 0.22 m/s"),
+        (GOOD_ANCHOR, {"kt": "4 N/(m/s)^2"}, "falls at 48 m/s"),
+        # 1025 π/6 · 10³ kg of water, 5.263 MN
+        (GOOD_SPHERE, {"diameter": "10 m"}, "of that size lifts 526312 N at least"),
         # 85 mm in place of 8.5 mm; 0.16 N/m in place of 1.6 N/m
         (GOOD_WIRE, {"diameter": "85 mm"}, "a rope of steel of its diameter weighs 37.98 N/m"),
         (GOOD_WIRE, {"weight": "0.16 N/m"}, "a rope of steel of its diameter weighs 0.5257 N/m"),
@@ -110,15 +113,15 @@ def test_good_components_pass(good):
         (GOOD_WIRE, {"breaking_load": "450 kN"}, "its weight in water bears more than 85199"),
         (GOOD_WIRE, {"breaking_load": "4.5 kN"}, "breaks at 4500 N"),
         (GOOD_POLYESTER, {"breaking_load": "60 kN"}, "diameter and material bears more than 53250"),
-        (GOOD_POLYESTER, {"breaking_load": "2 kN"}, "bears 4437.5"),
+        (GOOD_POLYESTER, {"breaking_load": "2 kN"}, "bears 4437 N at least"),
         (GOOD_CHAIN, {"name": "grade 30", "breaking_load": "125 kN"}, "and grade 30 bears more"),
-        (GOOD_CHAIN, {"name": "chain, g80", "breaking_load": "50 kN"}, "grade 80 bears 106814"),
+        (GOOD_CHAIN, {"name": "chain, g80", "breaking_load": "50 kN"}, "grade 80 bears 106814 N"),
         (GOOD_CHAIN, {"cn": 14.0}, "1 at least, 6 at most"),
         (GOOD_SPHERE, {"cx": 5.0}, "0.06 at least, 2 at most"),
         (
             GOOD_ANCHOR,
             {"mass": "1900 kg", "weight": "18.6 kN", "material": "concrete"},
-            "concrete of that mass weighs 1.067e+04 N",
+            "concrete of that mass weighs 10675 N",
         ),
         (GOOD_ANCHOR, {"name": "concrete clump"}, "but its `material` is steel"),
         (GOOD_METER, {"buoyancy": "15 N"}, "floats with 15 N, with `role: instrument`"),
