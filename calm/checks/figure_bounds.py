@@ -77,7 +77,7 @@ DRAG_BOUNDS = {
     ("cylinder", "cn"): Bounds(0.2, 4.0, f"{_CRISIS}; {_STRUMMING}"),
     ("cylinder", "ct"): Bounds(0.001, 2.0, "skin friction of a smooth wall; a blunt end"),
     ("cable", "cn"): Bounds(0.05, 4.0, f"a streamlined section around it; {_STRUMMING}"),
-    ("cable", "ct"): Bounds(0.0005, 0.2, "skin friction of a smooth wall; a hairy fairing"),
+    ("cable", "ct"): Bounds(0.0005, 1.0, "skin friction of a smooth wall; a string of balls"),
     ("chain", "cn"): Bounds(1.0, 6.0, _CHAIN),
 }
 """Drag coefficients by kind and key. Zero is no figure of these classes; the law of friction
@@ -195,12 +195,9 @@ def doubtful_figures(component: Component | Outline) -> Iterator[str]:
         return
     net, role = component.net_buoyancy, component.role
     sinks = role in ("instrument", "release", "connector") and not isinstance(component, Sphere)
-    if (
-        sinks
-        and net > LIFTS
-        and component.mass is None
-        and not _BUOYANT.search(words_of(component))
-    ):
+    said = "role" in component.model_fields_set  # without one, it may be a float
+    doubted = sinks and said and component.mass is None and net > LIFTS
+    if doubted and not _BUOYANT.search(words_of(component)):
         floating = f"floats with {say('tension', net)}, with `role: {role}`"
         yield f"{floating}; most weigh something in water"
     area, volume = component.wind_area, component.displaced_volume

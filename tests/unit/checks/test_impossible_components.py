@@ -27,7 +27,7 @@ GOOD_SHACKLE = {"kind": "body", "role": "connector", "length": "60 mm", "mass": 
                 "breaking_load": "150 kN", "source": "a list"}  # fmt: skip
 GOOD_POLYESTER = GOOD_ROPE | {"material": "polyester"}
 GOOD_METER = {"kind": "cylinder", "diameter": "100 mm", "length": "0.8 m", "buoyancy": "-150 N",
-              "source": "a list"}  # fmt: skip
+              "role": "instrument", "source": "a list"}  # fmt: skip
 GOOD_BUOY = {"kind": "body", "length": "2 m", "mass": "1 t", "volume": "8.8 m^3", "role": "float",
              "cd": 0.7, "drag_area": "3 m^2", "wind_area": "2 m^2", "source": "a list"}  # fmt: skip
 GOOD_ANCHOR = {"kind": "anchor", "mass": "1100 kg", "material": "steel", "kt": "1.2 kN/(m/s)^2",
@@ -152,6 +152,7 @@ def test_impossible_figures_are_found(good, change, told):
         (GOOD_ANCHOR, {"name": "railway wheels of iron"}),
         (GOOD_METER, {"buoyancy": "15 N", "name": "sonar with foam collar"}),
         (GOOD_METER, {"buoyancy": "15 N", "mass": "4.9 kg"}),
+        (GOOD_METER, {"buoyancy": "15 N", "role": None}),
         (GOOD_SPHERE, {"buoyancy": "5200 N"}),
         (GOOD_SPHERE, {"buoyancy": "3000 N", "mass": "240 kg"}),
         (GOOD_SPHERE, {"buoyancy": "-1000 N", "mass": "112.5 kg"}),
