@@ -32,6 +32,7 @@ from calm.files.rigid import Shaped
 from calm.physics import materials
 from calm.physics.materials import LEAD_DENSITY, MATERIAL_NAMES, STEEL_DENSITY, materials_in
 from calm.physics.seawater import REFERENCE_DENSITY
+from calm.quantities import say
 
 ROUNDING = 1.05
 """Excess that rounded figures of a data sheet may show: 5 %, or 1.7 % of a sphere's diameter."""
@@ -62,8 +63,13 @@ shackles of the catalogue bear 45e3 by their mass and length at most."""
 HOLLOW = 0.5
 """Least density of what joins pieces, as a share of its material's; those known have 0.85."""
 
-SLOWEST_ANCHOR = 0.3
-"""Least speed at which an anchor alone falls, by its weight and `kt` [m/s]; those known 1.2."""
+ANCHOR_SPEEDS = 0.3, 15.0
+"""Least and greatest speed at which an anchor alone falls, by its weight and `kt` [m/s]; those
+known 1.2 to 5.6, a block of 5 t of steel 12."""
+
+LEAST_LIFT = 0.1
+"""Least buoyancy of a float, as a share of the water that a sphere of its diameter displaces; those
+of the catalogue have 0.23, glass in a wide hard hat, or more."""
 
 DEEPEST_WATER = 11000.0
 """Greatest depth of the ocean, in round figures [m]."""
@@ -154,6 +160,11 @@ def impossible(component: Component) -> Iterator[str]:
         lift = CATALOGUE_DENSITY * STANDARD_GRAVITY * envelope
         if component.net_buoyancy > lift:
             yield f"lifts {component.net_buoyancy:.4g} N; water of its size weighs {lift:.4g} N"
+        elif isinstance(component, Sphere) and 0.0 < net < LEAST_LIFT * lift:
+            yield (
+                f"lifts {say('tension', net)} with a diameter of {component.diameter:g} m; a "
+                f"float of that size lifts {say('tension', LEAST_LIFT * lift)} at least"
+            )
         elif mass is not None and _displaced(component, mass) > ROUNDING * lift:
             yield (
                 f"weighs {mass:.4g} kg and has {component.net_buoyancy:.4g} N in water: with that "
@@ -170,8 +181,10 @@ def impossible(component: Component) -> Iterator[str]:
         )
     if isinstance(component, Anchor) and component.kt:
         speed = sqrt(-net / component.kt)
-        if speed < SLOWEST_ANCHOR:
-            yield f"falls at {speed:.2g} m/s by its weight and `kt`; no anchor is so slow"
+        slowest, fastest = ANCHOR_SPEEDS
+        if not slowest <= speed <= fastest:
+            way = "slow" if speed < slowest else "fast"
+            yield f"falls at {speed:.2g} m/s by its weight and `kt`; no anchor is so {way}"
     yield from _of_a_load(component)
     yield from _drags_out_of_range(component)
 

@@ -1,7 +1,7 @@
-"""The rule `environment`: what is doubtful in the environments of a mooring, and beside each other.
+"""The rule `environment`: doubtful values in the environments of a mooring.
 
-One environment alone: what `Environment.doubts` lists. Together: a storm that is weaker than the
-ordinary current somewhere, and a float with an area in the wind that no wind blows on.
+Each environment is judged by its `Environment.doubts`. Compared with each other, environments show
+a storm that is weaker than the ordinary current, and a missing wind on a float with a wind area.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ _STRONG = re.compile(
     r"|return|sturm|tempête",
     re.IGNORECASE,
 )
-"""Names of environments that are meant to be stronger than the ordinary one."""
+"""Names of environments with a stronger current than the ordinary environment."""
 
 WEAKER = 0.5
-"""Share of the ordinary current below which that of a stronger environment is doubted."""
+"""Share of the ordinary current below which a storm's current is doubtful."""
 
 _LEAST = 0.05
 """Ordinary current below which a weaker one is no matter [m/s]."""
@@ -38,10 +38,7 @@ _CHECK = "Check its values and units."
 
 @rule("environment")
 def environment(legs: Sequence[Leg]) -> Iterator[Found]:
-    """What is doubtful about the environments that a mooring stands in.
-
-    Each verdict comes with the leg in the environment that it is of.
-    """
+    """Yield warnings about the environments of a mooring, each with the leg in that environment."""
     said: set[str] = set()
     for leg in legs:
         for doubt in leg.file.environment.doubts:
@@ -54,8 +51,10 @@ def environment(legs: Sequence[Leg]) -> Iterator[Found]:
 
 
 def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
-    """A current that is meant to be the stronger, by the name of its environment or by its maximum,
-    and has much weaker levels; only the latter may be weaker at one end of its profile.
+    """Yield a warning if the stronger current has much weaker levels than the ordinary one.
+
+    A current is the stronger one by the name of its environment, or by its maximum. If only the
+    maximum says so, the upper and lower ends of the profile may be weaker.
     """
     first, second = (each.file.environment for each in (ordinary, other))
     levels = np.union1d(first.current.depth, second.current.depth)
@@ -89,7 +88,7 @@ def _speeds(current: CurrentTable, levels: Floats) -> Floats:
 
 
 def _no_wind(legs: Sequence[Leg]) -> Iterator[Found]:
-    """A float at the surface with an area in the wind, and no wind in any environment."""
+    """Yield a warning if a surface float has a wind area and no environment has wind."""
     top = legs[0].file.pieces[0]
     area = getattr(top.component, "wind_area", None)
     calm = all(leg.file.environment.wind is None for leg in legs)

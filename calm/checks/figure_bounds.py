@@ -1,7 +1,7 @@
-"""Bounds of the figures of components, by class: density, strength, drag, sign of the buoyancy.
+"""Bounds of component figures by class: density, strength, drag, sign of the buoyancy.
 
-`DRAG_BOUNDS` here, and the densities and strengths of `calm.physics.materials`, are the table that
-the rules of a catalogue and of a design share; `docs/reference/catalogue.md` prints it.
+The rules of a catalogue and of a design share this table: `DRAG_BOUNDS`, the constants here, and
+the densities and strengths of `calm.physics.materials`. `docs/reference/catalogue.md` prints it.
 """
 
 from __future__ import annotations
@@ -17,35 +17,40 @@ from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.files.rigid import Rigid
 from calm.physics import materials
 from calm.physics.materials import STEEL_DENSITY, Material, materials_in
+from calm.quantities import say
 
 GREATEST_STRENGTH = 4e9
 """Greatest tensile strength of any fibre or wire, for a cable of unknown material [Pa]."""
 
 ROPE_EFFICIENCY = 0.6
-"""Greatest breaking load of a rope over its nominal section, as a share of the strength of its
-yarn: 0.7 of the section is fibre, and 0.85 of its strength is left in a rope (McKenna, Hearle and
-O'Hear 2004, Handbook of Fibre Rope Technology). Ropes of the catalogue have 0.12 to 0.44."""
+"""Maximum breaking stress of a rope over its nominal section, as a share of its yarn strength.
+
+About 0.7 of the section is fibre, and a rope keeps 0.85 of the yarn strength (McKenna, Hearle and
+O'Hear 2004, Handbook of Fibre Rope Technology). Ropes in the catalogue have 0.12 to 0.44."""
 
 WEAKEST_ROPE = 0.05
-"""Least of the same share: a tenth of it is a figure in another unit."""
+"""Minimum breaking stress of a rope, as a share of its yarn strength."""
 
 LEAST_SHARE = 0.1
-"""Least share of a rope's nominal section that is fibre or wire; those of the catalogue have 0.14,
-a fibre core in a thick sheath, to 0.98."""
+"""Minimum share of fibre or wire in a rope's nominal section.
+
+Ropes in the catalogue have 0.14 (a fibre core in a thick sheath) to 0.98."""
 
 WEAKEST_WIRE = 200e6
-"""Least breaking load of a wire rope over the section of its metal [Pa]; those of the catalogue
-have 1.1e9."""
+"""Minimum breaking stress of a wire rope in its metal [Pa]; wires in the catalogue have 1.1e9."""
 
 STRONGEST_CHAIN = 1300e6
-"""Greatest stress in the two bars of a chain at its breaking load [Pa]; grade 120 has 1200 MPa."""
+"""Maximum breaking stress in the two bars of a chain [Pa]; grade 120 has 1200 MPa."""
 
 GRADE_STRESS = 10e6
-"""Stress in the bars of a chain at its breaking load, for each number of its grade [Pa]: 300 MPa of
-grade 30, 800 MPa of grade 80 (EN 818, ISO 1834)."""
+"""Nominal breaking stress in the bars of a chain per unit of its grade [Pa].
+
+Grade 30 has 300 MPa, grade 80 has 800 MPa (EN 818, ISO 1834)."""
 
 GRADE_ROUNDING = 0.85, 1.25
-"""Least and greatest stress over that of the grade; chains of the catalogue have 0.88 to 1.08."""
+"""Bounds of the breaking stress over the nominal stress of the grade.
+
+Chains in the catalogue have 0.88 to 1.08."""
 
 _GRADE = re.compile(r"\b(?:grade[ -]?|gr\.? ?|g)(30|40|43|50|63|70|80|100|120)\b", re.IGNORECASE)
 _BUOYANT = re.compile(
@@ -55,7 +60,7 @@ _BUOYANT = re.compile(
 
 @dataclass(frozen=True)
 class Bounds:
-    """Least and greatest plausible value of a figure, and where they come from."""
+    """Minimum and maximum plausible value of a figure, and their source."""
 
     least: float
     most: float
@@ -72,7 +77,7 @@ DRAG_BOUNDS = {
     ("cylinder", "cn"): Bounds(0.2, 4.0, f"{_CRISIS}; {_STRUMMING}"),
     ("cylinder", "ct"): Bounds(0.001, 2.0, "skin friction of a smooth wall; a blunt end"),
     ("cable", "cn"): Bounds(0.05, 4.0, f"a streamlined section around it; {_STRUMMING}"),
-    ("cable", "ct"): Bounds(0.0005, 0.2, "skin friction of a smooth wall; a hairy fairing"),
+    ("cable", "ct"): Bounds(0.0005, 1.0, "skin friction of a smooth wall; a string of balls"),
     ("chain", "cn"): Bounds(1.0, 6.0, _CHAIN),
 }
 """Drag coefficients by kind and key. Zero is no figure of these classes; the law of friction
@@ -80,7 +85,7 @@ DRAG_BOUNDS = {
 
 
 def drag_out_of_bounds(component: Component) -> Iterator[str]:
-    """Drag coefficients that no piece of its kind has."""
+    """Yield drag coefficients outside `DRAG_BOUNDS`."""
     for (kind, key), bounds in DRAG_BOUNDS.items():
         value = getattr(component, key, None)
         if component.kind != kind or value is None:
@@ -94,7 +99,7 @@ def drag_out_of_bounds(component: Component) -> Iterator[str]:
 
 
 def density_out_of_bounds(rope: Cable) -> Iterator[str]:
-    """A rope that floats though its material sinks, or has too little of it in its diameter."""
+    """Yield that a rope floats though its material sinks, or is too light for its diameter."""
     load_bearing = _load_bearing(rope)
     if not load_bearing:
         return
@@ -111,7 +116,10 @@ def density_out_of_bounds(rope: Cable) -> Iterator[str]:
 
 
 def load_bounds(component: Component) -> tuple[float, float, str] | None:
-    """Least and greatest breaking load of a cable or chain [N], and what they follow from."""
+    """Return the minimum and maximum breaking load of a cable or chain [N], and their basis.
+
+    None for other kinds.
+    """
     if isinstance(component, Chain):
         bars = 2.0 * rope_section(component)
         grade = _GRADE.search(words_of(component))
@@ -136,12 +144,12 @@ def load_bounds(component: Component) -> tuple[float, float, str] | None:
 
 
 def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator[str]:
-    """A load greater than any piece of its kind and size bears, or a breaking load far below.
+    """Yield loads too great for this kind and size, and breaking loads far too small.
 
     Parameters
     ----------
     most, size : greatest load of a component that is no cable or chain [N], inf if unknown, and
-        what it follows from
+        its basis
     """
     least = 0.0
     if (bounds := load_bounds(component)) is not None:
@@ -149,13 +157,15 @@ def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator
     load = max(component.breaking_load or 0.0, component.working_load or 0.0)
     breaking = inf if component.breaking_load is None else component.breaking_load
     if load > most:
-        yield f"bears {load:.6g} N; no {component.kind} of its {size} bears more than {most:.6g} N"
+        told, bears = say("tension", load), say("tension", most)
+        yield f"bears {told}; no {component.kind} of its {size} bears more than {bears}"
     elif breaking < least:
-        yield f"breaks at {breaking:.6g} N; a {component.kind} of its {size} bears {least:.6g} N"
+        told, bears = say("tension", breaking), say("tension", least)
+        yield f"breaks at {told}; a {component.kind} of its {size} bears {bears} at least"
 
 
 def wet_weight_out_of_bounds(component: Component) -> Iterator[str]:
-    """An anchor or a connector that weighs more in water than its mass and material allow."""
+    """Yield that an anchor or connector weighs more in water than its mass and material allow."""
     solid = materials.density_of(component.material)
     solid = getattr(component, "density", None) or solid
     if not (isinstance(component, Anchor) or component.role == "connector"):
@@ -165,8 +175,8 @@ def wet_weight_out_of_bounds(component: Component) -> Iterator[str]:
     weight = (1.0 - CATALOGUE_DENSITY / solid) * component.mass * STANDARD_GRAVITY
     if -component.net_buoyancy > 1.08 * weight:
         yield (
-            f"weighs {-component.net_buoyancy:.4g} N in water for {component.mass:.4g} kg; "
-            f"{component.material} of that mass weighs {weight:.4g} N there"
+            f"weighs {say('tension', -component.net_buoyancy)} in water for {component.mass:.4g} "
+            f"kg; {component.material} of that mass weighs {say('tension', weight)} there"
         )
 
 
@@ -174,23 +184,22 @@ LIFTS = 10.0
 """Buoyancy below which the sign is not doubted: loggers are made to hang weightless [N]."""
 
 WIND_AREA = 0.02, 20.0
-"""Least and greatest area in the wind of a float, over the square of the edge of a cube that
-displaces as much; meteorological buoys of the catalogue have 2."""
+"""Bounds of a float's wind area over its displaced volume to the power 2/3.
+
+Meteorological buoys in the catalogue have 2."""
 
 
 def doubtful_figures(component: Component | Outline) -> Iterator[str]:
-    """Figures that are possible, and mostly are a mistake."""
+    """Yield figures that are possible but usually mistakes: a floating instrument, a wind area."""
     if not isinstance(component, Rigid) or isinstance(component, Anchor):
         return
     net, role = component.net_buoyancy, component.role
     sinks = role in ("instrument", "release", "connector") and not isinstance(component, Sphere)
-    if (
-        sinks
-        and net > LIFTS
-        and component.mass is None
-        and not _BUOYANT.search(words_of(component))
-    ):
-        yield f"floats with {net:.4g} N, with `role: {role}`; most weigh something in water"
+    said = "role" in component.model_fields_set  # without one, it may be a float
+    doubted = sinks and said and component.mass is None and net > LIFTS
+    if doubted and not _BUOYANT.search(words_of(component)):
+        floating = f"floats with {say('tension', net)}, with `role: {role}`"
+        yield f"{floating}; most weigh something in water"
     area, volume = component.wind_area, component.displaced_volume
     if volume is None:
         volume = net / (CATALOGUE_DENSITY * STANDARD_GRAVITY)
@@ -204,7 +213,7 @@ def doubtful_figures(component: Component | Outline) -> Iterator[str]:
 
 
 def contradicted_material(component: Component | Outline) -> Iterator[str]:
-    """A name and a `material` that name different materials."""
+    """Yield that the `name` and the `material` of a component name different materials."""
     named = {one.name: one for one in materials_in(component.name)}
     made_of = {one.name: one for one in materials_in(component.material)}
     if not named or not made_of or named.keys() & made_of.keys():
@@ -216,24 +225,24 @@ def contradicted_material(component: Component | Outline) -> Iterator[str]:
 
 
 def _alike(one: Material, other: Material) -> bool:
-    """Whether two materials are as heavy as each other, so that either name will do."""
+    """Whether two materials are about equally dense, so that either name will do."""
     if one.density is None or other.density is None:
         return one.family == other.family or one.density is other.density
     return abs(one.density - other.density) < 0.1 * other.density
 
 
 def words_of(component: Component | Outline) -> str:
-    """What a definition says of a component in words."""
+    """Join the name, material and note of a component."""
     return " ".join(filter(None, (component.name, component.material, component.note)))
 
 
 def rope_section(component: Flexible) -> float:
-    """Area of a bar of the nominal diameter [m²]."""
+    """Compute the area of a bar of the nominal diameter [m²]."""
     return pi / 4 * component.diameter**2
 
 
 def _load_bearing(rope: Cable) -> list[Material]:
-    """The metals of a rope, lead aside, else its fibres; none if one has no known density."""
+    """Return the metals of a rope except lead, else its fibres; none if a density is unknown."""
     named = materials_in(rope.material)
     metals = [one for one in named if one.family == "metal" and one.name != "lead"]
     found = metals or [one for one in named if one.family == "fibre"]

@@ -17,17 +17,16 @@ MOST_NAMED = 5
 
 @rule("joints", once=True)
 def joints(handling: Handling) -> Iterator[Verdict]:
-    """Joints without a shackle, link or swivel, of a line that lists any, in one finding.
+    """Yield one warning for all joints without a shackle, link or swivel.
 
-    Ropes are spliced or made fast, equal pieces are threaded or bolted together, and a wire with a
-    `termination` says how its ends are made. A line that lists no hardware is found by `hardware`.
+    Exempt are ropes, which are spliced or made fast, equal pieces that follow each other, and wires
+    that give their `termination`. The rule `hardware` warns if a line lists no hardware at all.
     """
     pieces = handling.leg.file.pieces
     if not any(piece.component.role == "connector" for piece in pieces):
         return
     bare = bare_joints(pieces)
     if not bare:
-        yield verdict_on(None, State.PASS, "Every joint of unlike pieces has its hardware.")
         return
     named = [f"{one.label} to {other.label}" for one, other in bare[:MOST_NAMED]]
     if len(bare) > MOST_NAMED:
@@ -39,7 +38,7 @@ def joints(handling: Handling) -> Iterator[Verdict]:
 
 
 def bare_joints(pieces: Sequence[Piece]) -> list[tuple[Piece, Piece]]:
-    """Neighbours that need hardware between them and have none, down the line."""
+    """Return neighbouring pieces that lack hardware between them, down the line."""
     return [pair for pair in pairwise(pieces) if _needs_hardware(*pair)]
 
 
@@ -53,7 +52,7 @@ def _needs_hardware(one: Piece, other: Piece) -> bool:
 
 
 def _is_hard(piece: Piece) -> bool:
-    """Whether a piece is joined by hardware alone: chain, wire or what is rigid."""
+    """Whether only hardware can join a piece: chain, wire and rigid pieces."""
     if not isinstance(piece.component, Cable):
         return True
     metal = any(one.family == "metal" for one in materials_in(piece.component.material))

@@ -1,7 +1,6 @@
-"""The rule `serials-and-dates`: what the file says of single items, its document and deployment.
+"""The rule `serials-and-dates`: contradictions between labels, serial numbers, codes and days.
 
-Nothing is computed from these figures. They are printed on sheets and labels, and a serial number
-or a day that contradicts another is found here before it is found at sea.
+No figure depends on these entries, but sheets and labels print them.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ Part = Piece | Clamp
 
 @rule("serials-and-dates", once=True)
 def serials_and_dates(handling: Handling) -> Iterator[Verdict]:
-    """Labels and serial numbers that occur twice, and days in an impossible order."""
+    """Yield warnings about repeated labels and serial numbers, and days in the wrong order."""
     file = handling.leg.file
     parts = parts_of(file.pieces)
     yield from _repeated_labels(parts)
@@ -35,7 +34,7 @@ def serials_and_dates(handling: Handling) -> Iterator[Verdict]:
 
 
 def _repeated_labels(parts: Sequence[Part]) -> Iterator[Verdict]:
-    """Instruments, floats and lengths of line with one label: rows copied, and not changed."""
+    """Yield labels that several rows of the line give; connectors and anchors may share one."""
     rows: dict[str, dict[tuple[int, int], Part]] = defaultdict(dict)
     for part in parts:
         if part.place.part >= 0 and part.place.is_clamp:
@@ -53,7 +52,7 @@ def _repeated_labels(parts: Sequence[Part]) -> Iterator[Verdict]:
 
 
 def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
-    """Serial numbers that several items of one component have."""
+    """Yield serial numbers that several items of one component have."""
     items: dict[tuple[str, str], list[Part]] = defaultdict(list)
     for part in parts:
         if part.serial is not None:
@@ -71,7 +70,7 @@ def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
 
 
 def _releases(file: MooringFile) -> Iterator[Verdict]:
-    """Codes of a release that is not in the line, or given twice."""
+    """Yield release codes without a release in the line, and codes given twice."""
     for message in unknown_releases(file.releases, file.pieces, file.deployed):
         yield _warning(None, message, "Check the serial numbers of the releases.")
     serials = [one.serial for one in file.releases if one.serial is not None]
@@ -85,7 +84,7 @@ def _releases(file: MooringFile) -> Iterator[Verdict]:
 
 
 def _days_of_parts(parts: Sequence[Part], file: MooringFile) -> Iterator[Verdict]:
-    """Batteries and calibrations of single items, against the day of the deployment."""
+    """Yield batteries that end too early and calibrations after the deployment."""
     deployed = file.deployed.date[:10] if file.deployed and file.deployed.date else None
     for part in parts:
         battery, calibrated = part.equipment.battery_until, part.equipment.calibrated
@@ -104,7 +103,7 @@ def _days_of_parts(parts: Sequence[Part], file: MooringFile) -> Iterator[Verdict
 
 
 def _document(document: DocumentKeys) -> Iterator[str]:
-    """A title block that is not that of its latest revision, and revisions out of order."""
+    """Yield contradictions between the title block and its history."""
     history = document.history
     dated = [one for one in history if one.date is not None]
     for earlier, later in pairwise(dated):

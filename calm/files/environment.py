@@ -313,7 +313,7 @@ STRONGEST_WIND = 75.0
 
 
 def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
-    """What is doubtful about a current that a person wrote; a record may be as it was."""
+    """Return remarks on a current that a person wrote, none on one from a record."""
     if current.record is not None:
         return []
     levels, u, v = (np.array(each) for each in (current.depth, current.u, current.v))

@@ -137,9 +137,9 @@ what the pressure adds for each metre [kg/m³], [kg/m⁴]: 1050 kg/m³ at 5000 m
 def density_doubts(
     density: float | profile_tables.DepthTable | profile_tables.SeaWater, depth: float | None
 ) -> Iterator[str]:
-    """What is doubtful about the density of the water, in sentences.
+    """Yield doubtful values of the water's density, in sentences.
 
-    Its depth [m] is None where it is not known.
+    The water depth [m] is None if unknown.
     """
     given: tuple[tuple[float, float], ...] = ()
     if isinstance(density, profile_tables.DepthTable):

@@ -1,4 +1,4 @@
-"""What is doubtful about one profile of currents by its values: of a record or a mooring file."""
+"""Doubtful values in one profile of currents, from a record or a mooring file."""
 
 from __future__ import annotations
 
@@ -13,27 +13,28 @@ from calm.quantities import say
 _TURN = 2.0 * pi
 _HALF_RIGHT = pi / 4.0
 _NEAR = 0.01
-"""Difference between a direction in radians, as people round it, and a multiple of 45 degrees."""
+"""Rounding error of a multiple of 45 degrees in radians."""
 
 _OPPOSITE = 150.0
 _SAME_WAY = 60.0
 """Angles between currents that are opposite, at least, and that agree, at most [degrees]."""
 
 _LEAST_REVERSED = 0.05
-"""Speed below which a current may point anywhere [m/s]."""
+"""Minimum speed of a current with a reliable direction [m/s]."""
 
 _AT_THE_BED = 0.98
 """Share of the water depth from which a level is at the seabed."""
 
 _SHELF, _DEEP = 200.0, 1000.0
 _FASTEST = {_SHELF: 3.0, _DEEP: 1.5}
-"""Speed that no mean current exceeds in water deeper than 200 m, and at levels below 1000 m [m/s]:
-the Florida Current and the Agulhas reach 2.5 m/s, overflows 1.3 m/s at 600 to 1400 m. Tidal races
+"""Maximum current in water deeper than 200 m, and below 1000 m [m/s].
+
+The Florida Current and the Agulhas reach 2.5 m/s, overflows 1.3 m/s at 600 to 1400 m. Tidal races
 are shallower."""
 
 
 def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
-    """Directions that are radians, or a velocity.
+    """Yield a remark if directions seem to be radians or velocities.
 
     Parameters
     ----------
@@ -57,7 +58,7 @@ def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
 
 
 def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> Iterator[str]:
-    """What is doubtful about the levels of one profile, in sentences without a full stop.
+    """Yield remarks on doubtful levels of one profile, without a full stop.
 
     Parameters
     ----------
@@ -77,8 +78,9 @@ def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> I
 
 
 def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[str]:
-    """Single levels whose current is opposite to both neighbours, with a speed between theirs: an
-    undercurrent mostly is slower or faster than both.
+    """Yield levels whose current is opposite to both neighbours, with a speed between theirs.
+
+    An undercurrent is usually slower or faster than both neighbours.
     """
     for i in range(1, len(depth) - 1):
         three = speed[i - 1 : i + 2]
@@ -93,7 +95,7 @@ def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[s
 
 
 def _between(one: float, other: float) -> float:
-    """Angle between two directions [degrees]."""
+    """Compute the angle between two directions [degrees]."""
     return float(abs((one - other + 180.0) % 360.0 - 180.0))
 
 

@@ -254,7 +254,7 @@ def read_current(table: QuantityTable, terms: Terms = _AS_THEY_STAND) -> Current
 
 
 def _direction_doubts(table: QuantityTable) -> tuple[str, ...]:
-    """What is doubtful about the column of directions of a table without mistakes."""
+    """Return remarks on the column of directions of a valid table."""
     plain, _ = magnetic_columns(table.columns)
     quiet = replace(table, columns=plain, problems=[])
     values = read_columns(quiet, _CURRENT)
