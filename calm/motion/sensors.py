@@ -20,6 +20,7 @@ from calm.motion.common_unknowns import FEWEST
 from calm.physics.line import Floats
 from calm.records import cf_files, instrument_series, instrument_text
 from calm.records.attributes import words_of
+from calm.records.card import ReadCard, VariableSummary
 from calm.records.cf_files import UnreadableError, factor_of, find_times
 from calm.records.headings import read_time_columns
 from calm.records.instrument_series import InstrumentSeries
@@ -108,7 +109,9 @@ def _from_arrays(
     values = np.where(found.dropped, np.nan, found.values[0] * factor)
     depth = depth_of(values, latitude) if is_pressure else values
     who = instrument_series.who_along(dataset, found.along, seabed, path.name)
-    each = [replace(one, note=note) for one in found.series(depth, who)]
+    taken = {"pressure" if is_pressure else "depth": name}
+    card = instrument_series.card_of(dataset, path.name, taken, found)
+    each = [replace(one, note=note, card=card) for one in found.series(depth, who)]
     return [one for one in each if not note or np.isfinite(one.value).any()]
 
 
@@ -133,6 +136,12 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
     """Return a table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
     table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
+    scales = {"pressure": (1.0 / PASCALS_PER_DBAR, "dbar"), "length": (1.0, "m")}
+    summaries = {}
+    for label, dimension, values in zip(table.names, table.dimensions, table.values.T, strict=True):
+        factor, unit = scales[dimension]
+        summaries[label] = VariableSummary.of(label, unit, values * factor)
+    card = ReadCard(path.name, {}, summaries, len(table.names), table.time)
     return [
         InstrumentSeries(
             label,
@@ -141,6 +150,7 @@ def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
             path.name,
             table.time,
             depth_of(values / PASCALS_PER_DBAR, latitude) if dimension == "pressure" else values,
+            card=card,
         )
         for label, dimension, values in zip(
             table.names, table.dimensions, table.values.T, strict=True

@@ -31,7 +31,6 @@ _CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
 _FIRST, _LAST = "1678-01-01", "2262-01-01"
 _ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
 _ZONED = ("time_zone", "timezone", "tz", "time_reference")
-_SAID_IN = re.compile(r"(?i)long_name|title|summary|(time_)?(comments?|notes?|description)|history")
 _MOST_LISTED = 5
 _NORTH_NAMED = re.compile(
     r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
@@ -350,18 +349,12 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
 
 
 def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
-    """Return what is said where the times, or the file, name another zone than UTC."""
-    from calm.records.attributes import is_local
-
+    """Return what is said where an attribute for it names another zone than UTC."""
     for attributes in (dataset[name].attrs, dataset.attrs):
-        for key, said in attributes.items():
-            zone, comment = str(said).strip(), _SAID_IN.fullmatch(str(key))
-            another = key in _ZONED and zone and zone.upper() not in ZONES_OF_UTC
-            if another or (comment and is_local(zone)):
-                return [
-                    f"`{name}` says `{zone[:80]}`: all {dataset[name].size} times are taken as "
-                    "they stand, in UTC"
-                ]
+        for key in _ZONED:
+            zone = str(attributes.get(key, "")).strip()
+            if zone and zone.upper() not in ZONES_OF_UTC:
+                return [f"`{key}` is `{zone[:80]}`: the times are taken as they stand, in UTC"]
     return []
 
 

@@ -7,7 +7,7 @@ nominal place.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,7 @@ from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES_MEASURED, MeasuredQuantity
 from calm.records import cf_files, velocity
+from calm.records.card import ReadCard, VariableSummary, said_of, texts_in
 from calm.records.cf_files import UnreadableError, factor_of, first_present, known_values
 from calm.records.level_depths import find_levels
 
@@ -76,6 +77,7 @@ class InstrumentSeries(Identity):
     dropped : readings that were left out for their flag
     below : depth of what is measured below the instrument, a profiler's [m]
     note : what a person should know before trusting it
+    card : what was read from its file
     """
 
     time: NDArray[np.datetime64]
@@ -83,6 +85,7 @@ class InstrumentSeries(Identity):
     dropped: int = 0
     below: float = 0.0
     note: str = ""
+    card: ReadCard | None = None
 
 
 def read_series(
@@ -256,6 +259,8 @@ class Readings:
     axis, along : dimension of the times, and of the instruments; None of a single one
     values : (n, k) of each variable, as they stand
     dropped : (n, k) which are left out for the flag of any
+    clock : name and unit of the times
+    flags : readings that are left out, by the variable of flags
     """
 
     time: NDArray[np.datetime64]
@@ -263,6 +268,8 @@ class Readings:
     along: str | None
     values: list[Floats]
     dropped: NDArray[np.bool_]
+    clock: tuple[str, str]
+    flags: dict[str, int]
 
     def series(self, value: Floats, who: Sequence[Identity]) -> list[InstrumentSeries]:
         """Return what each instrument measured, by values (n, k) that were made of these."""
@@ -307,12 +314,36 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
         return moved.reshape(len(moved), -1)[order]
 
     parts = [table(dataset[name], known_values(dataset[name])) for name in names]
-    dropped = np.zeros(parts[0].shape, bool)
+    dropped, removed = np.zeros(parts[0].shape, bool), dict[str, int]()
     for name, values in zip(names, parts, strict=True):
         if (marks := velocity.flag_variable(dataset, name)) is not None:
             given = np.broadcast_to(table(marks, velocity.flags_of(marks)), values.shape)
-            dropped |= ~np.isin(given, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
-    return Readings(times[order], time, along, parts, dropped)
+            bad = ~np.isin(given, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
+            removed[str(marks.name)] = int(bad.sum())
+            dropped |= bad
+    said = clock, str(dataset[clock].attrs.get("units", ""))
+    return Readings(times[order], time, along, parts, dropped, said, removed)
+
+
+def card_of(
+    dataset: xr.Dataset, source: str, taken: Mapping[str, str], found: Readings
+) -> ReadCard:
+    """Return the card of readings.
+
+    Parameters
+    ----------
+    source : name of the file
+    taken : names of the variables, by what each was taken for, in the order of the readings
+    """
+    summaries = {}
+    for (meaning, name), values in zip(taken.items(), found.values, strict=True):
+        told = dataset[name].attrs
+        unit = str(told.get("units", ""))
+        summaries[meaning] = VariableSummary.of(name, unit, values, said_of(told))
+    return ReadCard(
+        source, texts_in(dataset.attrs), summaries, found.dropped.shape[1], found.time,
+        found.clock, found.flags,
+    )  # fmt: skip
 
 
 def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str) -> list[Identity]:
