@@ -23,16 +23,12 @@ from calm.records.attributes import words_of
 from calm.records.card import ReadCard, VariableSummary
 from calm.records.cf_files import UnreadableError, factor_of, find_times
 from calm.records.headings import read_time_columns
-from calm.records.instrument_series import InstrumentSeries
+from calm.records.instrument_series import PASCALS_PER_DBAR, InstrumentSeries
 from calm.records.velocity import MISSING, flag_variable
 
 if TYPE_CHECKING:
     import xarray as xr
 
-PASCALS_PER_DBAR = 1e4
-
-_PRESSURES = ("sea_water_pressure_due_to_sea_water", "sea_water_pressure")
-_USUAL = ("PRES_REL", "PRES", "pressure", "pres")
 _NOT_MEASURED = re.compile(
     r"\binferred\b|\binterpolated (from|between|using)\b|\bneighbou?r(s|ing)?\b|\bby calm\b"
 )
@@ -63,7 +59,9 @@ def read_sensors(
     for label, path in instrument_series.files_given(given):
         if cf_files.holds_arrays(path):
             with cf_files.opened(path) as dataset:
-                mine = _from_arrays(dataset, path, flags, latitude, seabed)
+                parts = instrument_series.instruments_apart(dataset)
+                each = (_from_arrays(part, path, flags, latitude, seabed) for part in parts)
+                mine = [one for part in each for one in part]
         else:
             mine = _from_csv(path, latitude)
         if label:
@@ -117,7 +115,7 @@ def _from_arrays(
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
     """Return the variable of the pressures, or else of the depths; whether it is the former."""
-    if found := instrument_series.named(dataset, _PRESSURES, _USUAL):
+    if found := instrument_series.named(dataset, *instrument_series.PRESSURE):
         return found[0], True
     for name in map(str, dataset.cf.standard_names.get("depth", [])):
         clock = find_times(dataset, name)

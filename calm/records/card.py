@@ -5,8 +5,8 @@ Its title, summary and comment stand as the file has them; the values, in their 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -110,6 +110,13 @@ class ReadCard:
             "flags": dict(self.flags),
             "declination": self.declination,
         }
+
+
+def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
+    """Return the card of what was read from one file in several parts."""
+    variables = {taken: one for card in cards for taken, one in card.variables.items()}
+    flags = {name: count for card in cards for name, count in card.flags.items()}
+    return replace(cards[0], variables=variables, flags=flags)
 
 
 def card_rows(card: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:

@@ -175,6 +175,10 @@ class CurrentDataset:
         depth, u, v, _ = self.read(index)
         if self._levels is not None:
             variable = self._levels.variable
+            if not (self._terms.on_the_line or np.isfinite(depth).any()):
+                raise cf_files.UnreadableError(
+                    f"the depths of its levels, `{variable.name}`, have no value"
+                )
             told = said_of(variable.attrs)
             summaries["depth"] = VariableSummary.of(str(variable.name), "m", depth, told)
         removed = {}

@@ -6,7 +6,7 @@ to settle: nothing is left out or refused here.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from math import inf
@@ -222,6 +222,80 @@ def step_doubts(times: Times) -> Iterator[str]:
         )
 
 
+@dataclass(frozen=True)
+class WaterLimits:
+    """Least and greatest value of a quantity of sea water, its unit, and units it is mistaken for.
+
+    Each of `likely` is a unit with the factor and the zero that turn it into the usual one.
+    """
+
+    least: float
+    greatest: float
+    unit: str
+    likely: Mapping[str, tuple[float, float]]
+
+
+WATER = {
+    "temperature": WaterLimits(-6.0, 40.0, "°C", {
+        "K": (1.0, -273.15), "degF": (1.0 / 1.8, -32.0 / 1.8), "0.001 degC": (1e-3, 0.0),
+    }),
+    "salinity": WaterLimits(0.0, 42.0, "", {
+        "kg/kg": (1e3, 0.0), "mS/cm, being a conductivity": (0.7, 0.0), "0.001": (1e-3, 0.0),
+    }),
+}  # fmt: skip
+"""The limits of TEOS-10, as in tables of mooring files."""
+_FRACTION = 0.05  # salinity that most of a record is below where it is a mass fraction
+
+
+def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str, bool]:
+    """Return which values no sea water has, what is said of them, and whether they are most.
+
+    Parameters
+    ----------
+    name : of `WATER`
+    values : in its unit; NaN in gaps
+    """
+    limits, known = WATER[name], values[np.isfinite(values)]
+    wrong = (values < limits.least) | (values > limits.greatest)
+    fraction = name == "salinity" and known.size and 0.0 < np.median(known) < _FRACTION
+    if not (wrong.any() or fraction):
+        return wrong, "", False
+    doubted = known if fraction else values[wrong]
+    middle = float(np.median(doubted))
+    likely = [
+        unit for unit, (factor, zero) in limits.likely.items()
+        if limits.least <= factor * middle + zero <= limits.greatest
+    ]  # fmt: skip
+    meant = f": is it in {likely[0]}?" if likely else ""
+    count, span = int((known < _FRACTION).sum()), f"below {_FRACTION:g}"
+    if not fraction:
+        allowed = f"{limits.least:g} to {limits.greatest:g} {limits.unit}".rstrip()
+        count, span = int(wrong.sum()), f"no {name} of sea water, {allowed}"
+    said = f"{count} of {known.size} values are {span}, their median {middle:.4g}{meant}"
+    return wrong, said, bool(2 * wrong.sum() > known.size)
+
+
+def exchanged_pair(values: Floats) -> tuple[int, int] | None:
+    """Return the two of s >= 4 mean values, from the top down, whose exchange puts all in order.
+
+    None where they are in order as they stand, or no exchange or several do it.
+    """
+    if len(values) < 4 or not np.isfinite(values).all():
+        return None
+    falls = np.corrcoef(np.arange(len(values)), values)[0, 1] < 0.0
+    values = -values if falls else values.copy()
+    if (np.diff(values) >= 0.0).all():
+        return None
+    found = []
+    for i in range(len(values)):
+        for j in range(i + 1, len(values)):
+            other = values.copy()
+            other[[i, j]] = other[[j, i]]
+            if (np.diff(other) >= 0.0).all():
+                found.append((i, j))
+    return found[0] if len(found) == 1 else None
+
+
 def _level_names(depth: Floats) -> list[str]:
     return [f" at {depth[k]:g} m" if depth.ndim == 1 and np.isfinite(depth[k]) else
             f" at level {k + 1}" for k in range(depth.shape[-1])]  # fmt: skip
@@ -270,7 +344,7 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
         edges = np.flatnonzero(np.diff(np.concatenate([[0], same[:, k].astype(np.int8), [0]])))
         runs = edges[1::2] - edges[::2] + 1
         most = int(runs.max(initial=0))
-        mostly = same[:, k].sum() > 0.5 * max(int(known[:, k].sum()) - 1, _FEWEST)
+        mostly = same[:, k].sum() > max(0.5 * (int(known[:, k].sum()) - 1), _FEWEST)
         if most >= fewest or mostly:
             stuck += 1
             if most > longest[0]:
