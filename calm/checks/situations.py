@@ -28,8 +28,8 @@ from calm.files.logbook import DeployedItem
 from calm.physics.line import Water
 from calm.quantities import say
 from calm.records.current_file import strongest_of
-from calm.records.current_terms import left_out
 from calm.records.grids import kilometres_from
+from calm.records.value_tests import left_out
 from calm.solve import Status
 
 STILL, STILL_LOW = "still water", "still low water"

@@ -15,8 +15,8 @@ from calm.files.definition import DENSITY, Model, QuantityField, Text, described
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
 from calm.records import profile_tables
-from calm.records.current_terms import left_out
 from calm.records.profile_tables import QuantityTable
+from calm.records.value_tests import left_out
 from calm.units import QuantityError, QuantityRange
 
 USUAL_DENSITY = {"water": definition.CATALOGUE_DENSITY, "air": 1.225}

@@ -13,6 +13,7 @@ import numpy as np
 from calm.errors import Problem, about_quantity, shown, unknown
 from calm.physics.line import Booleans, Floats, Integers
 from calm.quantities import bearing_of
+from calm.records.card import ReadCard
 from calm.records.current_terms import DEEPEST, Terms, too_deep, too_fast
 from calm.records.delimited import is_gap, plain_numbers
 from calm.records.headings import column_unit, heading, magnetic_columns
@@ -209,8 +210,9 @@ _WATER = {"depth": _DEPTH, "density": DENSITY, "temperature": TEMPERATURE, "sali
 class CurrentTable:
     """Hold a current: east, north and upward speeds [m/s] at increasing depths [m].
 
-    `record` is the file of many times that it is one of, and how that is read; `doubts` is what is
-    odd about its directions as they were written.
+    `record` is the file of many times that this profile is from, with the terms for reading it.
+    `doubts` are unusual features of its directions as written, and `card` describes what was read
+    from its file.
     """
 
     depth: tuple[float, ...]
@@ -219,6 +221,7 @@ class CurrentTable:
     w: tuple[float, ...]
     record: tuple[Path, Terms] | None = field(default=None, compare=False, repr=False)
     doubts: tuple[str, ...] = field(default=(), compare=False, repr=False)
+    card: ReadCard | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
