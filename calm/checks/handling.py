@@ -194,11 +194,8 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
     """Of a line whose float is at the surface: whether its lower end comes up by itself."""
     if isnan(arrival):
         depth = say("depth", float(rise.hangs_at[rise.released]))
-        message = (
-            f"Released, {lowest.label} does not come up: it hangs from the float, down to {depth}."
-        )
-        remedy = "Haul it in; mind its weight."
-        return verdict_on(lowest, State.WARN, message, remedy)
+        message = f"Once free, {lowest.label} hangs from the float, down to {depth}: haul it in."
+        return verdict_on(lowest, State.PASS, message)
     minutes = arrival / 60.0
     message = f"Released, {lowest.label} comes up after {minutes:.0f} minutes."
     return verdict_on(lowest, State.PASS, message, value=rise.rise_speed)

@@ -167,7 +167,8 @@ def _release_words(
 
 @rule("strength-steps")
 def strength_steps(result: LegResult) -> Iterator[Verdict]:
-    """Every weak link: a piece that bears less than half of what the cables on both its sides do.
+    """Every weak link: a piece that is good for less than half of what the cables on both its sides
+    are, and bears more than half of that.
 
     A line whose strength jumps carries weight for nothing, and parts at its weak link. Where there
     is none, the piece nearest to one is reported. Chain is left out of the comparison: it is
@@ -180,7 +181,12 @@ def strength_steps(result: LegResult) -> Iterator[Verdict]:
         for one in result.file.pieces[:-1]
     ]
     steps = sorted(_steps(result, loads), key=lambda step: (step[0], step[1].label))
-    weak = [step for step in steps if step[0] < WEAK_LINK]
+    pull = result.components.tension
+    weak = [
+        step for step in steps if step[0] < WEAK_LINK and pull[step[1].index] > WEAK_LINK * step[2]
+    ]
+    if not weak:
+        steps = [step for step in steps if step[0] >= WEAK_LINK]
     for _, piece, load, cables in weak or steps[:1]:
         yield at_least(
             piece,

@@ -17,8 +17,8 @@ from calm.drop.fall_record import piece_tensions
 from calm.drop.motion import FallingAnchor, NoStep
 from calm.errors import UsageError
 from calm.physics.line import Floats, Line, Water
-from calm.physics.track import head_count
 from calm.quantities import bearing_of
+from calm.solve import looped
 
 AXIAL_DRAG_BAND = 2.0
 """Factor by which the drag along the line and of the anchor may be more, or less, than given."""
@@ -185,7 +185,5 @@ def _at_last(drop: Motion, fineness: Fineness, along: float, of_anchor: float) -
 
 def _tangles(drop: Motion) -> tuple[int, ...]:
     """Return the pieces with a bar whose lower end is up when the anchor lands."""
-    chain, height = drop.mover.chain, drop.states[-1].node[:, 2]
-    back = np.diff(height) > 0.0
-    pieces = np.unique(chain.piece[back])
-    return tuple(int(piece) for piece in pieces if piece >= head_count(chain.line))
+    chain = drop.mover.chain
+    return looped(chain.line, chain.piece, np.diff(drop.states[-1].node[:, 2]))

@@ -80,7 +80,8 @@ RULES = {
         "the profiles of a record are solved with it at its upper stop", figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "tension",
         "every piece, compared with the cables above and below it",
-        "half of their strength, as far as sources give both: a warning",
+        "half of their strength, as far as sources give both, of a piece that bears more than half "
+        "of what it is good for: a warning",
         "A default of this program: half the strength of the cables on both its sides",
         "the strengths of pieces side by side do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",
@@ -221,8 +222,8 @@ RULES = {
         _ONCE),
     "swivel": RuleText("Swivel", "",
         "steel wire that ends at a float with no chain or rope between",
-        "a swivel between them, or wire that is `torque_balanced`, or called so by its name, "
-        "material or note where it does not give that: a warning",
+        "a swivel between them or at its other end, or wire that is `torque_balanced`, or called "
+        "so by its name, material or note where it does not give that: a warning",
         "A default of this program: wire that twists under load kinks when the load goes",
         _ONCE),
     "metals": RuleText("Dissimilar metals", "potential",
