@@ -40,8 +40,8 @@ class LegResult:
     leg : the solved leg
     type : ``subsurface``, ``surface`` or ``tow``
     top : upper end
-    anchor : load on the anchor; NaN for a leg without an anchor, whose last component is a stand-in
-        without meaning
+    anchor_load : load on the anchor; NaN for a leg without an anchor, whose last component is a
+        stand-in without meaning. `anchor` is None for such a leg
     tow_point, body : both ends of a tow; None for other legs
     ends : loads on the anchor and on other fixed ends
     still_shape : shape in still water; None without a unique shape
@@ -60,7 +60,7 @@ class LegResult:
     closure: float
     accuracy: Accuracy
     top: Top
-    anchor: AnchorLoad
+    anchor_load: AnchorLoad
     strumming: Strumming | None
     components: Components
     clamps: Clamps
@@ -96,6 +96,11 @@ class LegResult:
     def water(self) -> Water:
         """Water of the leg."""
         return self.leg.water
+
+    @property
+    def anchor(self) -> AnchorLoad | None:
+        """Load on the anchor; None for a leg without an anchor."""
+        return self.anchor_load if self.leg.anchored else None
 
     @property
     def towed(self) -> bool:
@@ -163,7 +168,7 @@ def leg_result_of(leg: Leg, solution: Solution, still: Solution | None) -> LegRe
         closure=solution.closure,
         accuracy=accuracy_of(leg, solution),
         top=top_of(components, solution, knockdown),
-        anchor=anchor_load(leg, solution),
+        anchor_load=anchor_load(leg, solution),
         tow_point=tow_point_of(solution) if leg.towed else None,
         body=body_of(solution) if leg.towed else None,
         ends=tuple(end_loads(leg, components, solution)),

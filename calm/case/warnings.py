@@ -70,7 +70,7 @@ def _same_serial(result: LegResult, _: Solution) -> Iterator[str]:
 
 
 def _anchor_too_light(result: LegResult, _: Solution) -> Iterator[str]:
-    anchor = result.anchor
+    anchor = result.anchor_load
     if anchor.weight < anchor.required_weight:
         of = f" of leg {result.name}" if result.leg.of_several else ""
         yield (

@@ -281,7 +281,7 @@ def anchor_weight(leg: Leg) -> Iterator[Criterion]:
         words,
         source=cited(leg.file, "anchor_factor", "anchor_friction"),
         lacks="weight",
-        stated=lambda required, result: (result.anchor.weight, required),
+        stated=lambda required, result: (result.anchor_load.weight, required),
     )
 
 
@@ -314,16 +314,18 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
 
     def held(result: LegResult) -> float:
         assert weight is not None
-        return friction * (weight / factor - result.anchor.vertical)
+        return friction * (weight / factor - result.anchor_load.vertical)
 
     def words(_: float, result: LegResult) -> tuple[str, str]:
-        pulls = f"The horizontal pull of the line is {say('tension', result.anchor.horizontal)}"
+        pulls = (
+            f"The horizontal pull of the line is {say('tension', result.anchor_load.horizontal)}"
+        )
         if weight is None:
             return f"{pulls}; the anchor's weight in water is not known.", _WHAT_IS_IT
         return (
             f"{pulls}; friction of {friction:.4g}{down} holds "
             f"{say('tension', max(held(result), 0.0))}.",
-            _heavier(leg, result.anchor.required_weight),
+            _heavier(leg, result.anchor_load.required_weight),
         )
 
     yield Criterion(
@@ -333,7 +335,7 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
         words,
         source=cited(leg.file, "anchor_factor", "anchor_friction"),
         lacks="weight",
-        stated=lambda _, result: (result.anchor.horizontal, held(result)),
+        stated=lambda _, result: (result.anchor_load.horizontal, held(result)),
     )
 
 

@@ -105,7 +105,7 @@ def _travel(profiler: ProfilerTravel) -> str:
 
 def _mooring_summary(result: LegResult) -> tuple[Line, ...]:
     """The top, and the loads on the anchor, which most legs of a net have not."""
-    top, anchor = result.top, result.anchor
+    top, anchor = result.top, result.anchor_load
     off = f", {say('offset', math.hypot(top.x, top.y))} off the anchor"
     off *= result.leg.anchored
     if result.type == "surface":
