@@ -255,7 +255,7 @@ RULES = {
         "A default of this program: faster, an anchor may bury itself or break what stands on it",
         _ONCE, figures=("kt",)),
     "recovery": RuleText("Rise", "speed",
-        "speed of the rise without the anchor",
+        "speed of the rise without the anchor, of a line with a release or below the surface",
         "`minimum_rise_speed`, 0.3 m/s; a warning below 0.7 m/s and above 3 m/s",
         "Defaults of this program: below 0.3 m/s a rise is in doubt, below 0.7 m/s it takes long; "
         "above 3 m/s floats leap and the line loops",
