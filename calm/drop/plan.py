@@ -17,9 +17,8 @@ from calm.errors import NoEquilibrium
 from calm.files import Position
 from calm.physics.line import Floats
 from calm.positions import Frame
-from calm.quantities import bearing_of
+from calm.quantities import bearing_of, in_si
 from calm.solve import Status
-from calm.units import in_si
 
 ASTRAY = 1e-3
 """Allowed distance between the line at rest and its equilibrium, as a share of the depth; beyond
