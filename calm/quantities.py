@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from functools import cache
 from math import atan2, ceil, degrees, floor, log10
 
-from calm.errors import UsageError, about_quantity, unknown
-from calm.units import QuantityError, parse_quantity
+from calm.errors import UsageError, unknown
 
 
 @dataclass(frozen=True)
@@ -318,16 +317,3 @@ def chosen_quantities(text: str | None) -> tuple[str, ...]:
             known = (*QUANTITIES_MEASURED, *archived)
             raise UsageError(unknown(f"--variables: `{name}` is not gridded", name, known))
     return tuple(dict.fromkeys(archived.get(name, name) for name in wanted))
-
-
-def in_si(name: str, value: float | str, dimension: str) -> float:
-    """Return an argument in SI (degrees, degC): a number as it is, a text with its unit converted.
-
-    UsageError, with the name of the argument: the text is no quantity of this dimension.
-    """
-    if not isinstance(value, str):
-        return value
-    try:
-        return parse_quantity(value, dimension)
-    except QuantityError as error:
-        raise UsageError(about_quantity(name, value, error)) from error

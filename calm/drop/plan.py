@@ -15,9 +15,10 @@ from calm.drop.fall_record import rest_difference
 from calm.drop.motion import ChainState
 from calm.errors import NoEquilibrium
 from calm.files import Position
+from calm.files.definition import in_si
 from calm.physics.line import Floats
 from calm.positions import Frame
-from calm.quantities import bearing_of, in_si
+from calm.quantities import bearing_of
 from calm.solve import Status
 
 ASTRAY = 1e-3

@@ -2,8 +2,7 @@ import math
 
 import pytest
 
-from calm.errors import UsageError
-from calm.quantities import QUANTITIES, SHOWN_UNITS, in_si, say, show_in, shown_units
+from calm.quantities import QUANTITIES, SHOWN_UNITS, say, show_in, shown_units
 from calm.units import unit_factor
 
 
@@ -100,10 +99,3 @@ def test_the_units_of_results_are_the_usual_ones(shown, units):
     shown(units)
     assert shown_units() == {}
     assert say("tension", 7003.4) == "7003 N"
-
-
-def test_an_argument_is_a_number_in_si_or_a_text_with_its_unit():
-    assert in_si("ship_speed", 1.5, "speed") == 1.5
-    assert in_si("ship_speed", "2 knot", "speed") == pytest.approx(1.02889, rel=1e-5)
-    with pytest.raises(UsageError, match="`ship_speed: 2 m`"):
-        in_si("ship_speed", "2 m", "speed")
