@@ -14,7 +14,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from calm.errors import UsageError, about_quantity
 from calm.positions import HEMISPHERES, degrees_of
 
 if TYPE_CHECKING:
@@ -238,19 +237,6 @@ class QuantityRange:
         if value > self.at_most:
             raise QuantityError(f"must be at most {self.at_most:g} {unit}".rstrip())
         return value
-
-
-def in_si(name: str, value: float | str, dimension: str) -> float:
-    """Return an argument in SI (degrees, degC): a number as it is, a text with its unit converted.
-
-    UsageError, with the name of the argument: the text is no quantity of this dimension.
-    """
-    if not isinstance(value, str):
-        return value
-    try:
-        return parse_quantity(value, dimension)
-    except QuantityError as error:
-        raise UsageError(about_quantity(name, value, error)) from error
 
 
 def with_unit(value: float, unit: str) -> str:

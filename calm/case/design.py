@@ -450,7 +450,9 @@ class Result:
 
     @property
     def anchor(self) -> AnchorLoad:
-        """Load on the anchor of the leg."""
+        """Load on the anchor of the leg; UsageError for a tow."""
+        if self.leg.anchor is None:
+            raise UsageError(f"{self.name} has no anchor")
         return self.leg.anchor
 
     @property

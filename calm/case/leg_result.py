@@ -108,7 +108,7 @@ class LegResult:
         return top_of(self.solution, self.still)
 
     @cached_property
-    def anchor(self) -> AnchorLoad:
+    def anchor_load(self) -> AnchorLoad:
         """Load on the anchor; NaN for a leg without an anchor."""
         return anchor_load(self.leg, self.solution)
 
@@ -176,6 +176,11 @@ class LegResult:
     def water(self) -> Water:
         """Water of the leg."""
         return self.leg.water
+
+    @property
+    def anchor(self) -> AnchorLoad | None:
+        """Load on the anchor; None for a leg without an anchor."""
+        return self.anchor_load if self.leg.anchored else None
 
     @property
     def towed(self) -> bool:

@@ -60,7 +60,7 @@ class _Measured(Protocol):
     @property
     def water(self) -> Water: ...
     @property
-    def anchor(self) -> AnchorLoad: ...
+    def anchor_load(self) -> AnchorLoad: ...
     @property
     def components(self) -> Components: ...
     @property
@@ -101,7 +101,7 @@ def _same_serial(result: _Measured, _: Solution) -> Iterator[str]:
 
 
 def _anchor_too_light(result: _Measured, _: Solution) -> Iterator[str]:
-    anchor = result.anchor
+    anchor = result.anchor_load
     if anchor.weight < anchor.required_weight:
         of = f" of leg {result.name}" if result.leg.of_several else ""
         yield (

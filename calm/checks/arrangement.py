@@ -120,27 +120,29 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
 
 @rule("swivel", once=True)
 def swivel(handling: Handling) -> Iterator[Verdict]:
-    """A swivel between every wire that bears torque and a float that leans and turns with it.
+    """A swivel at an end of every wire that bears torque, if a float that leans holds that end.
 
     A wire rope that is not torque-balanced turns under load and back as the load goes, and a float
-    in the current holds it: it kinks. Chain and synthetic rope between them bear no torque.
+    in the current holds it: it kinks. A swivel at either end lets it turn, as do chain and
+    synthetic rope, which bear no torque.
     """
     pieces = handling.leg.file.pieces
     for index, piece in enumerate(pieces):
         if not _bears_torque(piece.component):
             continue
-        for way in (pieces[:index][::-1], pieces[index + 1 :]):
-            held = _held_by(way)
-            if held is None:
-                continue
-            beside, has_swivel = held
-            ends = f"{piece.label} is not torque-balanced and ends at {beside.label}"
-            if has_swivel:
-                yield verdict_on(piece, State.PASS, f"{ends}, with a swivel between them.")
-            else:
-                message = f"{ends}, which leans in the current, without a swivel between them."
-                remedy = "Put a swivel there, or take wire that is `torque_balanced`."
-                yield verdict_on(piece, State.WARN, message, remedy)
+        ways = (pieces[:index][::-1], pieces[index + 1 :])
+        ends = [held for way in ways if (held := _held_by(way)) is not None]
+        if not ends:
+            continue
+        turning = next((beside for beside, has_swivel in ends if has_swivel), None)
+        beside = turning or ends[0][0]
+        told = f"{piece.label} is not torque-balanced and ends at {beside.label}"
+        if turning is not None:
+            yield verdict_on(piece, State.PASS, f"{told}, with a swivel between them.")
+        else:
+            message = f"{told}, which leans in the current, without a swivel between them."
+            remedy = "Put a swivel there, or take wire that is `torque_balanced`."
+            yield verdict_on(piece, State.WARN, message, remedy)
 
 
 def _bears_torque(component: Component) -> bool:

@@ -11,6 +11,7 @@ from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss, Recovery
 from calm.checks.strength import lesser_load, passes_load_on, wanted_load
+from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import LinePart
 from calm.quantities import QUANTITIES, say
@@ -23,6 +24,14 @@ FAST_RISE_SPEED = 3.0
 """A rise faster than this is warned of: the floats leap beside the ship, the line loops [m/s]."""
 
 
+def is_hauled_in(handling: Handling) -> bool:
+    """Whether a line without a release is hauled in from its float at the surface, anchor and all.
+
+    Nothing of it rises by itself.
+    """
+    return handling.leg.file.release is None and reaches_the_surface(handling.leg)
+
+
 @rule("backup", once=True, case="B")
 def backup(handling: Handling) -> Iterator[Verdict]:
     """Net buoyancy of what holds the release after the worst break, or the worst loss of a float.
@@ -33,9 +42,9 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     hauled in by it.
     """
     if handling.leg.file.release is None:
-        if reaches_the_surface(handling.leg):
+        if is_hauled_in(handling):
             message = "Without a release the line is hauled in; what is below a break stays there."
-            yield verdict_on(None, State.PASS, message)
+            yield verdict_on(None, State.NOT_JUDGED, message)
             return
         yield unknown(
             None,
@@ -145,7 +154,11 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
 
 @rule("recovery", once=True, case="R")
 def recovery(handling: Handling) -> Iterator[Verdict]:
-    """Terminal speed of the line as it rises without its anchor."""
+    """Terminal speed of the line as it rises without its anchor, unless it is hauled in."""
+    if is_hauled_in(handling):
+        message = "Without a release the line is hauled in with its anchor: nothing rises."
+        yield verdict_on(None, State.NOT_JUDGED, message)
+        return
     rise, limit = handling.recovery, handling.leg.file.checks.minimum_rise_speed
     if isinstance(rise, NoEquilibrium):
         yield _unsolved("rise", rise)
@@ -182,10 +195,12 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
     """Return whether the line doubles back on itself as it falls or rises."""
     fall, rise = "In the fall the parts above overtake", "In the rise the parts below overtake"
     lower = "Pay the line out under tension, or lower the anchor."
-    for motion, what, remedy, case in (
-        (handling.launch, fall, lower, "L"),
-        (handling.recovery, rise, "Put more of the buoyancy at the top.", "R"),
-    ):
+    motions: list[tuple[Launch | Recovery | NoEquilibrium, str, str, str]]
+    motions = [(handling.launch, fall, lower, "L")]
+    if not is_hauled_in(handling):
+        up = "Put more of the buoyancy at the top."
+        motions.append((handling.recovery, rise, up, "R"))
+    for motion, what, remedy, case in motions:
         if not isinstance(motion, NoEquilibrium) and motion.tangles:
             pieces = [handling.leg.file.pieces[piece] for piece in motion.tangles]
             named = ", ".join(piece.label for piece in pieces[:3])
@@ -198,11 +213,8 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
     """Of a line whose float is at the surface: whether its lower end comes up by itself."""
     if isnan(arrival):
         depth = say("depth", float(rise.hangs_at[rise.released]))
-        message = (
-            f"Released, {lowest.label} does not come up: it hangs from the float, down to {depth}."
-        )
-        remedy = "Haul it in; mind its weight."
-        return verdict_on(lowest, State.WARN, message, remedy)
+        message = f"Once free, {lowest.label} hangs from the float, down to {depth}: haul it in."
+        return verdict_on(lowest, State.PASS, message)
     minutes = arrival / 60.0
     message = f"Released, {lowest.label} comes up after {minutes:.0f} minutes."
     return verdict_on(lowest, State.PASS, message, value=rise.rise_speed)

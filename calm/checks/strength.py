@@ -167,7 +167,8 @@ def _release_words(
 
 @rule("strength-steps")
 def strength_steps(result: LegResult) -> Iterator[Verdict]:
-    """Every weak link: a piece that bears less than half of what the cables on both its sides do.
+    """Every weak link: a piece that is good for less than half of what the cables on both its sides
+    are, and bears more than half of that.
 
     A line whose strength jumps carries weight for nothing, and parts at its weak link. Where there
     is none, the piece nearest to one is reported. Chain is left out of the comparison: it is
@@ -180,7 +181,12 @@ def strength_steps(result: LegResult) -> Iterator[Verdict]:
         for one in result.file.pieces[:-1]
     ]
     steps = sorted(_steps(result, loads), key=lambda step: (step[0], step[1].label))
-    weak = [step for step in steps if step[0] < WEAK_LINK]
+    pull = result.components.tension
+    weak = [
+        step for step in steps if step[0] < WEAK_LINK and pull[step[1].index] > WEAK_LINK * step[2]
+    ]
+    if not weak:
+        steps = [step for step in steps if step[0] >= WEAK_LINK]
     for _, piece, load, cables in weak or steps[:1]:
         yield at_least(
             piece,
@@ -275,7 +281,7 @@ def anchor_weight(leg: Leg) -> Iterator[Criterion]:
         words,
         source=cited(leg.file, "anchor_factor", "anchor_friction"),
         lacks="weight",
-        stated=lambda required, result: (result.anchor.weight, required),
+        stated=lambda required, result: (result.anchor_load.weight, required),
         stated_least=True,
     )
 
@@ -309,16 +315,18 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
 
     def held(result: LegResult) -> float:
         assert weight is not None
-        return friction * (weight / factor - result.anchor.vertical)
+        return friction * (weight / factor - result.anchor_load.vertical)
 
     def words(_: float, result: LegResult) -> tuple[str, str]:
-        pulls = f"The horizontal pull of the line is {say('tension', result.anchor.horizontal)}"
+        pulls = (
+            f"The horizontal pull of the line is {say('tension', result.anchor_load.horizontal)}"
+        )
         if weight is None:
             return f"{pulls}; the anchor's weight in water is not known.", _WHAT_IS_IT
         return (
             f"{pulls}; friction of {friction:.4g}{down} holds "
             f"{say('tension', max(held(result), 0.0))}.",
-            _heavier(leg, result.anchor.required_weight),
+            _heavier(leg, result.anchor_load.required_weight),
         )
 
     yield Criterion(
@@ -328,7 +336,7 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
         words,
         source=cited(leg.file, "anchor_factor", "anchor_friction"),
         lacks="weight",
-        stated=lambda _, result: (result.anchor.horizontal, held(result)),
+        stated=lambda _, result: (result.anchor_load.horizontal, held(result)),
     )
 
 

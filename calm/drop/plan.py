@@ -15,11 +15,11 @@ from calm.drop.fall_record import rest_difference
 from calm.drop.motion import ChainState
 from calm.errors import NoEquilibrium
 from calm.files import Position
+from calm.files.definition import in_si
 from calm.physics.line import Floats
 from calm.positions import Frame
 from calm.quantities import bearing_of
 from calm.solve import Status
-from calm.units import in_si
 
 ASTRAY = 1e-3
 """Allowed distance between the line at rest and its equilibrium, as a share of the depth; beyond
@@ -216,8 +216,8 @@ def drop_plan(
 
     Parameters
     ----------
-    ship_speed : speed of the ship over the ground [m/s]; it, `streamed` and `course` may be texts
-        with a unit, such as ``"2 knot"``
+    ship_speed : speed of the ship over the ground [m/s]; `ship_speed`, `streamed` and `course` may
+        be texts with a unit, such as ``"2 knot"``
     streamed : horizontal distance from the anchor to the free end at the release [m]; by default
         the distance under tow
     course : course of the ship over the ground [degrees]; by default against the current at the

@@ -25,9 +25,17 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
+from calm.errors import UsageError, about_quantity
 from calm.physics.materials import MATERIAL_NAMES
 from calm.positions import HEMISPHERES
-from calm.units import DIMENSIONS, KILOGRAM_FORCE, QuantityRange, with_unit
+from calm.units import (
+    DIMENSIONS,
+    KILOGRAM_FORCE,
+    QuantityError,
+    QuantityRange,
+    parse_quantity,
+    with_unit,
+)
 
 
 class Model(BaseModel):
@@ -117,6 +125,19 @@ Role = Annotated[
 def quantity_of(field: FieldInfo) -> QuantityField | None:
     """Return the quantity that a field of a model holds, None where it holds none."""
     return next((one for one in field.metadata if isinstance(one, QuantityField)), None)
+
+
+def in_si(name: str, value: float | str, dimension: str) -> float:
+    """Return an argument in SI (degrees, degC): a number as it is, a text with its unit converted.
+
+    UsageError, with the name of the argument: the text is no quantity of this dimension.
+    """
+    if not isinstance(value, str):
+        return value
+    try:
+        return parse_quantity(value, dimension)
+    except QuantityError as error:
+        raise UsageError(about_quantity(name, value, error)) from error
 
 
 CATALOGUE_DENSITY = 1025.0

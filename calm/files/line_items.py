@@ -23,7 +23,7 @@ _ITEM_KEYS = frozenset(item_keys.ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
 _SOURCE_KEYS = frozenset({"source", "sources"})
 _CLAMP_KEYS = frozenset(item_keys.ClampKeys.model_fields)
-_Component = TypeVar("_Component", bound=Component)
+_Part = TypeVar("_Part", Piece, Clamp)
 _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
@@ -334,7 +334,7 @@ class LineReader:
                 message = unknown(f"`{key}` cannot be set on an assembly", key, allowed)
                 item.refuse((key,), message, key=True)
             figures = {key: item.data[key] for key in item.data.keys() - _ASSEMBLY_KEYS & allowed}
-            section = item.holding(figures).over(entry.section, dropping=())
+            section = item.holding(figures).over(entry.section)
             filling = self._define(entry, section) if figures else definition
             return filling if isinstance(filling, Assembly) else None
         if definition is None:
@@ -430,24 +430,22 @@ class LineReader:
 
 
 def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Piece:
-    """Return a piece of an assembly with a figure where it or its clamps lack it."""
+    """Add a figure to a piece of an assembly, or to clamps on it, that lack the figure."""
 
-    def filled(component: _Component, *, clamped: bool) -> _Component:
-        if not _lacks(component, key, clamped=clamped):
-            return component
+    def filled(part: _Part) -> _Part:
+        component: Component = part.component
+        if not _lacks(component, key, clamped=isinstance(part, Clamp)):
+            return part
         known: dict[str, Any] = {key: value}
         if source:
             known["sources"] = {**(component.sources or {}), key: source}
-        return component.model_copy(update=known)
+        return replace(part, component=component.model_copy(update=known))
 
-    def with_clamp(clamp: Clamp) -> Clamp:
-        return replace(clamp, component=filled(clamp.component, clamped=True))
-
-    return piece.with_clamps(with_clamp, component=filled(piece.component, clamped=False))
+    return filled(piece.with_clamps(filled))
 
 
 def _lacks(component: Component, key: str, *, clamped: bool) -> bool:
-    """Whether a component needs a figure in its place and does not give it."""
+    """Whether a component that needs a figure in its place does not specify it."""
     if key in ("working_load", "breaking_load"):
         return not clamped and component.working_load is component.breaking_load is None
     if key == "grip":

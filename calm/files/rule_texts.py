@@ -98,7 +98,8 @@ RULES = {
         "the profiles of a record are solved with it at its upper stop", figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "tension",
         "every piece, compared with the cables above and below it",
-        "half of their strength, as far as sources give both: a warning",
+        "half of their strength, as far as sources give both, of a piece that bears more than half "
+        "of what it is good for: a warning",
         "A default of this program: half the strength of the cables on both its sides",
         "the strengths of pieces side by side do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",
@@ -254,8 +255,8 @@ RULES = {
         _ONCE),
     "swivel": RuleText("Swivel", "",
         "steel wire that ends at a float with no chain or rope between",
-        "a swivel between them, or wire that is `torque_balanced`, or called so by its name, "
-        "material or note where it does not give that: a warning",
+        "a swivel between them or at its other end, or wire that is `torque_balanced`, or called "
+        "so by its name, material or note where it does not give that: a warning",
         "A default of this program: wire that twists under load kinks when the load goes",
         _ONCE),
     "metals": RuleText("Dissimilar metals", "potential",
@@ -287,7 +288,7 @@ RULES = {
         "A default of this program: faster, an anchor may bury itself or break what stands on it",
         _ONCE, figures=("kt",)),
     "recovery": RuleText("Rise", "speed",
-        "speed of the rise without the anchor",
+        "speed of the rise without the anchor, of a line with a release or below the surface",
         "`minimum_rise_speed`, 0.3 m/s; a warning below 0.7 m/s and above 3 m/s",
         "Defaults of this program: below 0.3 m/s a rise is in doubt, below 0.7 m/s it takes long; "
         "above 3 m/s floats leap and the line loops",

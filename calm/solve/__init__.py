@@ -3,6 +3,7 @@
 from calm.solve.fit import fit_length as fit_length
 from calm.solve.fit import fit_tow_length as fit_tow_length
 from calm.solve.free import FreeMotion as FreeMotion
+from calm.solve.free import looped as looped
 from calm.solve.free import part_of as part_of
 from calm.solve.free import solve_rise as solve_rise
 from calm.solve.free_search import plumb_speed as plumb_speed

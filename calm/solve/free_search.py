@@ -78,13 +78,13 @@ def plumb_speed(line: Line, water: Water, top: float) -> float:
 
     Parameters
     ----------
-    line, water : see `calm.physics.line`; the current and the stretch are left out
+    line, water : see `calm.physics.line`; the current and the stretch are neglected
     top : depth of the line's upper end [m]
 
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` where nothing limits the speed.
+        ``no-equilibrium`` if no piece has drag.
     """
     whole = np.where(line.flexible, line.length, 1.0)
     middle = top + np.cumsum(line.length) - 0.5 * line.length
@@ -104,7 +104,7 @@ def plumb_speed(line: Line, water: Water, top: float) -> float:
     ]
 
     def lifted(_: None, squared: float) -> float:
-        """What lifts the line at the signed square of a speed [N]."""
+        """Vertical imbalance at a signed squared speed [N]."""
         drag = across.copy()
         for place, curve, reynolds in smooth:
             drag[place] *= curve.factor(reynolds * sqrt(abs(squared)))

@@ -6,7 +6,6 @@ import pint
 import pytest
 
 from calm import units
-from calm.errors import UsageError
 from calm.units import DIMENSIONS, QuantityError, parse_quantity, unit_factor
 
 REGISTRY = pint.UnitRegistry()
@@ -205,10 +204,3 @@ def test_kilograms_of_what_is_usual_in_kilonewtons_may_be_either() -> None:
     with pytest.raises(QuantityError) as error:
         parse_quantity("49.8 kg", "force", usual_unit="N")  # as of buoyancies, given in kilograms
     assert error.value.suggestion == "49.8 kgf"
-
-
-def test_an_argument_is_a_number_in_si_or_a_text_with_its_unit():
-    assert units.in_si("ship_speed", 1.5, "speed") == 1.5
-    assert units.in_si("ship_speed", "2 knot", "speed") == pytest.approx(1.02889, rel=1e-5)
-    with pytest.raises(UsageError, match="`ship_speed: 2 m`"):
-        units.in_si("ship_speed", "2 m", "speed")

@@ -196,3 +196,12 @@ def test_a_plumb_speed_of_smooth_spheres_is_that_of_the_march():
     assert plumb_speed(ball, STILL, 100.0) == pytest.approx(
         float(solve_rise(ball, STILL, 100.0).velocity[2]), rel=1e-8
     )
+
+
+def test_a_shackle_that_leans_on_the_float_below_it_tangles_with_nothing():
+    """Of a chain with glass on it, the part above the first ball falls back; it is short."""
+    top = rigid(0.0, -5.0, drag=1.0), rope(1.0, weight=20.0, diameter=0.03)
+    float_below = rigid(0.5, 2000.0, drag=200.0), rope(100.0, 2.0)
+    assert solve_rise(line(*top, *float_below), STILL, 100.0).tangles == ()
+    longer = rigid(0.0, -5.0, drag=1.0), rope(3.0, weight=20.0, diameter=0.03)
+    assert 1 in solve_rise(line(*longer, *float_below), STILL, 100.0).tangles
