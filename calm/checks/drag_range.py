@@ -39,7 +39,7 @@ def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_Told]:
         f"coefficient holds up to {power_text(limit)}."
     )
     effect, worse = _effect(result, {one.index for one, _ in rows})
-    remedy = "Check the drag coefficient; `surface: smooth` and `drag: reynolds` take the curve."
+    remedy = "Check its drag coefficient."
     state = State.WARN if worse else State.NOT_JUDGED
     yield result, verdict_on(row.part, state, f"{message}{effect}", remedy)
 

@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from math import ceil
+from textwrap import wrap
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
@@ -40,6 +41,7 @@ from calm.report.page_one import case_columns, short, shown_cases
 MOST_LINES = 40
 """Lines of a mooring in which nothing fails."""
 _WIDTH = 80
+_FRAME = 7  # lines of the head, of what is beyond, around the items and below them
 _MOST_ITEMS = 12  # open items of a mooring that fails
 _MOST_ROWS = 10  # checks with a row of their own
 _HALF = 0.5  # of the capacity: what is used more has a row
@@ -58,7 +60,7 @@ def _of_one(assessment: Assessment) -> Iterator[blocks.Block]:
     likely = [*likelihood_tables([(assessment.name, [*assessment.all_findings()])])]
     items = [_in_short(one) for one in open_items(assessment)]
     beyond = beyond_text([*assessment.all_findings()])
-    room = MOST_LINES - 4 - sum(map(_height, (*cases, *checks, *likely))) - len(beyond)
+    room = MOST_LINES - _FRAME - sum(map(_height, (*cases, *checks, *likely)))
     fails = assessment.verdict is Conclusion.FAILS
     yield verdict
     yield from (*cases, *checks, *likely)
@@ -226,7 +228,7 @@ def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> bloc
     """The items that have room; with `most`, as many of them whatever room they take."""
     kept: list[OpenItem] = []
     for item in items:
-        room -= ceil(len(f"{item.head} {item.text}") / (_WIDTH - 6))
+        room -= len(wrap(f"{item.head} {item.text}", _WIDTH - 3))
         if len(kept) == most or (most is None and room < 0 and kept):
             break
         kept.append(item)

@@ -192,7 +192,8 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
         number(f"Vertical {unit}", lambda row: load_text(row[1].anchor_load.vertical)),
         number(f"Horizontal {unit}", lambda row: load_text(row[1].anchor_load.horizontal)),
         number("Angle from\nvertical °", lambda row: angle(row[1].anchor_load.angle)),
-        number(f"Weight\nrequired {unit}", lambda row: load_text(row[1].anchor_load.required_weight)),
+        number(f"Weight\nrequired {unit}", lambda row: load_text(
+            row[1].anchor_load.required_weight)),
         number("Weight use %", lambda row: percent_text(
             row[1].anchor_load.required_weight / row[1].anchor_load.weight)),
         number("Uplift use %", uplift),

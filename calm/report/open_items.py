@@ -27,6 +27,9 @@ from calm.report.load_cases import LOAD
 OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED)
 """States of what is open, in the order in which it is listed."""
 
+_DIFFERENCES = ("planned-depth", "as-deployed")
+"""Rules whose values are differences, which their messages explain."""
+
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
 
@@ -195,7 +198,7 @@ def _told(group: Sequence[Finding], worst: Finding) -> str:
     if worst.state is State.ESTIMATED:
         estimate = plain(re.split(r" \(", worst.message.partition(" Its ")[2])[0])
         return f"{figures} {_capital(estimate)}. Obtain the maker’s figure."
-    if figures:
+    if figures and worst.rule not in _DIFFERENCES:
         return f"{figures} {worst.remedy or ''}"
     return f"{worst.message} {worst.remedy or ''}"
 
