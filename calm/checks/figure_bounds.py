@@ -137,8 +137,11 @@ def load_bounds(component: Component) -> tuple[float, float, str] | None:
     metals = [one for one in _load_bearing(component) if one.family == "metal"]
     if metals:
         heavier = (metals[0].density or STEEL_DENSITY) - CATALOGUE_DENSITY
-        metal = max(-component.net_buoyancy / (STANDARD_GRAVITY * heavier), LEAST_SHARE * section)
-        return WEAKEST_WIRE * metal, 1.1 * max(strengths) * metal, "weight in water"
+        share = -component.net_buoyancy / (STANDARD_GRAVITY * heavier * section)
+        # a weight that is wrong itself says nothing about the section of metal
+        least, most = (share, share) if LEAST_SHARE <= share <= 1.0 else (LEAST_SHARE, 1.0)
+        stress = 1.1 * max(strengths)
+        return WEAKEST_WIRE * least * section, stress * most * section, "weight in water"
     yarn = ROPE_EFFICIENCY * max(strengths) * section
     return WEAKEST_ROPE * min(strengths) * section, yarn, "diameter and material"
 

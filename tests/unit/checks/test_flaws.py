@@ -97,7 +97,7 @@ FLAWS = (
         "wave-strength",
         "floating rope",
         "unknown",
-        "gives no `stiffness`",
+        "has no `stiffness`",
     ),
     Flaw(
         "a line that snatches",
@@ -820,7 +820,7 @@ FLAWS = (
         "figures",
         "wire 1",
         "fail",
-        "wire 1 bears 4.8e+07 N; no cable of its diameter bears",
+        "wire 1 bears 48000000 N; no cable of its weight in water bears",
     ),
     Flaw(
         "a wire that floats",
