@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from calm.cli import options
-from calm.cli.outputs import STDOUT, ExitCode, OutputPath, narrate, show
+from calm.cli.outputs import STDOUT, ExitCode, OutputPath, narrate, narrate_card, show
 from calm.errors import InputError, Problem, UsageError
 
 if TYPE_CHECKING:
@@ -198,6 +198,12 @@ def _tell(imported: Imported, target: Path, record: Path | None) -> None:
     for match in imported.matched:
         narrate(f"{imported.file}: {match.name} is {match.entry} of the catalogue")
     if record is not None:
+        from calm.records.current_file import open_record
+        from calm.records.current_terms import Terms
+
+        with open_record(record, Terms()) as read:
+            for card in read.cards:
+                narrate_card(card)
         narrate(f"{record} written; solve it with: calm batch {target} --currents {record} -o …")
     narrate(f"{target} written; solve it with: calm run {target}")
 
