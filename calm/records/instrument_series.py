@@ -254,7 +254,7 @@ class _SeriesFile:
             sought = () if quantity.dimension == "speed" else quantity.sought
             taken = dict(zip([name], named(dataset, sought, quantity.usual), strict=False))
         if name == "salinity" and not taken:
-            taken = self._of_conductivity()
+            taken = conductivity_in(dataset)
         if not taken:
             return []
         for one in taken.values():
@@ -296,48 +296,12 @@ class _SeriesFile:
             return current.components(*parts)[0 if name == "u" else 1], []
         if "conductivity" in taken:
             note = "salinity is computed from conductivity, temperature and pressure"
-            return self._practical_salinity(taken, found, who), [note]
+            nominal = np.array([one.nominal for one in who])
+            return practical_salinity(self.dataset, taken, found.values, nominal), [note]
         if name == "temperature":
             return cf_files.converted(first, found.values[0], "degC"), []
         cf_files.refuse_other_salinity(first)
         return found.values[0], []
-
-    def _of_conductivity(self) -> dict[str, str]:
-        """Return the variables that a salinity is computed from; none without a conductivity."""
-        temperature = QUANTITIES_MEASURED["temperature"]
-        sought = {
-            "conductivity": CONDUCTIVITY,
-            "temperature": (temperature.sought, temperature.usual),
-            "pressure": PRESSURE,
-        }
-        found = {taken: named(self.dataset, *names)[:1] for taken, names in sought.items()}
-        taken = {taken: names[0] for taken, names in found.items() if names}
-        return taken if {"conductivity", "temperature"} <= taken.keys() else {}
-
-    def _practical_salinity(
-        self, taken: Mapping[str, str], found: Readings, who: Sequence[Identity]
-    ) -> Floats:
-        """Return (n, k) practical salinities (PSS-78); without pressures, at nominal depths.
-
-        10 dbar amiss are 0.004 in salinity.
-        """
-        import gsw
-
-        convert = {
-            "conductivity": lambda one, values: cf_files.converted(one, values, "mS/cm"),
-            "temperature": lambda one, values: cf_files.converted(one, values, "degC"),
-            "pressure": _decibars,
-        }
-        parts = {
-            each: convert[each](self.dataset[one], values)
-            for (each, one), values in zip(taken.items(), found.values, strict=True)
-        }
-        nominal = gsw.p_from_z(-np.array([one.nominal for one in who]), _LATITUDE)
-        pressure = parts.get("pressure", np.full_like(parts["temperature"], np.nan))
-        pressure = np.where(np.isfinite(pressure), pressure, nominal)
-        with np.errstate(invalid="ignore"):
-            salinity: Floats = gsw.SP_from_C(parts["conductivity"], parts["temperature"], pressure)
-        return salinity
 
     def _median_pressure(self, found: Readings) -> float:
         """Return the median pressure of the one instrument of a file [dbar]; NaN without."""
@@ -370,6 +334,52 @@ class _SeriesFile:
         if levels.instrument is None or time in levels.variable.dims:
             raise UnreadableError(f"`{along}` counts neither instruments nor bins of a profiler")
         return np.asarray(known_values(levels.variable) * levels.factor)
+
+
+def conductivity_in(dataset: xr.Dataset) -> dict[str, str]:
+    """Return the variables that a salinity is computed from, by what they are.
+
+    Conductivity, temperature and, where there is one, pressure; none without the first two.
+    """
+    temperature = QUANTITIES_MEASURED["temperature"]
+    sought = {
+        "conductivity": CONDUCTIVITY,
+        "temperature": (temperature.sought, temperature.usual),
+        "pressure": PRESSURE,
+    }
+    found = {taken: named(dataset, *names)[:1] for taken, names in sought.items()}
+    taken = {taken: names[0] for taken, names in found.items() if names}
+    return taken if {"conductivity", "temperature"} <= taken.keys() else {}
+
+
+def practical_salinity(
+    dataset: xr.Dataset, taken: Mapping[str, str], values: Sequence[Floats], depth: Floats
+) -> Floats:
+    """Return practical salinities (PSS-78) by TEOS-10.
+
+    Parameters
+    ----------
+    taken : see `conductivity_in`
+    values : of these variables as they stand, all of one shape
+    depth : whose pressure counts where none is measured [m]; 10 m amiss are 0.004 in salinity
+    """
+    import gsw
+
+    convert = {
+        "conductivity": lambda one, found: cf_files.converted(one, found, "mS/cm"),
+        "temperature": lambda one, found: cf_files.converted(one, found, "degC"),
+        "pressure": _decibars,
+    }
+    parts = {
+        each: convert[each](dataset[one], found)
+        for (each, one), found in zip(taken.items(), values, strict=True)
+    }
+    pressure = parts.get("pressure", np.full_like(parts["temperature"], np.nan))
+    known = np.isfinite(pressure)
+    pressure = np.where(known, pressure, gsw.p_from_z(-np.asarray(depth), _LATITUDE))
+    with np.errstate(invalid="ignore"):
+        salinity: Floats = gsw.SP_from_C(parts["conductivity"], parts["temperature"], pressure)
+    return salinity
 
 
 def _decibars(variable: xr.DataArray, values: Floats) -> Floats:

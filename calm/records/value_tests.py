@@ -336,7 +336,7 @@ def _gaps(times: Times) -> Iterator[str]:
 
 def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[str]:
     """Yield the series that keep one value for a tenth of the record, or repeat most readings."""
-    same = (values[1:] == values[:-1]).all(axis=2)
+    same: NDArray[np.bool_] = np.all(values[1:] == values[:-1], axis=2)
     known = np.isfinite(values).all(axis=2)
     fewest = max(_FEWEST, UNCHANGED * len(times))
     stuck, longest = 0, (0, 0, 0)  # readings, first, series
@@ -387,8 +387,8 @@ def _repeated(values: Floats, times: Times) -> Iterator[str]:
     rows = np.nan_to_num(values.reshape(len(values), -1), nan=-1e30) + 0.0
     bits = np.ascontiguousarray(rows).view(np.uint64)
     bits ^= bits >> np.uint64(29)
-    weights = np.random.default_rng(1).integers(1, 2**63, (2, max(bits.shape[1], _STRETCH)))
-    weights = weights.astype(np.uint64) | np.uint64(1)
+    drawn = np.random.default_rng(1).integers(1, 2**63, (2, max(bits.shape[1], _STRETCH)))
+    weights = drawn.astype(np.uint64) | np.uint64(1)
     row = (bits * weights[0, : bits.shape[1]]).sum(axis=1, dtype=np.uint64)
     window = np.zeros(count, np.uint64)
     for j in range(_STRETCH):
