@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from importlib.util import find_spec
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -99,7 +98,7 @@ def reading(path: Path) -> Iterator[None]:
     """Turn what is wrong with a file into an InputError."""
     try:
         yield
-    except (CalmError, TimeChoiceError):
+    except (CalmError, TimeChoiceError, ModuleNotFoundError):
         raise
     except UnreadableError as error:
         raise refused(path, str(error)) from None
@@ -136,8 +135,8 @@ def open_current(path: Path) -> xr.Dataset:
     import xarray as xr
 
     if path.is_dir():
-        if find_spec("zarr") is None:
-            raise UnreadableError("is zarr; to read it: pip install 'calm-mooring[cluster]'")
+        import zarr  # noqa: F401  (missing, it is an unknown engine to xarray)
+
         return xr.open_dataset(
             path, engine="zarr", decode_times=False, cache=False, consolidated=False
         )

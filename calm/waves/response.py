@@ -10,6 +10,7 @@ import numpy as np
 
 from calm.physics.line import Floats
 from calm.records.sea_states import SeaState
+from calm.solve.block_tridiagonal import solve_blocks
 from calm.waves.buoy import SIDEWAYS_ADDED, Buoy
 from calm.waves.lumped_line import Complexes, LumpedLine
 
@@ -311,12 +312,10 @@ def _inertia_force(line: LumpedLine, waves: Waves, water: Complexes) -> Complexe
     return np.asarray(1j * waves.omega[:, None, None] * accelerated)
 
 
-_BAND = 5
-"""Diagonals beside the main one: a node of three directions is held by its neighbours."""
-
-
-def _undamped(line: LumpedLine, omega: Floats) -> Floats:
-    """Return the banded matrix of springs and masses (f, 3n-3, 16), of each frequency."""
+def _undamped(line: LumpedLine, omega: Floats) -> tuple[Floats, Floats]:
+    """Return the blocks of springs and masses: of the nodes (f, n, 3, 3), at each frequency, and
+    between neighbours (n-1, 3, 3).
+    """
     eye, t, s = np.eye(3), line.tangent, line.spring
     outer = t[:, :, None] * t[:, None, :]
     mass = line.mass[:, None, None] * eye + line.added_across[:, None, None] * (eye - outer)
@@ -326,50 +325,31 @@ def _undamped(line: LumpedLine, omega: Floats) -> Floats:
     springs = line.stiffness[:, None, None] * axial + sideways[:, None, None] * (eye - axial)
     held = springs.copy()
     held[1:] += springs[:-1]
-    inertia = _banded(mass[:-1], None)
-    return np.asarray(_banded(held, springs) - omega[:, None, None] ** 2 * inertia)
+    return held - omega[:, None, None, None] ** 2 * mass[:-1], -springs[:-1]
 
 
 def _solved(
-    undamped: Floats,
+    undamped: tuple[Floats, Floats],
     top: tuple[Complexes, Complexes] | None,
     omega: Floats,
     water: Complexes,
     forced: Complexes,
     damping: Floats,
 ) -> Complexes:
-    """Return the motion (f, n, 3) of the nodes, of each frequency by a banded matrix.
+    """Return the motion (f, n, 3) of the nodes, at each frequency.
 
     `top` are what holds the first node, (f, 3, 3), and what pushes it, (f, 3), beside the line.
     """
-    from scipy.linalg.lapack import zgbsv
-
-    matrix = np.empty(undamped.shape, complex)
-    matrix.real = undamped
-    matrix.imag = omega[:, None, None] * _banded(damping[:-1], None)
+    nodes, between = undamped
+    diagonal = nodes + 1j * omega[:, None, None, None] * damping[:-1]
     push = forced + np.einsum("ncd,fnd->fnc", damping, water)
     if top is not None:
         push[:, 0] += top[1]
-        for row, column in np.ndindex(3, 3):
-            matrix[:, column, 2 * _BAND + row - column] += top[0][:, row, column]
+        diagonal[:, 0] += top[0]
+    beside = np.broadcast_to(between.astype(complex), (len(omega), *between.shape))
     motion = np.zeros(push.shape, complex)
-    for one, each in enumerate(matrix):
-        pushed = push[one, :-1].ravel()
-        *_, found, singular = zgbsv(_BAND, _BAND, each.T, pushed, overwrite_ab=True)
-        motion[one, :-1] = np.nan if singular else found.reshape(-1, 3)
+    motion[:, :-1] = solve_blocks(diagonal, beside, beside, push[:, :-1, :, None])[..., 0]
     return motion
-
-
-def _banded(blocks: Floats, springs: Floats | None) -> Floats:
-    """Return the columns of the banded matrix of (n, 3, 3) blocks, springs between neighbours."""
-    columns = np.zeros((len(blocks), 3, 3 * _BAND + 1))
-    for row, column in np.ndindex(3, 3):
-        at = 2 * _BAND + row - column
-        columns[:, column, at] = blocks[:, row, column]
-        if springs is not None:
-            columns[1:, column, at - 3] = -springs[:-1, row, column]
-            columns[:-1, column, at + 3] = -springs[:-1, row, column]
-    return columns.reshape(-1, 3 * _BAND + 1)
 
 
 def _pull(line: LumpedLine, motion: Complexes) -> Complexes:
