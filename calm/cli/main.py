@@ -29,6 +29,7 @@ from calm.cli.locate import locate
 from calm.cli.motion import motion
 from calm.cli.new import new
 from calm.cli.outputs import ExitCode, narrate, prepare, show
+from calm.cli.page import page
 from calm.cli.run import run
 from calm.cli.schema import schema
 from calm.cli.size import size
@@ -100,6 +101,7 @@ _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
     "Design": (
         (new, ""),
         (build, ""),
+        (page, ""),
         (run, "[OPTIONS] FILE..."),
         (size, ""),
         (waves, ""),
