@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import asyncio
 import os
+import sys
+import traceback
 from collections.abc import Callable, Mapping
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
 from calm.errors import CalmError, InputError, unexpected
 from calm.files.editing import KeptWork
+from calm.files.editing.working_file import SUFFIX
 from calm.page import documents, driver
 from calm.shipped import shipped_folder
 from calm.tui.app import BuildApp
@@ -41,8 +44,10 @@ BAR = (
     Button("Help", "app.help"),
 )
 
+FIRST = "upward-adcp-300m.yaml"
+"""The example that a first visit shows; a later one goes on with the file written last."""
 NEW = "mooring.yaml"
-"""The file that a page begins with."""
+"""Name of a new file."""
 
 
 class PageBuilder(BuildApp):
@@ -72,11 +77,16 @@ class Page:
 
     def __init__(self, post: Post, folder: str | Path, columns: int, rows: int) -> None:
         self._post, self._folder = post, Path(folder)
-        self._path = self._folder / NEW
         self._app: PageBuilder | None = None
         self.terminal = driver.terminal = driver.PageTerminal(self._write, columns, rows)
         self._folder.mkdir(parents=True, exist_ok=True)
         os.chdir(self._folder)
+        earlier = sorted(self._folder.glob("*.yaml"), key=_touched)
+        if earlier:
+            self._path = earlier[-1]
+        else:
+            self._path = self._folder / FIRST
+            self._path.write_bytes((shipped_folder("lines") / FIRST).read_bytes())
 
     def _write(self, text: str) -> None:
         self._post("write", text, None)
@@ -131,7 +141,9 @@ class Page:
             name = message["text"]
             self._open({name: (shipped_folder("lines") / name).read_bytes()})
         elif kind == "new":
-            self._turn_to(_free(self._folder))
+            path = _free(self._folder)
+            path.touch()  # so that a later visit finds what is kept of it
+            self._turn_to(path)
         elif kind == "document":
             self._make(message["text"])
 
@@ -183,9 +195,11 @@ class Page:
             name, content = documents.document(kind, view)
         except InputError as error:
             self._post("failed", error.problems[0].message, None)
+        except CalmError as error:
+            self._post("failed", str(error), None)
         except Exception as error:
-            reason = str(error) if isinstance(error, CalmError) else unexpected(error)
-            self._post("failed", reason, None)
+            traceback.print_exc(file=sys.__stderr__)  # the console of the browser
+            self._post("failed", unexpected(error), None)
         else:
             self._post("document", name, content)
 
@@ -201,6 +215,12 @@ def _is_mooring(path: Path) -> bool:
     except (CalmError, UnicodeError):
         return True  # the builder shows its mistakes
     return isinstance(data, dict) and bool({"line", "legs", "tow", "name"} & set(data))
+
+
+def _touched(path: Path) -> float:
+    """When a file, or what was kept of it unsaved, was written last."""
+    kept = path.parent.glob(f".{path.name}.*{SUFFIX}")
+    return max(each.stat().st_mtime for each in (path, *kept))
 
 
 def _free(folder: Path) -> Path:
