@@ -55,7 +55,9 @@ class PageBuilder(BuildApp):
 
     def __init__(self, session: Session, kept: KeptWork | None, page: Page) -> None:
         super().__init__(session, kept=kept)
-        self.workspace.papers_elsewhere = "The buttons above the line make its report, diagram and bill"
+        self.workspace.papers_elsewhere = (
+            "The buttons above the line make its report, diagram and bill"
+        )
         session.after_save = page.hand_over
 
     def get_driver_class(self) -> type[driver.PageDriver]:

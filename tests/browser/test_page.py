@@ -170,7 +170,9 @@ def test_a_line_is_opened_edited_saved_and_printed(visit, tmp_path):
         if folder := os.environ.get("CALM_BROWSER_PICTURES"):
             (Path(folder) / name).write_bytes(content)
     visit.picture("page-documents")
-    assert not [url for url in visit.asked if not url.startswith(("http://127.0.0.1", "blob:", "data:"))]
+    assert not [
+        url for url in visit.asked if not url.startswith(("http://127.0.0.1", "blob:", "data:"))
+    ]
 
 
 def test_a_file_is_dropped_on_the_page(visit):

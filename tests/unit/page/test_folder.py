@@ -52,7 +52,9 @@ def runtime(tmp_path):
 
 def test_the_archive_has_what_the_builder_needs_and_no_compiled_code(packed):
     names = packed.namelist()
-    assert {"calm/tui/app.py", "calm/page/driver.py", "textual/app.py", "rich/console.py"} <= {*names}
+    assert {"calm/tui/app.py", "calm/page/driver.py", "textual/app.py", "rich/console.py"} <= {
+        *names
+    }
     assert "calm/_shipped/lines/s1000.yaml" in names
     assert any(name.startswith("calm/_shipped/catalog/") for name in names)
     assert not [name for name in names if re.search(r"\.(so|pyc|ttf)$|/tests?/|^numpy/", name)]
