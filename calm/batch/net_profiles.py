@@ -272,7 +272,7 @@ class NetProfiles:
         return columns
 
     def _solve_rows(
-        self, current: tuple[Floats, ...], rows: NetRows, endings: NDArray[np.int64]
+        self, current: tuple[Floats, ...], rows: NetRows, endings: NDArray[np.intp]
     ) -> None:
         search, water = self.search(), self.water(*[(0.0,)] * 4)
         assert self.base is not None

@@ -242,7 +242,7 @@ def _causes(result: Result, shares: attribution.Attribution) -> Causes:
         labels.append((clamps_in(pieces)[clamp] if clamp >= 0 else pieces[piece]).label)
     first = [leg.leg.keys.first for leg in legs]
     return Causes(
-        index=np.array([first[leg] + piece for leg, piece, _ in shares.parts], dtype=np.int64),
+        index=np.array([first[leg] + piece for leg, piece, _ in shares.parts], dtype=np.intp),
         label=labels,
         clamped=[clamp >= 0 for *_, clamp in shares.parts],
         drag=_drags(result, shares.parts),

@@ -202,7 +202,7 @@ def record_type(named: type) -> np.dtype[Any]:
     """The numpy record type of a named tuple of numbers."""
     return np.dtype(
         [
-            (name, np.int64 if kind is int else np.float64)
+            (name, np.intp if kind is int else np.float64)
             for name, kind in get_type_hints(named).items()
         ]
     )

@@ -150,8 +150,8 @@ class Trace:
         return Trace(
             position=columns[:3].T.copy(),
             force=columns[3:6].T.copy(),
-            piece=columns[6, 1:].astype(np.int64),
-            clamp=columns[7, 1:].astype(np.int64),
+            piece=columns[6, 1:].astype(np.intp),
+            clamp=columns[7, 1:].astype(np.intp),
             cut=columns[8, 1:],
             strain=columns[9, 1:],
             better=columns[BETTER : BETTER + 6].T,
@@ -159,7 +159,7 @@ class Trace:
 
 
 Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
+Integers = NDArray[np.intp]
 Booleans = NDArray[np.bool_]
 
 
@@ -200,7 +200,7 @@ def once_per_input(make: Callable[[_Given], _Made]) -> Callable[[_Given], _Made]
     return stored
 
 
-_DTYPES: dict[str, Any] = {"Floats": np.float64, "Integers": np.int64, "Booleans": np.bool_}
+_DTYPES: dict[str, Any] = {"Floats": np.float64, "Integers": np.intp, "Booleans": np.bool_}
 
 _OfArrays = TypeVar("_OfArrays", bound=_Arrays)
 

@@ -59,7 +59,7 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
 def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Referee:
     """Prepare the audit of a line in its water, with work arrays."""
     moored = moored_of(line, water, frequency, compiled)
-    nodes: Any = np.zeros((2, len(line.length)), np.int64)
+    nodes: Any = np.zeros((2, len(line.length)), np.intp)
     first, last = nodes if compiled else nodes.tolist()
     return Referee(moored, copy(moored.bodies), first, last)
 

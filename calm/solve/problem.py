@@ -295,7 +295,7 @@ def problem_of(
     )
     afloat = NEVER_AFLOAT if floating is None else floating.as_numbers
     hull = () if floating is None or floating.hull is None else floating.hull.rows
-    flexible: Any = line.flexible.astype(np.int64)
+    flexible: Any = line.flexible.astype(np.intp)
     if compiled:
         course, sea = track.packed, profile.packed
         loads: Any = course.loads
@@ -323,7 +323,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
         return SearchArrays(
             left=zeros(LAST + 1),
             chosen=zeros(room),
-            counts=zeros(cables, np.int64),
+            counts=zeros(cables, np.intp),
             records=zeros((OTHER + 1, COLUMNS, nodes)),
             shares=zeros((OTHER + 1, MOST_AFLOAT + 1)),
             samples=zeros((2, MOST_SAMPLES)),

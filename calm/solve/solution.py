@@ -157,7 +157,7 @@ class Solution:
         n = len(self.line.length)
         first = np.searchsorted(pieces, np.arange(n), side="left")
         last = np.searchsorted(pieces, np.arange(n), side="right")
-        return np.column_stack([first, last]).astype(np.int64)
+        return np.column_stack([first, last]).astype(np.intp)
 
     @property
     def body_node(self) -> int:

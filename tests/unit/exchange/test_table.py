@@ -299,7 +299,6 @@ def test_what_a_library_cannot_give_is_named(case, read, tmp_path):
 def test_a_workbook_may_bring_its_water(tmp_path):
     """As those of Mooring Design & Dynamics do: the elements, and a sheet of heights and speeds."""
     openpyxl = pytest.importorskip("openpyxl", reason="writes the workbook")
-    pytest.importorskip("python_calamine", reason="needs the extra `sheets`")
     book = openpyxl.Workbook()
     for row in (
         ("Element", "Buoyancy", "Length", "Width", "Diameter", "Flag", "Cd", "ME"),
@@ -377,7 +376,6 @@ def test_an_environment_is_needed(read):
 
 def test_a_workbook_is_read(read, tmp_path):
     openpyxl = pytest.importorskip("openpyxl", reason="writes the workbook")
-    pytest.importorskip("python_calamine", reason="needs the extra `sheets`")
     book = openpyxl.Workbook()
     for row in ENGLISH.splitlines():
         cells = [
@@ -678,7 +676,6 @@ Anker\t0,8\t900\t900
 
 def test_other_sheets_and_what_is_hidden_are_reported(read):
     openpyxl = pytest.importorskip("openpyxl", reason="writes the workbook")
-    pytest.importorskip("python_calamine", reason="needs the extra `sheets`")
     book = openpyxl.Workbook()
     old, new = book.active, book.create_sheet("rev C & D")
     for row in SHORT.splitlines():
