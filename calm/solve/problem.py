@@ -239,7 +239,6 @@ def problem_of(
     settings: Settings,
     *,
     compiled: bool,
-    track: Track | None = None,
     rough: bool = False,
     room: int = ROOM,
     intervals: int = 0,
@@ -250,13 +249,12 @@ def problem_of(
     Parameters
     ----------
     compiled : whether it is for compiled code; its sequences are then arrays
-    track : the track of the line, if known
     rough : whether it is solved in a batch, without an audit
     room : number of segments that the work arrays hold
     intervals : largest number of intervals of other water in which it will be solved
     lift : the `standing_lift` of the line, if known
     """
-    track = track or Track.of(line)
+    track = Track.of(line)
     profile = profile_of(water)
     span = float(line.length.sum()) if line.towed else water.depth
     floating = None if line.towed else line.floating
