@@ -131,7 +131,7 @@ def _findings(assessment: Assessment, every: bool) -> Iterator[dict[str, Any]]:
 
 def _accepted(assessment: Assessment) -> Iterator[dict[str, Any]]:
     for one in assessment.accepted_findings():
-        by = members(one.accept, "reason", "by", "date", "until")
+        by = members(one.accept, "reason", "by", "date", "until", "load")
         yield {"mooring": assessment.name, **members(one, "rule", "component"), **by}
 
 
