@@ -9,6 +9,7 @@ import numpy as np
 
 from calm.case.leg_result import LegResult
 from calm.case.parts import below_the_seabed
+from calm.case.result_tables import ComponentRow
 from calm.files import Cable, Component
 from calm.files.pieces import clamps_in, parts_of
 from calm.physics.materials import fibre_of, published_stiffnesses
@@ -161,25 +162,34 @@ def _beyond_the_table(result: LegResult, solution: Solution) -> Iterator[str]:
             )
 
 
-def _fast_flow(result: LegResult, solution: Solution) -> Iterator[str]:
-    line = solution.line.reversed() if solution.line.towed else solution.line
-    curves = [*line.drag_curve, None]
-    fast = [
+def _fast_flow(result: LegResult, _: Solution) -> Iterator[str]:
+    """Of a tow, which no design check judges."""
+    fast = fast_pieces(result)
+    if fast:
+        row, limit = fast[0]
+        others = f" and {len(fast) - 1} more" if len(fast) > 1 else ""
+        yield (
+            f"Reynolds number above {power_text(limit)} ({row.label}: "
+            f"{power_text(row.reynolds)}{others}): check the drag coefficient."
+        )
+
+
+def fast_pieces(result: LegResult) -> list[tuple[ComponentRow, float]]:
+    """Spheres and cylinders with a greater Reynolds number than their drag coefficient holds for.
+
+    Each has the limit; the farthest beyond comes first.
+    """
+    curves = [*result.leg.line.drag_curve, None]
+    rows = [
         (row, LARGEST_REYNOLDS if curve is None else curve.largest_reynolds)
         for row, curve in zip(result.components, curves, strict=False)
         if row.kind in ("sphere", "cylinder")
     ]
-    fast = [(row, limit) for row, limit in fast if row.reynolds > limit]
-    if fast:
-        row, limit = max(fast, key=lambda entry: entry[0].reynolds / entry[1])
-        others = f" and {len(fast) - 1} more" if len(fast) > 1 else ""
-        yield (
-            f"Reynolds number above {_power(limit)} ({row.label}: "
-            f"{_power(row.reynolds)}{others}): check the drag coefficient."
-        )
+    fast = [(row, limit) for row, limit in rows if row.reynolds > limit]
+    return sorted(fast, key=lambda entry: -entry[0].reynolds / entry[1])
 
 
-def _power(number: float) -> str:
+def power_text(number: float) -> str:
     """Write a number in two digits, as 2e5."""
     return f"{number:.2g}".replace("e+0", "e")
 
@@ -313,7 +323,7 @@ def _strums_along_the_flow(result: LegResult, solution: Solution) -> Iterator[st
 
 _OF_ANY: tuple[Callable[[LegResult, Solution], Iterator[str]], ...] = (
     _same_serial, _overloaded, _tilted, _stiffness_unknown, _overstretched, _beyond_the_table,
-    _fast_flow, _other_equilibrium,
+    _other_equilibrium,
 )  # fmt: skip
 _OF_A_MOORING: tuple[Callable[[LegResult, Solution], Iterator[str]], ...] = (
     _anchor_too_light, _anchor_of_unknown_material, _bight, _on_the_seabed, _slack,
@@ -321,5 +331,6 @@ _OF_A_MOORING: tuple[Callable[[LegResult, Solution], Iterator[str]], ...] = (
 )  # fmt: skip
 _OF_A_TOW: tuple[Callable[[LegResult, Solution], Iterator[str]], ...] = (
     _below_the_sea,
+    _fast_flow,
     _strums_along_the_flow,
 )

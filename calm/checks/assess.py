@@ -42,6 +42,7 @@ from calm.checks.assessment import (
     estimated_result,
 )
 from calm.checks.criterion import limits_used
+from calm.checks.drag_range import drag_coefficient
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, governing
 from calm.checks.inventory import inventory_of
 from calm.checks.missing import is_lacking, missing, with_missing
@@ -68,7 +69,7 @@ def judged_stand(
 
     The stand lists all findings as given, and findings of other situations with a worse state; as
     tighter, those of other situations with a greater utilisation. A failure only of strumming
-    cables is a warning, since the cables may not strum.
+    cables is a warning, since the cables may not strum; of what fails without that, it is none.
 
     Parameters
     ----------
@@ -79,9 +80,10 @@ def judged_stand(
     if not leg.of_several:
         given += _findings_in_waves(situations[0], name, environment, day)
     states = {_of(finding): finding.state.severity for finding in given}
+    failed = {_of(finding) for finding in given if finding.state is State.FAIL}
     others = [
         replace(one, state=State.WARN)
-        if one.situation == STRUMMING and one.state is State.FAIL
+        if one.situation == STRUMMING and one.state is State.FAIL and _of(one) not in failed
         else one
         for findings in changed
         for one in findings
@@ -127,6 +129,8 @@ def assessment_of(
     acceptance = Acceptance.of_file(first.leg.file, day)
     standing = [stand.leg for stand in stands if stand.result is not None]
     findings = list(findings_of_currents(standing, name, acceptance)) if standing else []
+    results = [stand.result for stand in stands if stand.result is not None]
+    findings += findings_of_drag(results, name, acceptance)
     for each in ONCE:
         verdicts = each.judge(handling)
         findings += acceptance.findings(each, verdicts, name, first.environment, each.situation)
@@ -184,7 +188,7 @@ def cased(findings: Iterable[Finding], stands: Sequence[MooringInEnvironment]) -
     numbers = _numbers(stands)
     return [
         replace(one, case=situations.case_of(numbers[one.environment], AS_GIVEN))
-        if one.rule == currents.name
+        if one.rule in (currents.name, drag_coefficient.name)
         else one
         for one in findings
     ]
@@ -208,6 +212,15 @@ def findings_of_currents(
     for leg, verdict in currents.judge(legs):
         environment = leg.file.environment.name or OWN
         yield acceptance.of(currents.find(verdict, name, environment))
+
+
+def findings_of_drag(
+    results: Sequence[LegResult], name: str, acceptance: Acceptance
+) -> Iterator[Finding]:
+    """Return what is found of drag coefficients in the environments of a mooring of a name."""
+    for result, verdict in drag_coefficient.judge(results):
+        environment = result.file.environment.name or OWN
+        yield acceptance.of(drag_coefficient.find(verdict, name, environment))
 
 
 def moving(legs: Iterable[Leg]) -> bool:
@@ -319,7 +332,9 @@ ONCE = _judging(once=True)
 
 _WAVE_RULES = {each.name for each in IN_WAVES}
 
-RULES = {each.name: each for each in (equilibrium, currents, missing, *STANDING, *IN_WAVES, *ONCE)}
+_WHOLE = equilibrium, currents, drag_coefficient, missing
+
+RULES = {each.name: each for each in (*_WHOLE, *STANDING, *IN_WAVES, *ONCE)}
 """Every rule by its name."""
 
 

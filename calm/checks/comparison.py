@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, isfinite
 from typing import Any
 
 from calm.case.design import Design, Result
@@ -71,7 +71,7 @@ class Comparison:
             "added": list(found.added),
             "removed": list(found.removed),
             "figures": [
-                {"name": one.name, "from": one.before, "to": one.after}
+                {"name": one.name, "from": _finite(one.before), "to": _finite(one.after)}
                 | ({} if one.states is None else {"states": list(one.states)})
                 for one in self.figures
             ],
@@ -217,13 +217,18 @@ def _margins(designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
             continue
         leads = [governing(each) if each else None for each in sides]
         if any(one is not None and one.utilisation is not None for one in leads):
-            figures = [None if one is None else one.utilisation for one in leads]
+            before, after = (None if one is None else one.utilisation for one in leads)
             what, quantity = "utilisation", "utilisation"
         else:
-            figures = [None if one is None else one.margin for one in leads]
+            before, after = (None if one is None else one.margin for one in leads)
             what, quantity = "margin", rule.quantity
         name, title = f"{what}.{rule.name}", f"{what}: {rule.title}"
-        yield Compared(name, title, quantity, *figures, (states[0], states[1]))
+        yield Compared(name, title, quantity, before, after, (states[0], states[1]))
+
+
+def _finite(value: Number | str) -> Number | str:
+    """A figure as JSON has it: None for a utilisation without any capacity."""
+    return None if isinstance(value, float) and not isfinite(value) else value
 
 
 def _change(change: Change) -> dict[str, Any]:

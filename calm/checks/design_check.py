@@ -133,6 +133,7 @@ def assessment_of(
         once.append((planned_depth, planned_depth.judge(alone), first))
     waters = {stand.leg.file.environment.name: stand.leg for stand in stands}
     findings = list(assess.findings_of_currents(list(waters.values()), name, acceptance))
+    findings += assess.findings_of_drag(found, name, acceptance)
     for rule, verdicts, environment in once:
         findings += acceptance.findings(rule, verdicts, name, environment)
     findings = assess.cased(findings, stands)

@@ -68,8 +68,8 @@ class Conclusion(StrEnum):
     """What the design check concludes of a mooring, the best first.
 
     A mooring is incomplete if a rule could not judge for want of a figure; it passes by acceptance
-    if the design accepts what fails. Open items are warnings, estimates and unknowns that are
-    accepted; what is not judged is none.
+    if the design accepts what fails, or a utilisation above 1. Open items are warnings, estimates
+    and unknowns that are accepted; what is not judged is none.
     """
 
     PASSES = "passes"
@@ -185,13 +185,6 @@ class Verdict:
         if demand <= 0.0:
             return 0.0
         return demand / capacity if capacity > 0.0 else inf
-
-    @property
-    def share(self) -> float | None:
-        """The margin as a share of the limit; None if unknown."""
-        if self.margin is None or not self.limit:
-            return None
-        return self.margin / abs(self.limit)
 
     @property
     def rank(self) -> tuple[int, float]:
@@ -419,6 +412,12 @@ def governing_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:
     return [governing(each) for each in by_rule(findings).values()]
 
 
+def _is_overridden(finding: Finding) -> bool:
+    """Whether a failure is accepted, or a utilisation of more than all."""
+    fails = finding.unaccepted is State.FAIL or (finding.utilisation or 0.0) > 1.0
+    return finding.state is State.ACCEPTED and fails
+
+
 def conclusion_of(findings: Iterable[Finding]) -> Conclusion:
     """What all findings of a mooring come to."""
     found = [*findings]
@@ -427,7 +426,7 @@ def conclusion_of(findings: Iterable[Finding]) -> Conclusion:
         return Conclusion.FAILS
     if State.UNKNOWN in states:
         return Conclusion.INCOMPLETE
-    if any(one.unaccepted is State.FAIL for one in found):
+    if any(map(_is_overridden, found)):
         return Conclusion.BY_ACCEPTANCE
     if states & {State.WARN, State.ESTIMATED, State.ACCEPTED}:
         return Conclusion.OPEN_ITEMS

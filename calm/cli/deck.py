@@ -108,11 +108,10 @@ def deck(
 
 
 def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
-    from calm.report.check_tables import verdict_of
     from calm.report.folder import write_report
+    from calm.report.open_items import assessment_verdict
 
-    state, words = verdict_of(deck.assessment.all_findings())
-    narrate(f"{path}: {state.sign} {words}: calm check {path}")
+    narrate(f"{path}: {assessment_verdict(deck.assessment).text}: calm check {path}")
     notes = _signs_that_are_lacking(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")
@@ -122,16 +121,23 @@ def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
 
 def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
     from calm.checks.finding import State
-    from calm.report import check_tables, deck_files, result_files
+    from calm.report import deck_files, open_items, result_files
     from calm.report.diagram import diagram_svg
     from calm.report.folder import printed
 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_files.deck_csvs(deck)}
     if deck.result.several:
         texts["net.svg"] = deck_files.net_svg(deck)
-    counts = check_tables.counted_states(deck.assessment.all_findings())
-    fails, unknown = counts[State.FAIL], counts[State.UNKNOWN]
-    verdict = {"state": str(deck.assessment.state), "fails": fails, "unknown": unknown}
+    counts = open_items.open_counts(deck.assessment)
+    verdict = {
+        "verdict": str(deck.assessment.verdict),
+        "state": str(deck.assessment.state),
+        "fails": counts[State.FAIL],
+        "unknown": counts[State.UNKNOWN],
+        "warns": counts[State.WARN],
+        "accepted": counts[State.ACCEPTED],
+        "estimated": counts[State.ESTIMATED],
+    }
     texts["plan.json"] = result_files.to_json(
         [{"calm": __version__, **_plan(deck), "verdict": verdict}]
     )

@@ -49,6 +49,13 @@ RULES = {
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 of its speed, 0.2 "
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
+    "drag-coefficient": RuleText("Drag coefficient", "",
+        "spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond the curve of "
+        "`drag: reynolds`",
+        "a warning if the curve of a smooth shape makes the knockdown, or the offset at the "
+        "surface, greater by 5 %; else not judged, with the effect",
+        "Constant coefficients hold up to 2e5; beyond it, the drag of smooth shapes falls",
+        "the profiles of a record are solved with one law of drag"),
     "missing": RuleText("Missing figures", "",
         "figures that a component does not give and rules need: one finding for each component id "
         "and figure, with these rules and the pieces that they cannot judge",

@@ -1,4 +1,4 @@
-"""Materials that components are made of, and what follows from each."""
+"""Materials of components, and their properties."""
 
 import re
 from dataclasses import dataclass
@@ -14,16 +14,16 @@ LEAD_DENSITY = 11340.0
 
 @dataclass(frozen=True)
 class Material:
-    """Hold what is known of a material.
+    """A material, with its density, corrosion potential and stiffness.
 
     Attributes
     ----------
-    name : as it stands in a file
-    words : pattern of what people call it, from the beginning of a word
-    family : what follows from it: a metal corrodes, a fibre stretches
-    density : of the solid [kg/m³], None where it is that of no one material
+    name : name in files
+    words : regular expression for its common names, from the beginning of a word
+    family : metal (corrodes), fibre (stretches) or other
+    density : density of the solid [kg/m³], None if it varies
     potential : middle of its corrosion potential in sea water [V]
-    stiffnesses : what is published of ropes of it
+    stiffnesses : published stiffnesses of its ropes
     """
 
     name: str
@@ -92,12 +92,12 @@ MATERIALS = (
     Material("ceramic", r"ceramic\w*|alumina", "other"),
     Material("wood", r"wood\w*|bois", "other"),
 )  # fmt: skip
-"""Every material that a component can be made of.
+"""All materials of components.
 
-Densities are handbook figures. Potentials: the middle of the galvanic series in flowing sea water
-(ASTM G82); galvanised steel counts as steel, which its zinc protects. Stiffnesses of ropes: the
-tables of OrcaFlex, as MoorPy takes them over (nylon, polyester, polypropylene); the moduli of
-R. Dewey's Mooring Design & Dynamics, on πD²/4; MoorPy's default properties (nylon 5, polyester 14,
+Densities are handbook values. Potentials are the middle of the galvanic series in flowing sea water
+(ASTM G82); galvanised steel counts as steel, which its zinc protects. Stiffnesses of ropes are from
+the tables of OrcaFlex, as adopted by MoorPy (nylon, polyester, polypropylene); the moduli of R.
+Dewey's Mooring Design & Dynamics, on πD²/4; and MoorPy's default properties (nylon 5, polyester 14,
 HMPE 56 times its breaking load).
 """
 
@@ -111,22 +111,22 @@ _INSULATED = re.compile(r"plastic|jacket|sheath|coated|insulat", re.IGNORECASE)
 
 
 def materials_in(text: str | None) -> tuple[Material, ...]:
-    """Return the materials that a text names, in its order; none of a text that names none."""
+    """Materials named in a text, in order of appearance."""
     found = _NAMED.finditer(text or "")
     return tuple(MATERIALS[int((match.lastgroup or "_0")[1:])] for match in found)
 
 
 def density_of(text: str | None) -> float | None:
-    """Return the density of the one material that a text names [kg/m³].
+    """Density of the single material named in a text [kg/m³].
 
-    None where it names none, or several that differ.
+    None if the text names no material, or several with different densities.
     """
     densities = {material.density for material in materials_in(text)}
     return densities.pop() if len(densities) == 1 else None
 
 
 def fibre_of(text: str | None) -> Material | None:
-    """Return the fibre of a rope, of a blend the first named; None of wire in a plastic jacket."""
+    """Fibre of a rope (the first fibre of a blend), or None for wire, with or without a jacket."""
     named = materials_in(text)
     if any(material.family == "metal" and material.name != "lead" for material in named):
         return None
@@ -134,9 +134,9 @@ def fibre_of(text: str | None) -> Material | None:
 
 
 def potential_of(text: str | None) -> float | None:
-    """Return the corrosion potential in sea water of the noblest metal named [V].
+    """Corrosion potential in sea water of the noblest metal named in a text [V].
 
-    None where no metal is named, or where it is insulated.
+    None if the text contains no metal, or if the metal is insulated.
     """
     if text is None or _INSULATED.search(text):
         return None
@@ -145,12 +145,12 @@ def potential_of(text: str | None) -> float | None:
 
 
 def published_stiffnesses(text: str | None, diameter: float) -> tuple[float, ...]:
-    """Return EA of a rope by everyone who gives one for its fibre [N], the softest first.
+    """All published values of EA for a rope's fibre [N], in increasing order.
 
     Parameters
     ----------
-    text : its material as a person writes it
-    diameter : [m]
+    text : its material in free text
+    diameter : diameter of the rope [m]
     """
     fibre = fibre_of(text)
     laws = fibre.stiffnesses if fibre else ()

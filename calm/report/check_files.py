@@ -10,9 +10,8 @@ from calm.checks.finding import (
     Conclusion,
     Finding,
     State,
-    by_rule,
+    governing,
     governing_of_each_rule,
-    worst_of,
     worst_state,
 )
 from calm.checks.inventory import total_of
@@ -23,6 +22,7 @@ from calm.quantities import QUANTITIES
 from calm.records.delimited import table_csv
 from calm.report import provenance
 from calm.report.check_facts import key_figures
+from calm.report.check_tables import GRAVE, counted_as, grouped
 from calm.report.result_files import members
 from calm.version import __version__
 
@@ -35,29 +35,29 @@ def listed_findings(
 ) -> Iterator[tuple[Finding, bool]]:
     """Findings of a mooring, and whether each governs its rule.
 
-    Listed are those that govern, those that do not pass, and those whose utilisation is `MUCH_USED`
-    or more; of what is not judged one of each rule and component, and what is found in still water
-    once; with `every`, all of all situations.
+    Listed are the governing finding of each rule, and of each rule and component the governing one
+    of all environments, unless it passes with a utilisation below `MUCH_USED`; what fails, is
+    unknown or warns is listed for each environment. A cluster of equal floats is one component.
+    With `every`, all findings of all situations are listed.
     """
     found = [*assessment.every_finding()]
-    first = {id(one) for one in governing_of_each_rule(found)}
-    worst = {id(worst_of(each)) for each in by_rule(found).values()}
-    told: set[Hashable] = set()
+    leading = {id(one) for one in governing_of_each_rule(found)}
+    kept = leading | {
+        id(governing(group))
+        for group in grouped(found, _listed_as)
+        if group[0].state is not State.PASS or (governing(group).utilisation or 0.0) >= MUCH_USED
+    }
     for one in found:
-        leads = id(one) in first
-        if every or leads or id(one) in worst:
-            yield one, leads
-            continue
-        if one.state is State.NOT_JUDGED:
-            key: Hashable = one.rule, one.place
-        elif one.state is State.PASS and (one.utilisation or 0.0) < MUCH_USED:
-            continue
-        else:
-            place = one.case if one.case == "0" else one.environment
-            key = one.rule, one.place, place, one.state, one.value, one.message
-        if key not in told:
-            told.add(key)
-            yield one, leads
+        if every or id(one) in kept:
+            yield one, id(one) in leading
+
+
+def _listed_as(finding: Finding) -> Hashable:
+    """What findings share of which one is listed."""
+    if finding.state not in GRAVE:
+        return finding.rule, finding.state, finding.place
+    place = finding.case if finding.case == "0" else finding.environment
+    return *counted_as(finding), place
 
 
 def check_document(assessments: Sequence[Assessment], *, every: bool = False) -> dict[str, Any]:

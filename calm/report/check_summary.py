@@ -5,10 +5,10 @@ moorings it is a matrix of their greatest use.
 """
 
 import re
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from math import ceil
+from textwrap import wrap
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
@@ -19,7 +19,6 @@ from calm.checks.finding import (
     by_rule,
     governing,
     governing_of_each_rule,
-    worst_of,
 )
 from calm.checks.situations import FOULED, STILL, STILL_LOW, STRUMMING
 from calm.quantities import say
@@ -29,7 +28,8 @@ from calm.report.check_matrix import MatrixCell, environments_of, summary_row
 from calm.report.likelihood import likelihood_tables
 from calm.report.load_cases import LoadCase, load_cases
 from calm.report.open_items import (
-    OPEN,
+    STATES,
+    counts_text,
     limit_text,
     open_groups,
     open_items,
@@ -42,6 +42,7 @@ from calm.report.page_one import case_columns, shown_cases
 MOST_LINES = 40
 """Lines of a mooring in which nothing fails."""
 _WIDTH = 80
+_FRAME = 7  # lines of the head, of what is beyond, around the items and below them
 _MOST_ITEMS = 12  # open items of a mooring that fails
 _MOST_ROWS = 10  # checks with a row of their own
 _HALF = 0.5  # of the capacity: what is used more has a row
@@ -60,7 +61,7 @@ def _of_one(assessment: Assessment) -> Iterator[blocks.Block]:
     likely = [*likelihood_tables([(assessment.name, [*assessment.all_findings()])])]
     items = [_in_short(one) for one in open_items(assessment)]
     beyond = beyond_text([*assessment.all_findings()])
-    room = MOST_LINES - 4 - sum(map(_height, (*cases, *checks, *likely))) - len(beyond)
+    room = MOST_LINES - _FRAME - sum(map(_height, (*cases, *checks, *likely)))
     fails = assessment.verdict is Conclusion.FAILS
     yield verdict
     yield from (*cases, *checks, *likely)
@@ -88,24 +89,8 @@ def _head(assessment: Assessment) -> Line:
 def _verdict(assessment: Assessment) -> Line:
     """The verdict, and how much is open."""
     said = assessment.verdict.words.upper() + ", DRAFT" * assessment.draft
-    counts = Counter(worst_of(group).state for group in open_groups(assessment))
-    told = [_counted(counts[state], state) for state in OPEN if counts[state]]
-    text = _apart(said, ", ".join(told) or "nothing is open")
-    return (Span(text, _STATE_OF[assessment.verdict]),)
-
-
-_STATE_OF = {
-    Conclusion.FAILS: State.FAIL, Conclusion.INCOMPLETE: State.UNKNOWN,
-    Conclusion.BY_ACCEPTANCE: State.WARN, Conclusion.OPEN_ITEMS: State.WARN,
-    Conclusion.PASSES: State.PASS,
-}  # fmt: skip
-"""How a verdict looks."""
-
-
-def _counted(count: int, state: State) -> str:
-    word = {State.FAIL: "failure", State.WARN: "warning", State.NOT_JUDGED: "not judged"}
-    told = word.get(state, state.value)
-    return f"{count} {told}{'s' * (count != 1 and state in (State.FAIL, State.WARN))}"
+    told = counts_text(open_groups(assessment)) or "nothing is open"
+    return (Span(_apart(said, told), STATES[assessment.verdict]),)
 
 
 def _apart(left: str, right: str) -> str:
@@ -244,7 +229,7 @@ def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> bloc
     """The items that have room; with `most`, as many of them whatever room they take."""
     kept: list[OpenItem] = []
     for item in items:
-        room -= ceil(len(f"{item.head} {item.text}") / (_WIDTH - 6))
+        room -= len(wrap(f"{item.head} {item.text}", _WIDTH - 3))
         if len(kept) == most or (most is None and room < 0 and kept):
             break
         kept.append(item)
@@ -297,7 +282,7 @@ def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
         *(_of_environment(name, codes[name]) for name in kept),
         number("launch", lambda row: _matrix_text(row.handling)),
         note="! fails  ~ over 100, a warning or accepted  ? not known\n"
-        + ", ".join(f"{codes[name]} {name}" for name in kept)
+        + ", ".join(f"{codes[name]} {name}" for name in kept if codes[name] != name)
         + milder,
         dense=True,
     )

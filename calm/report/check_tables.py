@@ -12,13 +12,13 @@ from typing import TypeVar
 from calm.case.leg_result import LegResult
 from calm.checks.assess import RULES
 from calm.checks.criterion import said
-from calm.checks.finding import AS_GIVEN, Finding, State, worst_of, worst_state
+from calm.checks.finding import AS_GIVEN, Finding, State, worst_of
 from calm.checks.inventory import InventoryItem
 from calm.files.check_limits import LimitKey
 from calm.files.components import FLEXIBLE_KINDS
 from calm.quantities import QUANTITIES
 from calm.report import blocks
-from calm.report.blocks import Cell, Field, Span, Table, number, quantity, table_of, words
+from calm.report.blocks import Cell, Field, Table, number, quantity, table_of, words
 
 Item = TypeVar("Item")
 
@@ -108,49 +108,23 @@ def counted_states(findings: Iterable[Finding]) -> Counter[State]:
     or warns.
     """
     by_mooring = grouped(findings, attrgetter("mooring"))
-    found = [one for each in by_mooring for one in grouped(worst_by_part(each), _counted_as)]
+    found = [one for each in by_mooring for one in grouped(worst_by_part(each), counted_as)]
     return Counter(one[0].state for one in found)
 
 
-def _counted_as(finding: Finding) -> Hashable:
-    """Return what findings are counted as one: of equal pieces in one row of the file, what is to
-    be mended.
+GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
+"""States of what is to be mended."""
+
+
+def counted_as(finding: Finding) -> tuple[Hashable, ...]:
+    """What findings have in common that count as one: of equal pieces in one row of the file, such
+    as a cluster of floats, what is to be mended.
     """
     place = finding.place
-    if place is None or finding.state not in (State.FAIL, State.WARN):
-        return id(finding)
+    if finding.missing is not None or place is None or finding.state not in GRAVE:
+        return (id(finding),)
     called = re.sub(r" \d+$", "", finding.component or "")
-    return finding.rule, finding.state, place.row, called, finding.missing
-
-
-def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
-    """The worst state of one or several moorings, and the verdict in words."""
-    findings = list(findings)
-    counts = counted_states(findings)
-    unsigned = [one for one in findings if one.accept is not None and one.accept.by is None]
-    nobody = len(worst_by_part(unsigned))
-    # what is accepted may be a failure, and not only unknown
-    failing = any(one.accept is not None and (one.margin or 0.0) < 0.0 for one in findings)
-    other = "else " if failing else ""
-    state = worst_state(counts)
-    told = [
-        _counted(counts[State.FAIL], "failure") if counts[State.FAIL] else f"nothing {other}fails",
-        _counted(counts[State.UNKNOWN], "figure") + " unknown" if counts[State.UNKNOWN] else "",
-        _counted(counts[State.WARN], "warning") if counts[State.WARN] else "",
-        f"{counts[State.ESTIMATED]} estimated" if counts[State.ESTIMATED] else "",
-        f"{counts[State.ACCEPTED]} accepted" if counts[State.ACCEPTED] else "",
-        f"{nobody} of them by nobody" if nobody else "",
-    ]
-    return state, ", ".join(filter(None, told))
-
-
-def short_verdict(findings: Iterable[Finding]) -> Span:
-    """The verdict for the head of a page, such as ``? 0 fail, 34 unknown, 1 warn``."""
-    given = [*findings]
-    counts = Counter(finding.state for finding in given)
-    states = (State.FAIL, State.UNKNOWN, State.WARN)
-    state, _ = verdict_of(given)
-    return Span(f"{state.sign} {', '.join(f'{counts[one]} {one}' for one in states)}", state)
+    return finding.rule, finding.state, place.row, called
 
 
 def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:

@@ -16,7 +16,7 @@ from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrappe
 from calm.drawing.schematic.shown_parts import TextRow, one_line
 from calm.drawing.schematic.symbols import LINES, Sign, draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
-from calm.report.check_tables import short_verdict
+from calm.report.open_items import assessment_verdict
 from calm.report.provenance import title_pairs
 from calm.report.sheet import ends_told, leg_title
 
@@ -338,7 +338,7 @@ def _known(deck: Deck) -> dict[str, str]:
     return {
         "anchor in air, in water": "; ".join(dict.fromkeys(texts)),
         "least backup": say("tension", min(breaks)) if breaks else "none",
-        "design check": short_verdict(deck.assessment.all_findings()).text,
+        "design check": assessment_verdict(deck.assessment).text,
     }
 
 

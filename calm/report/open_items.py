@@ -5,19 +5,30 @@ Components of which the same is said share an item, and what governs them tells 
 
 import re
 from collections import Counter
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from math import isfinite
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import EXAMPLE, Assessment
-from calm.checks.finding import Conclusion, Finding, State, governing, percent_used
+from calm.checks.finding import (
+    Conclusion,
+    Finding,
+    State,
+    conclusion_of,
+    governing,
+    percent_used,
+    worst_of,
+)
 from calm.quantities import QUANTITIES, Quantity
-from calm.report.blocks import OpenItem
+from calm.report.blocks import OpenItem, Span
 from calm.report.check_tables import grouped, joined, named_components
 from calm.report.load_cases import LOAD
 
 OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED)
 """States of what is open, in the order in which it is listed."""
+
+_DIFFERENCES = ("planned-depth", "as-deployed")
+"""Rules whose values are differences, which their messages explain."""
 
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
@@ -77,6 +88,11 @@ def open_groups(assessment: Assessment) -> list[list[Finding]]:
     acceptance; a rule without data.
     """
     use = {one.label: one.use for one in assessment.inventory}
+    return groups_of(assessment.every_finding(), use)
+
+
+def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[Finding]]:
+    """The same of findings, and the component ids of pieces and clamps by their labels."""
 
     def cause(finding: Finding) -> Hashable:
         if finding.state is State.ACCEPTED and finding.accept is not None:
@@ -87,7 +103,7 @@ def open_groups(assessment: Assessment) -> list[list[Finding]]:
         return State.NOT_JUDGED, finding.rule
 
     found: list[list[Finding]] = []
-    every = [*assessment.every_finding()]
+    every = [*findings]
     for state in OPEN:
         those = [one for one in every if one.state is state]
         if state in (State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED):
@@ -96,6 +112,52 @@ def open_groups(assessment: Assessment) -> list[list[Finding]]:
             groups = joined(those)
         found += sorted(groups, key=lambda group: governing(group).rank)
     return found
+
+
+def open_counts(assessment: Assessment) -> Counter[State]:
+    """How many items are open in each state."""
+    return Counter(worst_of(group).state for group in open_groups(assessment))
+
+
+def counts_text(groups: Iterable[Sequence[Finding]]) -> str:
+    """How many items are open in each state, such as ``1 warning, 3 accepted``."""
+    counts = Counter(worst_of(group).state for group in groups)
+    return ", ".join(_counted(counts[state], state) for state in OPEN if counts[state])
+
+
+def _counted(count: int, state: State) -> str:
+    names = {State.FAIL: "failure", State.WARN: "warning", State.NOT_JUDGED: "not judged"}
+    plural = count != 1 and state in (State.FAIL, State.WARN)
+    return f"{count} {names.get(state, state.value)}{'s' * plural}"
+
+
+STATES = {
+    Conclusion.FAILS: State.FAIL, Conclusion.INCOMPLETE: State.UNKNOWN,
+    Conclusion.BY_ACCEPTANCE: State.WARN, Conclusion.OPEN_ITEMS: State.WARN,
+    Conclusion.PASSES: State.PASS,
+}  # fmt: skip
+"""The state as which a conclusion is shown."""
+
+
+def verdict_of(findings: Iterable[Finding], use: Mapping[str, str]) -> Span:
+    """The verdict in a line, such as ``passes with open items: 1 warning, 3 accepted``.
+
+    Parameters
+    ----------
+    use : component ids of pieces and clamps by their labels
+    """
+    found = [*findings]
+    conclusion = conclusion_of(found)
+    told = counts_text(groups_of(found, use))
+    return Span(f"{conclusion.words}{': ' * bool(told)}{told}", STATES[conclusion])
+
+
+def assessment_verdict(assessment: Assessment) -> Span:
+    """The verdict of a mooring in a line, with its sign."""
+    use = {one.label: one.use for one in assessment.inventory}
+    said = verdict_of(assessment.every_finding(), use)
+    sign = "" if said.state is None else f"{said.state.sign} "
+    return Span(f"{sign}{said.text}", said.state)
 
 
 def open_items(assessment: Assessment) -> list[OpenItem]:
@@ -142,7 +204,7 @@ def _told(group: Sequence[Finding], worst: Finding) -> str:
     if worst.state is State.ESTIMATED:
         estimate = plain(re.split(r" \(", worst.message.partition(" Its ")[2])[0])
         return f"{figures} {_capital(estimate)}. Obtain the maker’s figure."
-    if figures:
+    if figures and worst.rule not in _DIFFERENCES:
         return f"{figures} {worst.remedy or ''}"
     return f"{worst.message} {worst.remedy or ''}"
 

@@ -1,4 +1,4 @@
-"""Solver of a mooring or a tow: what is unknown, and how it is found. Arrays in, `Solution` out."""
+"""Solver for moorings, nets of legs and tows: from arrays of pieces to a `Solution`."""
 
 from calm.solve.fit import fit_length as fit_length
 from calm.solve.fit import fit_tow_length as fit_tow_length

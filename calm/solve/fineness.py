@@ -1,4 +1,4 @@
-"""How finely a line or a net is cut, from the difference between its coarse and its fine shape.
+"""Number of segments of a line or a net, from the difference between its coarse and fine shapes.
 
 Segments are chosen at twice the angle step. The line or net is closed on these, and again with
 every segment halved. The march is of second order, so a third of the change is the error of the
@@ -12,8 +12,9 @@ from calm.solve.accuracy import Errors
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
-"""Largest error estimates at an angle step of 1°, relative to the span and to the tension. They
-grow with the square of the angle step; beyond them a smaller one is taken."""
+"""Largest error estimates at an angle step of 1°, relative to the span and to the tension. Errors
+grow with the square of the angle step; above these limits a smaller angle step is used.
+"""
 MOST_ROUNDS = 6
 """Most rounds of a coarse and a fine shape."""
 MOST_SEGMENTS = 20_000

@@ -112,7 +112,7 @@ def test_a_scatter_table(calm, buoy, tmp_path):
 
 def test_a_rope_of_unknown_stiffness_is_told(calm, buoy):
     shown = calm("waves", buoy(stiff="cn: 1.2"), *SEA)
-    assert "rope gives no `stiffness` and is taken as inextensible" in shown.out
+    assert "rope has no `stiffness` and is assumed inextensible" in shown.out
 
 
 @pytest.mark.parametrize(
@@ -186,7 +186,7 @@ def test_the_pitch_of_a_float_that_gives_what_it_takes(calm, buoy):
 
     text, state, missing = pitch("hull: cylinder")
     assert state["pitch_std"] is None
-    assert missing == "it takes its `hull`, `centre_of_mass` and `radius_of_gyration`"
+    assert missing == "it requires `hull`, `centre_of_mass` and `radius_of_gyration`"
     assert "The pitch of the float is not computed: it takes its `hull`" in " ".join(text.split())
     text, state, missing = pitch("centre_of_mass: 0.3 m, radius_of_gyration: 0.6 m")
     assert missing is None
@@ -233,7 +233,7 @@ def test_a_sea_breaks_in_shallow_water(calm, buoy, tmp_path):
     (tmp_path / "buoy.yaml").write_text(text.replace("length: 95 m", "length: 20 m"))
     shown = calm("waves", path, "--hs", "6 m", "--tp", "12 s")
     assert shown.code == 2
-    assert "breaks in 9 m of water, where it is 5.4 m high at most" in shown.err
+    assert "breaks in 9 m of water, the largest significant height is 5.4 m" in shown.err
 
 
 def in_its_file(buoy, waves, **more):

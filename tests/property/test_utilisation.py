@@ -73,7 +73,8 @@ def test_the_conclusion_is_that_of_the_gravest_state(found: list[Finding]) -> No
     assert (conclusion is Conclusion.INCOMPLETE) == (worst is State.UNKNOWN)
     if worst is State.NOT_JUDGED or not found:
         assert conclusion is Conclusion.PASSES
-    if any(one.unaccepted is State.FAIL for one in found):
+    accepted = [one for one in found if one.state is State.ACCEPTED]
+    if any(one.unaccepted is State.FAIL or (one.utilisation or 0.0) > 1.0 for one in accepted):
         assert conclusion not in (Conclusion.PASSES, Conclusion.OPEN_ITEMS)
 
 

@@ -46,8 +46,8 @@ AT_LEAST = (
     "fish-bite",
 )
 """Rules whose values may not fall short of their limits; those of the others may not pass them."""
-TOLD = ("scope",)
-"""Rules that judge nothing."""
+TOLD = ("scope", "drag-coefficient")
+"""Rules that judge nothing, or warn in no shipped line: for drag see `test_curves`."""
 
 UNDER = (
     ("[0, 0.70, 290]", "[0, 2.9, 290]"),

@@ -130,7 +130,9 @@ def test_a_tension_beyond_the_accepted_load_is_not_accepted(tmp_path: Path) -> N
 def test_an_accepted_failure_passes_by_acceptance(tmp_path: Path) -> None:
     path = tmp_path / "line.yaml"
     text = (LINES / "upward-adcp-300m.yaml").read_text(encoding="utf-8")
-    assert _judged("upward-adcp-300m").verdict is Conclusion.OPEN_ITEMS
+    assert _judged("tidal-adcp").verdict is Conclusion.OPEN_ITEMS
+    # a swivel that bears 126 % of its load by an estimate, which is accepted
+    assert _judged("upward-adcp-300m").verdict is Conclusion.BY_ACCEPTANCE
     tight = text.replace("maximum_knockdown: 25 m", "maximum_knockdown: 1 m")
     path.write_text(tight, encoding="utf-8")
     assert check(load(path)).verdict is Conclusion.FAILS

@@ -122,7 +122,7 @@ def test_friction_by_pode_is_that_of_the_whole_speed():
 
 
 def test_without_any_drag_nothing_limits_the_speed():
-    with pytest.raises(NoEquilibrium, match="Nothing limits the rise speed") as refusal:
+    with pytest.raises(NoEquilibrium, match="rise speed of the line is unlimited") as refusal:
         solve_rise(line(rigid(0.0, 100.0)), STILL, 100.0)
     assert refusal.value.status == "no-equilibrium"
 
