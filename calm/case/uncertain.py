@@ -24,7 +24,7 @@ from calm.case.line_figures import LineFigures
 from calm.case.measure import clamps_of
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats
-from calm.solve import expect_many
+from calm.solve import Solver, expect_many
 
 BLOCK = 128
 """Samples that one process solves at a time."""
@@ -147,7 +147,7 @@ def uncertain(
     """
     leg = result.design.moored
     checked_samples(samples)
-    expect_many(samples)
+    expect_many(samples, Solver.NEARBY)
     _figures(leg, [Draw()])  # fetches what is compiled, once for the processes that are forked
     normal = normals_of(samples, seed) if normals is None else normals()
     draws = draws_of(leg.file.uncertainty, normal)

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from math import cos, radians, sin
 
@@ -220,8 +221,7 @@ def metals(handling: Handling) -> Iterator[Verdict]:
                 f"({noble.component.material}), {volts:.2f} V nobler in sea water, and corrodes."
             )
             remedy = "Insulate them from each other and set `insulated: true`, or fit an anode."
-            margin = GREATEST_DIFFERENCE - volts
-            yield verdict_on(base, State.WARN, message, remedy, volts, GREATEST_DIFFERENCE, margin)
+            yield at_most(base, volts, GREATEST_DIFFERENCE, message, remedy, State.WARN)
 
 
 def _is_insulated(part: Piece | Clamp) -> bool:
@@ -283,11 +283,12 @@ def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
         lift = _lift(part, handling.leg, density)
         pulls = []
         if isinstance(launch, Launch):
-            pulls.append((abs(lift + drag * launch.greatest_speed**2), " in the fall"))
+            pulls.append((abs(lift + drag * launch.greatest_speed**2), " in the fall", "L"))
         if isinstance(rise, Recovery) and part.index <= rise.released:
-            pulls.append((abs(lift - drag * rise.rise_speed**2), " in the rise"))
+            pulls.append((abs(lift - drag * rise.rise_speed**2), " in the rise", "R"))
         if pulls:
-            yield _verdict(part, *max(pulls))
+            pull, when, case = max(pulls)
+            yield replace(_verdict(part, pull, when), case=case)
 
 
 PROFILER_WIRE = 6.35e-3, 9.53e-3
@@ -384,4 +385,4 @@ def _verdict(part: JudgedPart, pull: float, when: str) -> Verdict:
     if breaking is not None:
         message = f"{pulls}; it breaks at {say('tension', breaking)}."
         return at_most(part, pull, breaking, message, _HOLDS)
-    return verdict_on(part, State.PASS, f"{pulls}; its `grip` is not given.", value=pull)
+    return verdict_on(part, State.NOT_JUDGED, f"{pulls}; its `grip` is not given.", value=pull)

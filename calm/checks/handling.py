@@ -32,7 +32,7 @@ def is_hauled_in(handling: Handling) -> bool:
     return handling.leg.file.release is None and reaches_the_surface(handling.leg)
 
 
-@rule("backup", once=True)
+@rule("backup", once=True, case="B")
 def backup(handling: Handling) -> Iterator[Verdict]:
     """Net buoyancy of what holds the release after the worst break, or the worst loss of a float.
 
@@ -84,7 +84,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     )
 
 
-@rule("launch-strength", once=True)
+@rule("launch-strength", once=True, case="L")
 def launch_strength(handling: Handling) -> Iterator[Verdict]:
     """Tension of every piece as the line falls behind its anchor.
 
@@ -124,7 +124,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         yield at_most(piece, tension, limit, message, remedy, source=source)
 
 
-@rule("launch-speed", once=True)
+@rule("launch-speed", once=True, case="L")
 def launch_speed(handling: Handling) -> Iterator[Verdict]:
     """Judge the speed of the anchor as it meets the seabed."""
     launch = handling.launch
@@ -152,7 +152,7 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         yield unknown(anchor, message, "Give the anchor's `kt`.", speed, lacks="kt")
 
 
-@rule("recovery", once=True)
+@rule("recovery", once=True, case="R")
 def recovery(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the line as it rises without its anchor, unless it is hauled in."""
     if is_hauled_in(handling):
@@ -178,11 +178,15 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     source = cited(handling.leg.file, "minimum_rise_speed")
     verdict = at_least(lowest, rise.rise_speed, limit, message, remedy, source=source)
     if verdict.state is State.PASS and rise.rise_speed < USUAL_RISE_SPEED:
-        verdict = replace(verdict, state=State.WARN, remedy=remedy)
+        verdict = at_least(
+            lowest, rise.rise_speed, USUAL_RISE_SPEED, message, remedy, State.WARN, source
+        )
     elif rise.rise_speed > FAST_RISE_SPEED:
-        message += f" Beyond {FAST_RISE_SPEED:g} m/s floats leap and the line below them loops."
+        message += f" Beyond {FAST_RISE_SPEED:g} m/s floats may breach and the line may loop."
         remedy = "Remove buoyancy, or keep the ship clear."
-        verdict = replace(verdict, state=State.WARN, message=message, remedy=remedy)
+        verdict = at_most(
+            lowest, rise.rise_speed, FAST_RISE_SPEED, message, remedy, State.WARN, source
+        )
     yield verdict
 
 
@@ -191,17 +195,18 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
     """Return whether the line doubles back on itself as it falls or rises."""
     fall, rise = "In the fall the parts above overtake", "In the rise the parts below overtake"
     lower = "Pay the line out under tension, or lower the anchor."
-    motions: list[tuple[Launch | Recovery | NoEquilibrium, str, str]]
-    motions = [(handling.launch, fall, lower)]
+    motions: list[tuple[Launch | Recovery | NoEquilibrium, str, str, str]]
+    motions = [(handling.launch, fall, lower, "L")]
     if not is_hauled_in(handling):
-        motions.append((handling.recovery, rise, "Put more of the buoyancy at the top."))
-    for motion, what, remedy in motions:
+        up = "Put more of the buoyancy at the top."
+        motions.append((handling.recovery, rise, up, "R"))
+    for motion, what, remedy, case in motions:
         if not isinstance(motion, NoEquilibrium) and motion.tangles:
             pieces = [handling.leg.file.pieces[piece] for piece in motion.tangles]
             named = ", ".join(piece.label for piece in pieces[:3])
             more = f" and {len(pieces) - 3} more" if len(pieces) > 3 else ""
             message = f"{what} {named}{more}: the line doubles back and may tangle."
-            yield verdict_on(pieces[0], State.WARN, message, remedy)
+            yield replace(verdict_on(pieces[0], State.WARN, message, remedy), case=case)
 
 
 def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:

@@ -333,7 +333,7 @@ def watch_circle(result: LegResult) -> Iterator[Verdict]:
     top = result.file.pieces[0]
     message = f"The watch circle has a radius of {say('offset', radius)}"
     if limit is None:
-        yield verdict_on(top, State.PASS, f"{message}.", value=radius)
+        yield verdict_on(top, State.NOT_JUDGED, f"{message}.", value=radius)
         return
     message += f"; {say('offset', limit)} is allowed."
     yield at_most(top, radius, limit, message, "Shorten the line.")
@@ -347,4 +347,4 @@ def scope(result: LegResult) -> Iterator[Verdict]:
     depth = result.leg.water.depth
     ratio = float(result.components.cut_length.sum()) / depth
     message = f"The line is {ratio:.3f} times as long as the water is deep."
-    yield verdict_on(None, State.PASS, message, value=ratio)
+    yield verdict_on(None, State.NOT_JUDGED, message, value=ratio)

@@ -282,6 +282,7 @@ def anchor_weight(leg: Leg) -> Iterator[Criterion]:
         source=cited(leg.file, "anchor_factor", "anchor_friction"),
         lacks="weight",
         stated=lambda required, result: (result.anchor_load.weight, required),
+        stated_least=True,
     )
 
 

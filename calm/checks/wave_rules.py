@@ -138,7 +138,7 @@ def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
     message = f"{verdict.message} {' '.join(waves.warnings)}"
     return replace(
         verdict, state=State.UNKNOWN, message=message, remedy="Give the rope's `stiffness`.",
-        limit=None, margin=None,
+        limit=None, sense=None,
     )  # fmt: skip
 
 

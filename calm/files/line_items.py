@@ -172,6 +172,7 @@ class LineReader:
             fit_body_depth=fit_depth if self._towed else None,
             equipment=self._equipment(item, component, clamped=False),
             measured_load=load,
+            named=self._named(item),
         )
 
     def _measured(self, item: SourceMapping, component: Flexible) -> tuple[float, float]:
@@ -233,7 +234,8 @@ class LineReader:
                 where = Place(0, clamp=len(clamps))
                 own = self._equipment(clamp, component, clamped=True)
                 label = self._label(clamp)
-                clamps.append(Clamp(clamp.data["use"], label, component, at, where, own))
+                use, named = clamp.data["use"], self._named(clamp)
+                clamps.append(Clamp(use, label, component, at, where, own, named=named))
             elif component is not None and at is not None:
                 message = f"a component of kind {component.kind} cannot be clamped on a line"
                 clamp.refuse(("use",), message)
@@ -262,9 +264,10 @@ class LineReader:
             self._assemblies[entry.id] = self.read(entry.section.into(self._problems), "parts")
             self._open.pop()
         place = item.problem((), "")
-        prefix = f"{self._label(item)} " if "label" in item.data else ""
+        prefix, named = f"{self._label(item)} " if "label" in item.data else "", self._named(item)
+        line, column = place.line, place.column
         return tuple(
-            replace(piece, label=prefix + piece.label, line=place.line, column=place.column)
+            replace(piece, label=prefix + piece.label, line=line, column=column, named=named)
             for piece in self._assemblies[entry.id]
         )
 
@@ -414,6 +417,10 @@ class LineReader:
         except QuantityError as error:
             item.refuse((key,), about_quantity(key, item.data[key], error))
             return None
+
+    def _named(self, item: SourceMapping) -> str:
+        """Return the label that an item or a clamp gives, "" if none."""
+        return self._label(item) if "label" in item.data else ""
 
     def _label(self, item: SourceMapping) -> str:
         label = item.data.get("label", item.data["use"])

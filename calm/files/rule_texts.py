@@ -20,6 +20,7 @@ class RuleText:
     source : of the rule and its limit as it is by default
     unseen : why no profile of a batch can be judged by it, where none can
     figures : of a component, without which the rule does not know
+    has_ratio : whether its values and limits are demand and capacity
     """
 
     title: str
@@ -29,6 +30,7 @@ class RuleText:
     source: str
     unseen: str = ""
     figures: tuple[str, ...] = ()
+    has_ratio: bool = True
 
 
 _WAVES = "waves are judged of an environment, by `calm check`"
@@ -47,6 +49,22 @@ RULES = {
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 of its speed, 0.2 "
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
+    "drag-coefficient": RuleText("Drag coefficient", "",
+        "spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond the curve of "
+        "`drag: reynolds`",
+        "a warning if the curve of a smooth shape makes the knockdown, or the offset at the "
+        "surface, greater by 5 %; else not judged, with the effect",
+        "Constant coefficients hold up to 2e5; beyond it, the drag of smooth shapes falls",
+        "the profiles of a record are solved with one law of drag"),
+    "environment": RuleText("Environment", "",
+        "what is possible in an environment, and mostly is a mistake: directions that are radians, "
+        "a level opposite to both its neighbours, a current that grows down to the seabed or is "
+        "stronger than any in deep water, the density of no sea, tides of more than 20 m, wind of "
+        "more than 75 m/s; levels of a storm weaker than half of the ordinary current; no `wind` "
+        "on a float at the surface that has a `wind_area`",
+        "a warning",
+        "Defaults of this program: what the sea has, and people type",
+        "environments are judged beside each other, by `calm check`"),
     "missing": RuleText("Missing figures", "",
         "figures that a component does not give and rules need: one finding for each component id "
         "and figure, with these rules and the pieces that they cannot judge",
@@ -68,7 +86,7 @@ RULES = {
         figures=("working_load", "opening_load")),
     "clamp-grip": RuleText("Grip of the clamps", "tension",
         "weight in water and drag of what is clamped, in the current, the fall and the rise",
-        "its `grip`, else its `breaking_load`; reported where neither is given",
+        "its `grip`, else its `breaking_load`; not judged where neither is given",
         "The maker's figures of the clamp",
         "the result does not hold the current at each clamp", figures=("grip",)),
     "profiler": RuleText("Profiler on its wire", "tension",
@@ -180,12 +198,12 @@ RULES = {
         "the result does not hold how the float lies in the water"),
     "watch-circle": RuleText("Watch circle", "offset",
         "√(L² − h²): the line as stretched, the water above the anchor's top",
-        "`maximum_excursion`; reported where that is not given",
+        "`maximum_excursion`; not judged where that is not given",
         "Worst case √(L² - h²), h above the anchor, against the design's own `maximum_excursion`",
         "the result does not hold the stretched length of the line"),
     "scope": RuleText("Scope", "scope",
         "cut length over depth",
-        "none: it is reported",
+        "none: it is reported, not judged",
         "Reported, not judged",
         "it is reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
@@ -196,10 +214,11 @@ RULES = {
         _ONCE),
     "figures": RuleText("Figures of components", "",
         "figures of pieces and clamps that are impossible for their size and material: lift, "
-        "mass, stiffness, strength, depth rating, coefficients of drag",
-        "a failure; of a tilt warned of after the limit a warning; unknown where the line gives a "
-        "figure that flatters more than its component's, without a `source`, and of a `material` "
-        "that names none of those known",
+        "mass, density, stiffness, strength, depth rating, coefficients of drag",
+        "a failure; a warning of a tilt warned of after the limit, of an instrument that floats "
+        "and of a `wind_area` out of proportion; unknown where the line gives a figure that "
+        "flatters more than its component's, without a `source`, and of a `material` that names "
+        "none of those known, or another than the `name`",
         "The rules of `calm catalog check`",
         _ONCE),
     "release-present": RuleText("Release", "",
@@ -215,10 +234,24 @@ RULES = {
         "a warning where none has",
         "A default of this program: what joins the pieces has weight, drag and a strength",
         _ONCE),
+    "joints": RuleText("Joints", "",
+        "whether a piece with `role: connector` joins every two unlike pieces, of wire, chain and "
+        "what is rigid; ropes are spliced, and a wire with a `termination` says how it ends",
+        "a warning, one for all joints of the line; not of a line without any hardware",
+        "A default of this program: a shackle that is not listed is not bought, nor judged",
+        _ONCE),
     "clamp-place": RuleText("Places of the clamps", "",
         "clamps on a cable or chain that overlap, or stick out over its end",
         "5 cm: a failure",
         "Two things are not in one place",
+        _ONCE),
+    "serials-and-dates": RuleText("Serial numbers and dates", "",
+        "labels of several rows, but for connectors; serial numbers of several items of one "
+        "component; codes of a release that is not in the line, or of two; batteries that end "
+        "before the deployment or the calibration, calibrations after the deployment; a document "
+        "that is not its latest revision, revisions out of order",
+        "a warning",
+        "A default of this program: what sheets and labels print must not contradict itself",
         _ONCE),
     "swivel": RuleText("Swivel", "",
         "steel wire that ends at a float with no chain or rope between",
@@ -232,7 +265,7 @@ RULES = {
         "0.2 V apart in sea water: a warning",
         "Galvanic series in sea water (Professional Boatbuilder 100, 2006); 0.15 to 0.2 V in harsh "
         "surroundings (Pantaenius)",
-        _ONCE),
+        _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "tension",
         "net buoyancy of the part that still holds the release after the worst break or loss of a "
         "float that is judged (below)",
@@ -270,3 +303,6 @@ RULES = {
 
 ACCEPTABLE = tuple(name for name in RULES if name != "equilibrium")
 """The rules of `checks: accept:`; of a mooring that does not stand nothing is known to accept."""
+
+LOADED = ("strength", "release-load", "clamp-grip", "wave-strength", "launch-strength", "missing")
+"""The rules of which an accept may give the greatest tension that it accepts."""

@@ -17,8 +17,16 @@ from calm.motion.correction import ESTIMATED, MEASURED, MISSING
 from calm.motion.matching import LinePlaces, points_of
 from calm.motion.measurements import interpolated
 from calm.motion.study import depths_at
+from calm.quantities import QUANTITIES_MEASURED
 from calm.records import cf_files
-from calm.records.instrument_series import Identity, files_given, who_along
+from calm.records.instrument_series import (
+    Identity,
+    conductivity_in,
+    files_given,
+    named,
+    practical_salinity,
+    who_along,
+)
 from calm.version import __version__
 from calm.whole_file import beside
 
@@ -209,6 +217,7 @@ def write_depths(
         "flag_values": np.array(list(FLAGS), np.int8), "flag_meanings": " ".join(FLAGS.values()),
         "conventions": "OceanSITES QC Flags",
     })  # fmt: skip
+    _add_salinity(copy, instruments, depth)
     _tell(copy, instruments, depth, inputs)
     with beside(output) as part:
         copy.to_netcdf(part, engine="h5netcdf")
@@ -255,8 +264,34 @@ def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
     if nominal is not None and NOMINAL not in copy.variables:
         told = {key: value for key, value in nominal.attrs.items() if key != "axis"}
         copy[NOMINAL] = nominal.copy(deep=False)
-        copy[NOMINAL].attrs = {**told, "long_name": "nominal depth"}
+        metres = {"units": "m", "positive": "down", "standard_name": "depth"}
+        copy[NOMINAL].attrs = {**metres, **told, "long_name": "nominal depth"}
     return copy
+
+
+def _add_salinity(copy: Dataset, instruments: Instruments, depth: NDArray[np.float64]) -> None:
+    """Add the salinity that conductivity and temperature give, where the file holds none."""
+    import xarray as xr
+
+    salinity = QUANTITIES_MEASURED["salinity"]
+    with cf_files.opened(instruments.path) as dataset:
+        single = [str(dim) for dim, size in dataset.sizes.items() if size == 1]
+        dataset = dataset.isel({dim: 0 for dim in single if dim != instruments.dimension})
+        if named(dataset, salinity.sought, salinity.usual):
+            return
+        taken = conductivity_in(dataset)
+        axes = (instruments.dimension, *filter(None, [instruments.along]))
+        if not taken or any({*dataset[name].dims} != {*axes} for name in taken.values()):
+            return
+        parts = [cf_files.known_values(dataset[name].transpose(*axes)) for name in taken.values()]
+        place = depth[:, 0] if instruments.along is None else depth
+        values = practical_salinity(dataset, taken, parts, place)
+    name = salinity.archive if instruments.along is None else "salinity"
+    copy[name] = xr.Variable(axes, values, {
+        "standard_name": salinity.standard_name, "long_name": salinity.long_name,
+        "units": salinity.units,
+        "comment": "computed by CALM from conductivity, temperature and pressure (TEOS-10)",
+    })  # fmt: skip
 
 
 def _tell(

@@ -11,6 +11,7 @@ from calm.solve.mooring import solve_mooring as solve_mooring
 from calm.solve.solution import Settings as Settings
 from calm.solve.solution import Solution as Solution
 from calm.solve.solution import Status as Status
-from calm.solve.solution import expect_many as expect_many
 from calm.solve.tow import Towing as Towing
 from calm.solve.tow import solve_tow as solve_tow
+from calm.solve.two_speeds import Solver as Solver
+from calm.solve.two_speeds import expect_many as expect_many

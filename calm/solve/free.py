@@ -26,7 +26,8 @@ from calm.solve.audit import loads_of
 from calm.solve.free_march import Rising
 from calm.solve.free_search import FreePlace, terminal
 from calm.solve.search import LARGEST_CLOSURE
-from calm.solve.solution import Settings, Solution, Status, nodes_of, runs_compiled
+from calm.solve.solution import Settings, Solution, Status, nodes_of
+from calm.solve.two_speeds import runs_compiled
 
 
 @dataclass(frozen=True)

@@ -72,10 +72,9 @@ def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
 def plumb_speed(line: Line, water: Water, top: float) -> float:
     """Terminal speed of a line that hangs plumb in still water [m/s], + up.
 
-    At this speed the sum of weight, buoyancy and drag is zero, whether neighbouring parts pull or
-    push at one another; along a bare buoyant rope they do neither. Drag is almost proportional to
-    the square of the speed, so secants in the squared speed converge at once. Smooth pieces in the
-    drag crisis may allow several speeds; the search finds one.
+    The sum of weight, buoyancy and drag is zero, whether or not the parts pull at one another. Drag
+    is almost proportional to the square of the speed, so secants in the squared speed converge at
+    once. Smooth pieces in the drag crisis may allow several speeds; the search finds one.
 
     Parameters
     ----------
@@ -152,7 +151,7 @@ def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats
 
 
 _FOLLOWED = 8
-"""Most corrections of the depth of a plumb line's lower end; two or three are usual."""
+"""Largest number of updates of the depth of a plumb line's lower end; two or three suffice."""
 
 
 def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
@@ -161,8 +160,8 @@ def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePl
     A march that chooses its segments freely is not quite continuous, so the line is closed on given
     segments: first on coarse ones, then on those that the march chooses at that solution.
 
-    Along a plumb line only the forces are closed, and the depth of the lower end follows: if the
-    line doubles back within a cable, that depth is not continuous.
+    For a plumb line only the forces are closed, and the depth of the lower end follows: if the line
+    doubles back within a cable, that depth is not continuous.
     """
     sheared = not rising.plumb
     unknown = np.array([sheared, sheared, True, sheared])

@@ -43,10 +43,10 @@ from calm.solve.solution import (
     Solution,
     Status,
     refuse_unsupported,
-    runs_compiled,
     standing_lift,
 )
 from calm.solve.starts import fill_starts
+from calm.solve.two_speeds import Solver, runs_compiled
 
 MOST_DEPTHS = 500
 """Largest length of a line, in water depths: segments are at most a hundredth of the depth."""
@@ -87,11 +87,14 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     """
     settings = settings or Settings()
     refuse_endless(line, water)
-    refuse_unsupported(line, water, standing_lift(line, water))
+    lift = standing_lift(line, water)
+    refuse_unsupported(line, water, lift)
     compiled = runs_compiled(settings, line)
-    room = ROOM
+    room, track = ROOM, Track.of(line)
     while True:
-        problem = problem_of(line, water, settings, compiled=compiled, room=room)
+        problem = problem_of(
+            line, water, settings, compiled=compiled, room=room, track=track, lift=lift
+        )
         search = search_of(problem, compiled)
         referee = referee_of(line, water, 0.0, compiled)
         found = find_compiled(search, referee) if compiled else find_shape(search, referee)
@@ -237,7 +240,7 @@ class Nearby:
         self.solution = solve_mooring(line, water, settings)
         self._water, self._settings = water, settings
         self._room = 2 * len(self.solution.cut) + 64
-        self._compiled = compiled = runs_compiled(settings, line)
+        self._compiled = compiled = runs_compiled(settings, line, Solver.NEARBY)
         problem = problem_of(line, water, settings, compiled=compiled, room=self._room)
         search = search_of(problem, compiled)
         closed: Closed = outcome(close_coarsely, compiled, search, self.solution.landed)

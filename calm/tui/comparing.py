@@ -174,6 +174,9 @@ class ComparingScreen(line_screen.LineScreen):
         choose(self.app, Question("On paper", "", answers))
 
     def _ask_where(self, what: str) -> None:
+        if self.workspace.papers_elsewhere:
+            self.tell(self.workspace.papers_elsewhere)
+            return
         path = self.session.file.path
         if path is None or self.session.changed:
             self.tell("Save the file first: reports are made from the saved file")

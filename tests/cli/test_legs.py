@@ -71,7 +71,7 @@ def document(file: Path, capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
 
 
 def test_the_table_goes_leg_by_leg(net: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run("run", net) == 0
+    assert run("run", net, "--verbose") == 0
     said = capsys.readouterr().out
     for leg in (
         "main: free end to node A",
@@ -575,7 +575,7 @@ def test_the_anchor_of_a_line_is_judged_on_the_slope(
     assert anchor["friction"] == pytest.approx(friction, rel=1e-12)
     needed = 1.5 * (anchor["vertical"] + anchor["horizontal"] / friction)
     assert anchor["required_weight"] == pytest.approx(needed, rel=1e-9)
-    run("check", file, "--json", "-", "--workers", 1)
+    run("check", file, "--json", "-", "--all-findings", "--workers", 1)
     findings = json.loads(capsys.readouterr().out)["findings"]
     (sliding,) = (
         each for each in findings
