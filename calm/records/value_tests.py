@@ -337,7 +337,7 @@ def _gaps(times: Times) -> Iterator[str]:
 def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[str]:
     """Yield the series that keep one value for a tenth of the record, or repeat most readings."""
     same: NDArray[np.bool_] = np.all(values[1:] == values[:-1], axis=2)
-    known = np.isfinite(values).all(axis=2)
+    known: NDArray[np.bool_] = np.all(np.isfinite(values), axis=2)
     fewest = max(_FEWEST, UNCHANGED * len(times))
     stuck, longest = 0, (0, 0, 0)  # readings, first, series
     for k in range(same.shape[1]):
