@@ -169,7 +169,7 @@ def _counted(number: int, noun: str) -> str:
 
 
 def texts_in(attributes: Mapping[Any, Any]) -> dict[str, str]:
-    """Extract title, summary and comment from global attributes, at most `LONGEST` characters each."""
+    """Extract title, summary and comment from attributes, at most `LONGEST` characters each."""
     by_name = {str(name).lower(): value for name, value in attributes.items()}
     found = {}
     for kind, names in _TEXTS.items():
