@@ -163,9 +163,9 @@ def exchanged(
         known = [column[np.isfinite(column)] for column in samples.value.T]
         means = np.array([column.mean() if column.size else np.nan for column in known])
         if pair := exchanged_pair(means):
-            first, second = (samples.label[i] for i in pair)
+            upper, lower = (samples.label[i] for i in pair)
             yield (
-                f"{name}: only if `{first}` and `{second}` are exchanged do the means of all "
+                f"{name}: only if `{upper}` and `{lower}` are exchanged do the means of all "
                 f"{len(means)} instruments fall or rise with depth: are two files exchanged?"
             )
 

@@ -19,7 +19,7 @@ from calm.motion.matching import CERTAIN, in_order, named_point, places_of
 from calm.records.instrument_series import Identity
 
 ASTRAY = 0.02, 5.0
-"""Difference of a nominal depth from that of its part, as a share and [m], that is not said."""
+"""Tolerance between nominal and still-water depth, as a share and in metres."""
 _ITEMS = ("deployed", "items")
 
 
@@ -43,7 +43,7 @@ def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstrum
     """Return a mooring file whose `deployed` has the serial numbers of a list.
 
     An instrument is the part of its name or serial number, or else the one at its nominal depth, in
-    their order down the line. All else of the file stays as it is written.
+    their order down the line. The rest of the file is unchanged.
 
     Raises
     ------

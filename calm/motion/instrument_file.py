@@ -200,13 +200,18 @@ def write_depths(
         copy = cf_files.open_current(instruments.path)
     one = instruments.along is None
     copy = _without_depths(copy, instruments)
+    for variable in copy.variables.values():  # xarray adds a fill value to each that has none
+        if "_FillValue" not in variable.attrs and variable.dtype.kind == "f":
+            variable.encoding.setdefault("_FillValue", None)
     name, deviation, mark = instruments.names
     dims = (instruments.dimension,) if one else (instruments.dimension, str(instruments.along))
     tables = [table[:, 0] if one else table for table in (depth, spread, flag)]
     copy[name] = xr.Variable(dims, tables[0], {
         "units": "m", "positive": "down", "standard_name": "depth",
         "long_name": "depth estimated by CALM", "ancillary_variables": f"{deviation} {mark}",
-        **({"axis": "Z", "reference": "sea_level"} if one else {}),
+        **({"reference": "sea_level"} if one else {}),
+        # CF: an axis is no auxiliary coordinate's, but in a discrete sampling geometry
+        **({"axis": "Z"} if one and "featureType" in copy.attrs else {}),
     })  # fmt: skip
     copy[deviation] = xr.Variable(dims, tables[1], {
         "units": "m", "standard_name": "depth standard_error",
@@ -218,6 +223,7 @@ def write_depths(
         "conventions": "OceanSITES QC Flags",
     })  # fmt: skip
     _add_salinity(copy, instruments, depth)
+    _drop_references(copy)
     _tell(copy, instruments, depth, inputs)
     with beside(output) as part:
         copy.to_netcdf(part, engine="h5netcdf")
@@ -249,6 +255,19 @@ def at_own_times(
         here = np.isfinite(interpolated(known, own, time, gap)) & np.isfinite(depth)
         flag[here] = MEASURED
     return depth, spread, flag
+
+
+def _drop_references(copy: Dataset) -> None:
+    """Let no attribute name a variable that is gone."""
+    for variable in copy.variables.values():
+        for attribute in ("coordinates", "ancillary_variables"):
+            for place in (variable.attrs, variable.encoding):
+                named = str(place.get(attribute, "")).split()
+                there = [name for name in named if name in copy.variables]
+                if there and there != named:
+                    place[attribute] = " ".join(there)
+                elif named and not there:
+                    del place[attribute]
 
 
 def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:

@@ -24,6 +24,7 @@ from calm.records.card import ReadCard, VariableSummary
 from calm.records.cf_files import UnreadableError, factor_of, find_times
 from calm.records.headings import read_time_columns
 from calm.records.instrument_series import PASCALS_PER_DBAR, InstrumentSeries
+from calm.records.value_tests import series_doubts
 from calm.records.velocity import MISSING, flag_variable
 
 if TYPE_CHECKING:
@@ -73,7 +74,14 @@ def read_sensors(
     twice = sorted({label for label in labels if labels.count(label) > 1})
     if twice:
         raise UsageError(f"--pressures: two sensors are called `{twice[0]}`")
-    return found
+    return [_doubted(one) for one in found]
+
+
+def _doubted(sensor: InstrumentSeries) -> InstrumentSeries:
+    """Return a sensor with what is doubtful in the order of its readings in its note."""
+    doubts = series_doubts(sensor.value[:, np.newaxis, np.newaxis], sensor.time)
+    said = (sensor.note, *(f"{sensor.named}: {doubt}" for doubt in doubts))
+    return replace(sensor, note="; ".join(filter(None, said)))
 
 
 def depth_of(dbar: Floats, latitude: float) -> Floats:

@@ -86,7 +86,7 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 
 
 def moving_platform(dataset: xr.Dataset) -> str | None:
-    """Return why a dataset is that of a moving ship; None if it may be a mooring's.
+    """Explain why a dataset comes from a moving ship; None if it may come from a mooring.
 
     Its `source_program` says so, or a velocity of the platform over the ground, by a bottom track
     or a position, whose median is that of no mooring.

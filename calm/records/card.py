@@ -1,6 +1,7 @@
-"""The card of a record: what was read from a file, for a person to see that it is what was meant.
+"""Summary card of a file: its texts, variables, levels, times, flags and declination.
 
-Its title, summary and comment stand as the file has them; the values, in their declared units.
+A person reads the card to confirm that the file is the intended one. Texts are quoted verbatim, and
+values are in their declared units.
 """
 
 from __future__ import annotations
@@ -27,9 +28,10 @@ _TEXTS = {
 
 @dataclass(frozen=True)
 class VariableSummary:
-    """A variable as read: name, declared unit, and its least, median and greatest value in it.
+    """Name, declared unit, minimum, median and maximum of a variable.
 
-    `said` is its own long name and comment; the values are NaN where it has none.
+    `said` quotes its long name and comment. The three figures are NaN for a variable without finite
+    values.
     """
 
     name: str
@@ -41,7 +43,7 @@ class VariableSummary:
 
     @classmethod
     def of(cls, name: str, units: str, values: Any, said: str = "") -> VariableSummary:
-        """Summarise the finite ones of some values."""
+        """Compute the figures from the finite elements of an array."""
         values = np.asarray(values, np.float64).ravel()
         known = values[np.isfinite(values)]
         if not known.size:
@@ -52,18 +54,18 @@ class VariableSummary:
 
 @dataclass(frozen=True, eq=False)
 class ReadCard:
-    """What was read from a file.
+    """Contents of a file, in summary.
 
     Attributes
     ----------
-    file : its name
-    texts : its title, summary and comment, those that it has, as they stand
-    variables : by what each was taken for, such as east, north, depth
-    levels : number of levels, or of instruments
-    times : (n,) rising; empty of a profile without a time
-    clock : name and unit of the variable of the times
-    flags : readings that were left out for each variable of flags
-    declination : by which a current relative to magnetic north was turned [degrees]
+    file : name of the file
+    texts : title, summary and comment, quoted
+    variables : variables by their role, such as east, north, depth
+    levels : number of levels or of instruments
+    times : (n,) in rising order; empty for a profile without a time
+    clock : name and unit of the time variable
+    flags : number of readings excluded by each flag variable
+    declination : angle by which currents were rotated from magnetic to true north [degrees]
     """
 
     file: str
@@ -76,7 +78,7 @@ class ReadCard:
     declination: float | None = None
 
     def sentence(self) -> str:
-        """Return the card in one line, as a history has it."""
+        """Format the card as one line for a `history` attribute."""
         rows = card_rows(self.to_dict())
         told = "; ".join(f"{name}: {' '.join(value.split())}" for name, value in rows)
         return f"read {self.file}: {told}"
@@ -113,14 +115,14 @@ class ReadCard:
 
 
 def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
-    """Return the card of what was read from one file in several parts."""
+    """Merge the cards of several parts of one file."""
     variables = {taken: one for card in cards for taken, one in card.variables.items()}
     flags = {name: count for card in cards for name, count in card.flags.items()}
     return replace(cards[0], variables=variables, flags=flags)
 
 
 def card_rows(card: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Return the names and values of a card, as `ReadCard.to_dict` gives it, in their order."""
+    """Format the dictionary of `ReadCard.to_dict` as (name, text) rows for display."""
     rows = [(name, card[name]) for name in _TEXTS if card[name]]
     for taken, one in card["variables"].items():
         said = f"{one['name']} [{one['units']}]" if one["units"] else one["name"]
@@ -167,7 +169,7 @@ def _counted(number: int, noun: str) -> str:
 
 
 def texts_in(attributes: Mapping[Any, Any]) -> dict[str, str]:
-    """Return the title, summary and comment of a dataset, each as it stands, cut to `LONGEST`."""
+    """Extract title, summary and comment from attributes, at most `LONGEST` characters each."""
     by_name = {str(name).lower(): value for name, value in attributes.items()}
     found = {}
     for kind, names in _TEXTS.items():

@@ -155,8 +155,8 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
     values = CurrentValues(depth, u[np.newaxis], v[np.newaxis], None, terms.water_depth)
     card = _card_of(header, values, np.empty(0, "M8[ns]"), terms)
     notices += current_doubts(values)
-    levels_down, east, north, up = (tuple(each.tolist()) for each in (depth, u, v, w))
-    return CurrentTable(levels_down, east, north, up, card=card), notices
+    columns = [tuple(each.tolist()) for each in (depth, u, v, w)]
+    return CurrentTable(columns[0], columns[1], columns[2], columns[3], card=card), notices
 
 
 def _rows_of(rows: Sequence[CellRow], time: str | None) -> tuple[list[CellRow], list[str]]:

@@ -1,7 +1,7 @@
-"""General tests of measured values: each yields a sentence with the number of values it is about.
+"""General tests of measured values: each yields sentences that count the suspicious values.
 
-They look at values alone, whatever their file says of itself. A sentence is a doubt for a person
-to settle: nothing is left out or refused here.
+The tests use values alone and ignore free text. A person settles the doubts: the tests neither
+exclude nor reject values.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ UNCOVERED, FEW = 0.1, 25.0
 WEAK, FAST = 0.03, 2.0
 """Speeds [m/s] that no record has as its strongest, or as its median."""
 MANY = 50
-"""Values of which it is no chance that they are alike."""
+"""Smallest sample for which a coincidence is ruled out."""
 SECTOR = 40.0
 """Directions that all lie between north and so many degrees are in radians, or in tens."""
 UNCHANGED = 0.1
@@ -43,7 +43,7 @@ _FEET = 0.3048
 
 @dataclass(frozen=True)
 class CurrentValues:
-    """Currents of a record as they stand, for the tests.
+    """Currents of a record, as input of the tests.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class CurrentValues:
 
 
 def current_doubts(found: CurrentValues) -> Iterator[str]:
-    """Yield what is doubtful about the values of a current."""
+    """Yield doubts about the values of a current."""
     known = np.isfinite(found.u) & np.isfinite(found.v)
     yield from level_doubts(found.depth, known, found.water_depth)
     speed = np.hypot(found.u, found.v)[known]
@@ -120,13 +120,13 @@ def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) ->
 
 
 def _median(values: Floats) -> float:
-    """Return the median of the finite values; NaN of none."""
+    """Return the median of the finite values, or NaN."""
     known = values[np.isfinite(values)]
     return float(np.median(known)) if known.size else np.nan
 
 
 def left_out(top: float, bottom: float, water_depth: float, what: str = "current") -> str:
-    """Return which part of the water a profile says nothing of; "" where it covers it.
+    """Name the part of the water column that a profile does not cover; empty if it covers all.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def direction_doubts(u: Floats, v: Floats) -> Iterator[str]:
 
 
 def _recurring(values: Floats, side: str) -> Iterator[str]:
-    """Yield that one value recurs beyond all others, as what fills a gap does [m/s]."""
+    """Yield a likely fill value: one that recurs and exceeds all others [m/s]."""
     largest = np.abs(values).max(initial=0.0)
     filled = np.abs(values) == largest
     others = values[~filled]
@@ -192,7 +192,7 @@ def _recurring(values: Floats, side: str) -> Iterator[str]:
 
 
 def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) -> Iterator[str]:
-    """Yield what is doubtful in the order of values over time.
+    """Yield doubts about the sequence of values in time.
 
     Parameters
     ----------
@@ -224,7 +224,7 @@ def step_doubts(times: Times) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class WaterLimits:
-    """Least and greatest value of a quantity of sea water, its unit, and units it is mistaken for.
+    """Minimum and maximum of a sea-water quantity, its unit, and units that are confused with it.
 
     Each of `likely` is a unit with the factor and the zero that turn it into the usual one.
     """
@@ -248,7 +248,7 @@ _FRACTION = 0.05  # salinity that most of a record is below where it is a mass f
 
 
 def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str, bool]:
-    """Return which values no sea water has, what is said of them, and whether they are most.
+    """Find impossible values; return their mask, a sentence, and whether they are the majority.
 
     Parameters
     ----------
@@ -276,9 +276,9 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
 
 
 def exchanged_pair(values: Floats) -> tuple[int, int] | None:
-    """Return the two of s >= 4 mean values, from the top down, whose exchange puts all in order.
+    """Find the pair of mean values (s >= 4, top first) whose exchange makes the profile monotonic.
 
-    None where they are in order as they stand, or no exchange or several do it.
+    None if the profile is monotonic already, or if no exchange or more than one achieves this.
     """
     if len(values) < 4 or not np.isfinite(values).all():
         return None
@@ -337,7 +337,7 @@ def _gaps(times: Times) -> Iterator[str]:
 def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[str]:
     """Yield the series that keep one value for a tenth of the record, or repeat most readings."""
     same: NDArray[np.bool_] = np.all(values[1:] == values[:-1], axis=2)
-    known = np.isfinite(values).all(axis=2)
+    known: NDArray[np.bool_] = np.all(np.isfinite(values), axis=2)
     fewest = max(_FEWEST, UNCHANGED * len(times))
     stuck, longest = 0, (0, 0, 0)  # readings, first, series
     for k in range(same.shape[1]):
@@ -380,7 +380,7 @@ def _interleaved(values: Floats) -> Iterator[str]:
 
 
 def _repeated(values: Floats, times: Times) -> Iterator[str]:
-    """Yield the longest stretch of readings that stands a second time, digit by digit."""
+    """Yield the longest stretch of readings that occurs twice with identical digits."""
     count = len(values) - _STRETCH + 1
     if count <= _STRETCH:
         return
