@@ -19,6 +19,7 @@ RESOLVED, HASH = "input_resolved", "input_sha256"
 
 _NO_MATTER = frozenset(
     {"path", "line", "column", "checks", "notices", "variants", "description", "current"}
+    | {"doubts", "named"}
     | {"sources", "searched", "prefer", "waves", "seas"}
 )
 """Keys of a mooring file that do not affect the results of a batch; `current` is replaced by the

@@ -66,7 +66,8 @@ class Clamp:
     """An instrument clamped on a piece, `at` metres (unstretched) below the piece's top.
 
     A profiler moves over `travel`, the distances of its upper and lower stop from the piece's top;
-    inf is the lower end of the piece. Its place `at` is that of the upper stop.
+    inf is the lower end of the piece. Its place `at` is that of the upper stop. `named` is its
+    label in the file, empty if there is none.
     """
 
     use: str
@@ -76,6 +77,7 @@ class Clamp:
     place: Place
     equipment: Equipment = NO_EQUIPMENT
     travel: tuple[float, float] | None = None
+    named: str = ""
 
     @property
     def serial(self) -> str | None:
@@ -106,7 +108,8 @@ class Piece:
         that is cut to fit
     equipment : keys about the individual piece
     measured_load : load under which its length was measured [N]; `length` is nevertheless that
-        without same
+        without load
+    named : label in the file, empty if there is none
     """
 
     index: int
@@ -122,6 +125,7 @@ class Piece:
     fit_body_depth: float | None = None
     equipment: Equipment = NO_EQUIPMENT
     measured_load: float = 0.0
+    named: str = ""
 
     @property
     def serial(self) -> str | None:

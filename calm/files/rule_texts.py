@@ -20,6 +20,7 @@ class RuleText:
     source : source of the rule and of its default limit
     unseen : the reason, if the profiles of a batch cannot be checked
     figures : figures of a component that the rule needs
+    has_ratio : whether its values and limits are demand and capacity
     """
 
     title: str
@@ -29,6 +30,7 @@ class RuleText:
     source: str
     unseen: str = ""
     figures: tuple[str, ...] = ()
+    has_ratio: bool = True
 
 
 _WAVES = "waves are checked for an environment, by `calm check`"
@@ -47,6 +49,22 @@ RULES = {
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 of its speed, 0.2 "
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
+    "drag-coefficient": RuleText("Drag coefficient", "",
+        "spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond the curve of "
+        "`drag: reynolds`",
+        "a warning if the curve of a smooth shape makes the knockdown, or the offset at the "
+        "surface, greater by 5 %; else not judged, with the effect",
+        "Constant coefficients hold up to 2e5; beyond it, the drag of smooth shapes falls",
+        "the profiles of a record are solved with one law of drag"),
+    "environment": RuleText("Environment", "",
+        "what is possible in an environment, and mostly is a mistake: directions that are radians, "
+        "a level opposite to both its neighbours, a current that grows down to the seabed or is "
+        "stronger than any in deep water, the density of no sea, tides of more than 20 m, wind of "
+        "more than 75 m/s; levels of a storm weaker than half of the ordinary current; no `wind` "
+        "on a float at the surface that has a `wind_area`",
+        "a warning",
+        "Defaults of this program: what the sea has, and people type",
+        "environments are judged beside each other, by `calm check`"),
     "missing": RuleText("Missing figures", "",
         "figures that rules need and a component lacks: one finding for each component id "
         "and figure, with these rules and the pieces that they cannot check",
@@ -68,7 +86,7 @@ RULES = {
         figures=("working_load", "opening_load")),
     "clamp-grip": RuleText("Grip of the clamps", "tension",
         "weight in water and drag of every clamp, in the current, the fall and the rise",
-        "its `grip`, or its `breaking_load`; reported if neither is given",
+        "its `grip`, or its `breaking_load`; not judged if neither is given",
         "Figures of the clamp given by the manufacturer",
         "the result does not contain the current at each clamp", figures=("grip",)),
     "profiler": RuleText("Profiler on its wire", "tension",
@@ -81,7 +99,8 @@ RULES = {
         figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "tension",
         "every piece, compared with the cables above and below it",
-        "half of their strength: a warning",
+        "half of their strength, if sources give both, for a piece with more than half of its "
+        "allowable load: a warning",
         "A default of this program: half the strength of the adjacent cables",
         "the strengths of pieces side by side do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",
@@ -91,7 +110,7 @@ RULES = {
         "20°, release 45°, sediment trap 10°",
         figures=("max_tilt",)),
     "depth-rating": RuleText("Depth rating", "depth",
-        "depth in the current",
+        "depth in the current; of a surface float only where it gives its rating",
         "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
         "Rating given by the manufacturer, less a margin for a stronger current than expected",
         figures=("depth_rating",)),
@@ -115,7 +134,8 @@ RULES = {
         "A default of this program: soundings have a similar error; ropes are measured under "
         "a small load"),
     "fish-bite": RuleText("Fish bite", "depth",
-        "minimum depth of every synthetic rope, in more than 200 m of water",
+        "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
+        "the equator",
         "`fishbite_depth`, 1000 m: a warning",
         "Berteaux, Prindle & May, OCEANS '87: far from the shores fish bite from the surface to "
         "1000 m and more",
@@ -145,7 +165,8 @@ RULES = {
         "of a deadweight",
         figures=("weight", "density")),
     "slack": RuleText("Least tension", "tension",
-        "minimum tension of the wires and ropes above the release that are off the seabed",
+        "minimum tension of the wires and ropes above the release that are off the seabed, if the "
+        "line is longer than 50 m above its release",
         "`minimum_tension`: 500 N wire, 300 N rope; `slack: allowed` on a piece exempts it",
         "Practice of mooring groups, 50 to 100 kgf above the release; no figure is published"),
     "wave-strength": RuleText("Strength in waves", "tension",
@@ -162,8 +183,8 @@ RULES = {
         _WAVES),
     "fatigue": RuleText("Fatigue in waves", "life",
         "life of every piece below the float in the sea states of `waves: scatter:`",
-        "`fatigue_factor`, 3, × `service_time`, 365 days; unknown without a table of sea states "
-        "or a published curve",
+        "`fatigue_factor`, 3, × `service_time`, 365 days; not judged without a table of sea "
+        "states; unknown without a published curve",
         "Dirlik 1985 and Miner's sum; curves of DNV-OS-E301 (chain, polyester) and API RP 2SK "
         "(wire); a life of three times the service",
         _WAVES),
@@ -178,13 +199,13 @@ RULES = {
         "the result does not contain the draft of the float"),
     "watch-circle": RuleText("Watch circle", "offset",
         "√(L² − h²): the line as stretched, the water above the anchor's top",
-        "`maximum_excursion`; reported if it is not given",
+        "`maximum_excursion`; not judged if it is not given",
         "Worst case √(L² - h²), h above the anchor, against the design's own `maximum_excursion`",
         "the result does not contain the stretched length of the line"),
     "scope": RuleText("Scope", "scope",
         "cut length over depth",
-        "none: it is reported",
-        "Reported, not checked",
+        "none: it is reported, not judged",
+        "Reported, not judged",
         "it is reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
         "change of the depth of the upright line's top by the depth and lengths of `deployed`",
@@ -193,17 +214,19 @@ RULES = {
         _ONCE),
     "figures": RuleText("Figures of components", "",
         "figures of pieces and clamps that are impossible for their size and material: lift, "
-        "mass, stiffness, strength, depth rating, coefficients of drag",
-        "a failure; a warning if `warn_tilt` exceeds `max_tilt`; unknown if the line overrides a "
-        "figure by a more favourable one without a `source`, and for an unknown `material`",
+        "mass, density, stiffness, strength, depth rating, coefficients of drag",
+        "a failure; a warning if `warn_tilt` exceeds `max_tilt`, for an instrument that floats and "
+        "for a `wind_area` out of proportion; unknown if the line overrides a figure by a more "
+        "favourable one without a `source`, and for a `material` that is unknown or differs from "
+        "the `name`",
         "The rules of `calm catalog check`",
         _ONCE),
     "release-present": RuleText("Release", "",
         "whether a piece of a subsurface line has `role: release`, and whether it frees the line",
         "unknown if none has, or if it is clamped or named a shackle, swivel, rope or the "
-        "like; a failure if nothing above it floats; a warning for a single one (none is named "
-        "double, dual, twin or pair), for less than 1 m between it and the anchor, and if "
-        "a part below it floats",
+        "like; a failure if nothing above it floats; a warning for a single one in more than 100 m "
+        "of water (none is named double, dual, twin or pair), for less than 1 m between it and the "
+        "anchor, and if a float is below it",
         "Defaults of this program: a line that is recovered has a release",
         _ONCE),
     "hardware": RuleText("Hardware", "",
@@ -211,28 +234,44 @@ RULES = {
         "a warning if none has",
         "A default of this program: connectors have weight, drag and a strength",
         _ONCE),
+    "joints": RuleText("Joints", "",
+        "whether a piece with `role: connector` joins every two unlike pieces, of wire, chain and "
+        "what is rigid; ropes are spliced, and a wire with a `termination` says how it ends",
+        "a warning, one for all joints of the line; not of a line without any hardware",
+        "A default of this program: a shackle that is not listed is not bought, nor judged",
+        _ONCE),
     "clamp-place": RuleText("Places of the clamps", "",
         "clamps on a cable or chain that overlap, or extend beyond its end",
         "5 cm: a failure",
         "Two parts cannot be in the same place",
         _ONCE),
+    "serials-and-dates": RuleText("Serial numbers and dates", "",
+        "labels of several rows, but for connectors; serial numbers of several items of one "
+        "component; codes of a release that is not in the line, or of two; batteries that end "
+        "before the deployment or the calibration, calibrations after the deployment; a document "
+        "that is not its latest revision, revisions out of order",
+        "a warning",
+        "A default of this program: what sheets and labels print must not contradict itself",
+        _ONCE),
     "swivel": RuleText("Swivel", "",
         "steel wire that ends at a float with no chain or rope between",
-        "a swivel between them, or wire that is `torque_balanced` by that key or, without it, by "
-        "its name, material or note: otherwise a warning",
+        "a swivel between them or at its other end, or wire that is `torque_balanced` by that key "
+        "or, without it, by its name, material or note: otherwise a warning",
         "A default of this program: wire that twists under load kinks when it is unloaded",
         _ONCE),
     "metals": RuleText("Dissimilar metals", "potential",
-        "adjacent pieces, and clamps with their pieces, if both have a metal as `material`",
+        "adjacent pieces, and clamps with `insulated: false` on their pieces, if both have a metal "
+        "as `material` and neither is `insulated`",
         "0.2 V apart in sea water: a warning",
         "Galvanic series in sea water (Professional Boatbuilder 100, 2006); 0.15 to 0.2 V in harsh "
         "surroundings (Pantaenius)",
-        _ONCE),
+        _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "tension",
-        "net buoyancy of the part that remains connected to the release after the worst break "
-        "considered (below)",
-        "`backup_margin`, 0.1 of the weight lifted, and 250 N; a warning for a compact line with "
-        "one float",
+        "net buoyancy of the part that remains connected to the release after the worst break or "
+        "loss of a float considered (below)",
+        "`backup_margin`, 0.1 of the weight lifted, or its drag at `minimum_rise_speed` if that is "
+        "more; not judged for a float that alone brings up a line, at most 50 m above the release; "
+        "a warning for a surface mooring without floats below its buoy",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
         "floats",
         _ONCE),
@@ -249,7 +288,7 @@ RULES = {
         "A default of this program: a faster anchor may bury itself or break equipment on it",
         _ONCE, figures=("kt",)),
     "recovery": RuleText("Rise", "speed",
-        "speed of the rise without the anchor",
+        "speed of the rise without the anchor, of a line with a release or below the surface",
         "`minimum_rise_speed`, 0.3 m/s; a warning below 0.7 m/s and above 3 m/s",
         "Defaults of this program: below 0.3 m/s a rise is uncertain, below 0.7 m/s it is slow; "
         "above 3 m/s floats jump and the line forms loops",
@@ -266,3 +305,6 @@ ACCEPTABLE = tuple(name for name in RULES if name != "equilibrium")
 """The rules that may be in `checks: accept:`. Without an equilibrium there are no findings to
 accept.
 """
+
+LOADED = ("strength", "release-load", "clamp-grip", "wave-strength", "launch-strength", "missing")
+"""The rules for which an accepted finding may state the maximum tension that it accepts."""

@@ -14,11 +14,12 @@ from calm.batch.statuses import Ending
 from calm.case import Design
 from calm.case.leg import Leg
 from calm.checks.assess import RULES, is_judged
+from calm.checks.assessment import estimated
 from calm.checks.criterion import AT_SURFACE, Criterion, JudgedPart
 from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.situations import equilibrium
-from calm.files.pieces import STAND_IN
+from calm.files.pieces import STAND_IN, parts_of
 from calm.files.rule_texts import RULES as TEXTS
 from calm.physics.seabed import required_weight
 
@@ -38,14 +39,17 @@ class CountedLimit:
     ----------
     rule : rule of the design check
     criterion : criterion of the rule
-    leg : leg that it applies to
+    leg : leg that it applies to, with the lower bounds of estimates for missing figures
     seats : columns of the leg, if there are several legs
+    on_estimate : whether the limit is the lower bound of an estimate, beyond which a failure is not
+        certain
     """
 
     rule: Rule
     criterion: Criterion
     leg: Leg
     seats: LegSeats | None = None
+    on_estimate: bool = False
 
     def values(self, series: ResultColumns) -> Column:
         """Values (n,) of a batch, with NaN if there is nothing to evaluate."""
@@ -65,19 +69,27 @@ def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
 
     The tension of a piece is the maximum or minimum of the tensions at its ends and at its clamps,
     which are the values in a result. A line meant for the surface is always checked as such, even
-    if its float is submerged. Each leg is checked as in the design check.
+    if its float is submerged. Each leg is checked as in the design check, with the lower bounds of
+    estimates for missing figures of components.
     """
     seats = LegSeats.of_file(mooring.file) if mooring.several else (None,)
     order = list(RULES)
     found = [
-        CountedLimit(rule, criterion, leg, seat)
+        CountedLimit(rule, criterion, estimated(leg), seat, _on_estimate(rule, criterion, leg))
         for leg, seat in zip(mooring.meant, seats, strict=True)
         for rule in RULES.values()
         if rule.criteria is not None
-        for criterion in rule.criteria(leg)
+        for criterion in rule.criteria(estimated(leg))
         if is_judged(leg.file, rule, criterion.part.index)
     ]
     return tuple(sorted(found, key=lambda limit: order.index(limit.rule.name)))
+
+
+def _on_estimate(rule: Rule, criterion: Criterion, leg: Leg) -> bool:
+    """Whether a rule judges a part by a figure of which the leg as given has an estimate alone."""
+    figures, place = TEXTS[rule.name].figures, criterion.part.place
+    own = (part.component.estimates for part in parts_of(leg.file.pieces) if part.place == place)
+    return any(name in figures for estimates in own for name in estimates)
 
 
 def top_offset(series: ResultColumns) -> Column:
@@ -166,6 +178,8 @@ _LYING = 1e-6  # share of the depth; parts closer to the seabed than this lie on
 @dataclass(frozen=True)
 class Exceedance:
     """Exceedance of a limit: `share` of the `count` profiles in which it can be evaluated.
+
+    A profile beyond a limit that is an estimate is not counted as a failure.
 
     `worst` is the value that exceeds the limit most, or comes closest to it, and `time` its time.
     They are None without a limit or without values.
@@ -264,6 +278,9 @@ def _exceedance(
         return Exceedance(limit, 0, None, None, None)
     values = limit.values(series)
     broken, known = limit.broken(values), np.isfinite(values)
+    if limit.on_estimate:
+        known &= ~broken
+        broken = np.zeros_like(broken)
     beyond |= broken
     judged |= known
     count = int(np.count_nonzero(known))

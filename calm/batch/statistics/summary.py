@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, nan
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,6 +111,7 @@ class Summary:
     rules : the equilibrium rule, and the rules that can be evaluated in every profile
     not_judged : reasons why other rules are not evaluated, by their names
     source : origin of the result, by the names in `SOURCE`
+    read : records of the files from which the result was made
     limits_used : limits used by the rules, each with its default
     stops : stops of the profilers, down the line
     """
@@ -127,6 +129,7 @@ class Summary:
     rules: tuple[limits.RuleShare, ...]
     not_judged: Mapping[str, str]
     source: Mapping[str, str]
+    read: Sequence[Mapping[str, Any]]
     limits_used: tuple[LimitKey, ...] = ()
     stops: tuple[StopDepths, ...] = ()
 
@@ -196,6 +199,7 @@ def summarize(
             rules=(equilibrium, *limits.shares_of(series, limits.limits_of(mooring), unsolved)),
             not_judged=limits.NOT_JUDGED,
             source={name: str(dataset.attrs[name]) for name in SOURCE if name in dataset.attrs},
+            read=json.loads(dataset.attrs.get("read", "[]")),
             limits_used=tuple(
                 dict.fromkeys(
                     key

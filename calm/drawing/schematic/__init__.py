@@ -290,12 +290,12 @@ def draw_parts(page: Pen, parts: Sequence[PlacedPart], column: LineColumn, left:
     """Draw the line with its symbols and texts; `left` is the left edge of the column."""
     pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
     for part in parts:
-        _draw_symbol(pen.draw("g"), part, left + column.line_at)
+        draw_symbol(pen.draw("g"), part, left + column.line_at)
     for part in parts:
         _draw_texts(page, part, column, left)
 
 
-def _draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
+def draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
     """Draw the line through a part, and its symbol or its clamps."""
     part = one.part
     if part.labels:

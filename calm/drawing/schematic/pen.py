@@ -11,7 +11,7 @@ INK, SOFT, FAINT = "#1b2733", "#5a6672", "#c3ccd4"
 """Colours of primary, secondary and faint texts and lines."""
 
 
-FONTS = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
+FONTS = "'Source Sans 3', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 """Fonts of all texts, in order of preference."""
 
 

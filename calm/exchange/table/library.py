@@ -18,7 +18,7 @@ from calm.units import KILOGRAM_FORCE
 from calm.whole_file import read_content
 
 # columns that an element does not have, whatever the headings are
-_NOT_THEIRS = ("at", "count", "height")
+_NOT_THEIRS = ("at", "count", "height", "depth")
 _A_METRE = 1e-6  # m: tolerance of the length of 1 m to which a line's figures apply
 _SHEETS = 3  # least number of sheets with headings in a library
 

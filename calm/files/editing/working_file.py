@@ -13,6 +13,7 @@ import os
 import re
 import socket
 import stat
+import sys
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -293,8 +294,11 @@ class Keeper:
 
     @property
     def is_running(self) -> bool:
-        """Return whether the process is known to be running; False for one on another machine."""
-        if not self.is_here or os.name != "posix":
+        """Return whether the process is known to be running; False for one on another machine.
+
+        A web page has one process for successive sessions.
+        """
+        if not self.is_here or os.name != "posix" or sys.platform == "emscripten":
             return False
         try:
             os.kill(self.process, 0)
