@@ -387,8 +387,8 @@ class Result:
             *(said for leg in self.legs for said in leg.warnings),
             *(said for leg in self.legs if (said := _upside_down(leg))),
             *(
-                f"The anchors of legs {one.leg} and {other.leg} stand in one place, and each is "
-                "judged for itself; where they are one anchor, join the legs at a node above it."
+                f"The anchors of legs {one.leg} and {other.leg} are at the same position but are "
+                "checked separately. If they are one anchor, join the legs at a node above it."
                 for one, other in combinations(self.anchors, 2)
                 if dist((one.x, one.y), (other.x, other.y)) < 1e-3
             ),

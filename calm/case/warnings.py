@@ -207,7 +207,7 @@ def _fast_flow(result: _Measured, _: Solution) -> Iterator[str]:
 
 
 def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
-    """Return spheres and cylinders whose Reynolds number exceeds the range of their drag coefficient.
+    """Return spheres and cylinders with a Reynolds number above the range of their coefficient.
 
     Each is returned with its limit; the largest ratio is first.
     """
