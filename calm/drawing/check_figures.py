@@ -292,7 +292,7 @@ def beside_row(part: ShownPart, height: float, *, first: bool = False, last: boo
 
     The line begins at the first part of all, and ends at the last one.
     """
-    page = picture(ROW_WIDTH, height, ", ".join(part.labels))
+    page = _row_picture(height, ", ".join(part.labels))
     middle = height / 2
     ends = middle if first else 0.0, middle if last else height
     pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
@@ -300,16 +300,23 @@ def beside_row(part: ShownPart, height: float, *, first: bool = False, last: boo
     return grey(svg_text(page))
 
 
+def _row_picture(height: float, title: str) -> Pen:
+    """A picture without a ground, which would cover the rules of its table."""
+    page = picture(ROW_WIDTH, height, title)
+    page.element.remove(page.element[-1])
+    return page
+
+
 def surface_row(height: float) -> str:
     """The sea surface as SVG."""
-    page = picture(ROW_WIDTH, height, "sea surface")
+    page = _row_picture(height, "sea surface")
     draw_surface(page, ROW_WIDTH, height / 2)
     return grey(svg_text(page))
 
 
 def seabed_row(height: float) -> str:
     """The seabed as SVG."""
-    page = picture(ROW_WIDTH, height, "seabed")
+    page = _row_picture(height, "seabed")
     page.line(0.0, 1.0, ROW_WIDTH, 1.0, stroke=INK, stroke_width=0.9)
     for at in range(int(ROW_WIDTH / 6.0)):
         page.line(6.0 * at + 4.0, 1.0, 6.0 * at, 6.0, stroke=INK, stroke_width=0.4)

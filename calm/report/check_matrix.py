@@ -7,12 +7,18 @@ from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import Conclusion, Finding, State, by_rule, governing, worst_of
 from calm.report.blocks import Block, Cell, Field, Prose, Span, number, table_of, words
-from calm.report.open_items import advice, figure_text, limit_text, percent_text, where_text
+from calm.report.open_items import (
+    advice,
+    figure_text,
+    limit_text,
+    percent_text,
+    short,
+    where_text,
+)
 from calm.report.page_one import (
     SignedMooring,
     cases_table,
     governing_rows,
-    short,
     sign_off,
     title_block,
     verdict_box,

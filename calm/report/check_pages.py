@@ -327,8 +327,8 @@ def basis_page(signed: SignedMooring) -> Iterator[Block]:
     said_of = "The file could not be read again." if text is None else text.rstrip()
     yield Listing("Mooring file", said_of, name, 110)
     yield Prose((
-        "SHA-256 of the inputs, the mooring file with every figure of the catalogue used: "
-        f"{signed.sha256}",
+        "SHA-256 of the inputs, the mooring file with every figure of the catalogue used:",
+        signed.sha256,
     ))  # fmt: skip
 
 

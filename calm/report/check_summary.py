@@ -35,8 +35,9 @@ from calm.report.open_items import (
     open_items,
     percent_text,
     quantity_of,
+    short,
 )
-from calm.report.page_one import case_columns, short, shown_cases
+from calm.report.page_one import case_columns, shown_cases
 
 MOST_LINES = 40
 """Lines of a mooring in which nothing fails."""

@@ -109,7 +109,7 @@ def _sheets(
     groups = [*_broken(heights, breaks, room - 2 * _SEA_ROW)]
     for sheet, (begin, end) in enumerate(groups):
         shown = [row for _, row in rows[begin:end]]
-        if begin == 0 and result.leg.top.free and not surface:
+        if begin == leg == 0 and result.leg.top.free and not surface:
             shown.insert(0, sea)
         if end == len(rows) and result.leg.anchored:
             shown.append(bed)
@@ -118,7 +118,7 @@ def _sheets(
             shown,
             *columns,
             aside="from the top, not to scale; item numbers are those of all tables",
-            note=_DRAWING_NOTE if end == len(rows) else "",
+            note=_DRAWING_NOTE if end == len(rows) and result is case.results[-1] else "",
         )
 
 

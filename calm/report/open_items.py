@@ -39,7 +39,13 @@ def plain(text: str) -> str:
     """
     told = re.sub(r"`([^`]*)`", lambda key: key[1].replace("_", " ").replace(":", ""), text)
     told = re.sub(r"\b(\d+) N\b", lambda force: LOAD.say(float(force[1])), told)
+    told = re.sub(r"(?<![\w-])-(?=\d)", "−", told)
     return re.sub(r"(?<=\d) (?=(?:m/s|mm|m|kN|N|kg|s|min|kn|kgf|lbf|ft)\b|%)", "\u00a0", told)
+
+
+def short(text: str, most: int) -> str:
+    """A text, cut where it is longer than a cell has room for."""
+    return text if len(text) <= most else f"{text[: most - 1].rstrip()}…"
 
 
 def quantity_of(finding: Finding) -> Quantity | None:
@@ -56,7 +62,7 @@ def figure_text(finding: Finding, value: float | None) -> str:
 
 def limit_text(finding: Finding) -> str:
     """The limit of a finding with the sign of how it is to be kept."""
-    sign = {"<=": "≤ ", ">=": "≥ "}.get(finding.sense or "", "")
+    sign = {"<=": "≤\u00a0", ">=": "≥\u00a0"}.get(finding.sense or "", "")
     text = figure_text(finding, finding.limit)
     return sign + text if text else ""
 
@@ -172,12 +178,12 @@ def _item(group: Sequence[Finding], number: int) -> OpenItem:
 def _head(group: Sequence[Finding], worst: Finding) -> str:
     """What is open, of what, and its use where that is known."""
     labels = list(dict.fromkeys(one.component or "" for one in group))
-    of = f", {named_components(_once(group))}" if labels != [""] else ""
+    of = f", {short(named_components(_once(group)), 90)}" if labels != [""] else ""
     if worst.missing is not None:
         return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} missing"
     if worst.state is State.ESTIMATED:
-        return f"{_capital(named_components(_once(group)))}: estimated"
-    use = "" if worst.utilisation is None else f": {percent_text(worst.utilisation)} %"
+        return f"{_capital(short(named_components(_once(group)), 90))}: estimated"
+    use = "" if worst.utilisation is None else f": {percent_text(worst.utilisation)}\u00a0%"
     if worst.state is State.NOT_JUDGED:
         use = " is not judged"
         of = f" ({len(labels)})" if len(labels) > 1 else of
@@ -260,8 +266,8 @@ def verdict_sentence(assessment: Assessment) -> str:
     ]  # fmt: skip
     failing = {one.rule for group in groups for one in group if one.state is State.FAIL}
     over = [
-        f"{RULES[one.rule].title.lower()} of {one.component or 'the line'} "
-        f"{percent_text(one.utilisation)} %"
+        f"{RULES[one.rule].title.lower()} of {short(one.component or 'the line', 30)} "
+        f"{percent_text(one.utilisation)}\u00a0%"
         for one in map(governing, groups)
         if (one.utilisation or 0.0) > 1.0 and one.rule not in failing
     ]

@@ -13,6 +13,7 @@ from calm.drawing.check_figures import DrawnCase, Label, elevation
 from calm.drawing.line_picture import alike, together
 from calm.drawing.schematic.deck_parts import Cells, parts_of
 from calm.drawing.schematic.shown_parts import ShownPart
+from calm.drawing.schematic.symbols import BALLS
 from calm.quantities import QUANTITIES, Quantity, bearing_of, bearing_text
 from calm.report import blocks, provenance
 from calm.report.blocks import (
@@ -39,6 +40,7 @@ from calm.report.open_items import (
     limit_text,
     open_groups,
     percent_text,
+    short,
     verdict_sentence,
     verdict_words,
     where_text,
@@ -57,6 +59,7 @@ _LONGEST = 30  # letters of a name in a table of page one
 TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
 """Height of a page between its head and its foot [pt]."""
 _FIXED, _ROW = 250.0, 12.6
+_LINE = 100  # letters of the verdict
 _FIGURE_WIDTH, _WIDTH = 281.0, 510.0
 
 
@@ -121,7 +124,7 @@ def title_block(signed: SignedMooring) -> TitleBlock:
     below = (field("project"), cruise, field("ship"), field("institution"))
     return TitleBlock(
         "Design check of a mooring",
-        file.name,
+        signed.assessment.name,
         " · ".join(filter(None, below)),
         (
             ("Document", field("id")), ("Rev.", field("revision")),
@@ -239,11 +242,6 @@ def cases_table(signed: SignedMooring) -> Table:
     return replace(table, rows=(*table.rows, row), totals=1) if shown else table
 
 
-def short(text: str, most: int) -> str:
-    """A text, cut where it is longer than a cell has room for."""
-    return text if len(text) <= most else f"{text[: most - 1].rstrip()}…"
-
-
 def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
     """What governs each rule that has a use, the greatest first; of the release only what its
     strength does not tell."""
@@ -314,6 +312,7 @@ def page_one(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
     """The blocks of page one; its figure has the height that the tables leave."""
     cases, checks, signs = cases_table(signed), governing_table(signed), sign_off(signed)
     rows = len(cases.rows) + len(checks.rows) + len(signs.revisions) + bool(cases.note)
+    rows += len(verdict_sentence(signed.assessment)) // _LINE
     height = TEXT_HEIGHT[paper] - _FIXED - _ROW * rows
     items = OpenItems("Open items", tuple(signed.items) or (), _no_items(signed), "more, page 4")
     yield title_block(signed)
@@ -395,16 +394,17 @@ def drawn_parts(
     result: LegResult, items: Sequence[DeckItem], cells: Cells
 ) -> tuple[ShownPart, ...]:
     """The parts of a leg as they are drawn: glass as so many balls, runs of names in short."""
-    clamped = {one.label for one in items if one.on is not None}
+    roles = {one.label: one.role for one in items}
     found = []
     for part in parts_of(result.file, items, items, cells, surface=afloat(result)):
         (row,) = part.rows
         first, _, last = row.label.partition(" – ")
         if last and not part.junction and alike(first, last):
             part = replace(part, rows=(replace(row, label=together([first, last])),))
-        if part.floats is not None:
-            count = sum(label in clamped for label in part.labels)
-            sign = replace(part.floats, count=count)
+        sign = part.floats or part.sign
+        if sign.symbol in BALLS:
+            count = sum(roles[label] == "float" for label in part.labels)
+            sign = replace(sign, count=sign.count * max(count, 1))
             part = replace(part, sign=sign, floats=None, cable=None)
         found.append(part)
     return tuple(found)
