@@ -242,7 +242,8 @@ def _found(
     for own in grouped((each for each in unknown if each.missing is None), _title):
         text = f"not known of {named_components(own)}"
         yield Saying(text, _title(own[0]), State.UNKNOWN, places=_places(own))
-    other = {_title(each) for each in findings if _graver(each) or each.state is State.UNKNOWN}
+    met = (State.PASS, State.NOT_JUDGED)
+    other = {_title(each) for each in findings if each.state not in met}
     for state, heading in (
         (State.ACCEPTED, "Accepted"),
         (State.ESTIMATED, "Estimated"),
