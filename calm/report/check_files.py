@@ -146,9 +146,9 @@ def _situation(situation: Situation) -> dict[str, Any]:
         **members(result, "status", "type"),
         "top_depth": result.top.depth,
         "knockdown": result.top.knockdown,
-        "anchor_vertical": result.anchor.vertical,
-        "anchor_horizontal": result.anchor.horizontal,
-        "required_weight": result.anchor.required_weight,
+        "anchor_vertical": result.anchor_load.vertical,
+        "anchor_horizontal": result.anchor_load.horizontal,
+        "required_weight": result.anchor_load.required_weight,
         "accuracy": asdict(result.accuracy),
         "warnings": result.warnings,
     }
