@@ -81,7 +81,6 @@ def grid(
       calm grid depths.nc stack.nc -o OS_M1_D.nc --levels 50,100,200 --variables TEMP,PSAL
     """
     from calm.dataset.discovery import hashed
-    from calm.drawing.plot import require_matplotlib
     from calm.errors import not_among
     from calm.grid.product import grid_layout, parse_levels, write_grid
     from calm.grid.samples import read_depths
@@ -104,7 +103,8 @@ def grid(
     files = files_given(values)
     check_output(output, depths, *(path for _, path in files))
     if report is not None:
-        require_matplotlib("calm grid --report")
+        import matplotlib  # noqa: F401  (missing, it is reported before the work)
+
         check_folder(report)
     where = read_depths(depths)
     series = read_series(values, names, good, where.seabed)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _NARROWEST = 40  # columns: figures are no longer cut, but wrapped by the terminal
 _WRITTEN_OUT = "calm-written-out"  # the handler of signs that a stream cannot carry
-_SIGNS = "°×–−→≤≥²³"  # those of the tables
+_SIGNS = "°×–−→≤≥²³█▒◦≈"  # those of the tables
 
 
 def prepare() -> None:

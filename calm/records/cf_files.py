@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from importlib.util import find_spec
 from math import inf, prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -102,7 +101,7 @@ def reading(path: Path) -> Iterator[None]:
     """Turn what is wrong with a file into an InputError."""
     try:
         yield
-    except (CalmError, TimeChoiceError):
+    except (CalmError, TimeChoiceError, ModuleNotFoundError):
         raise
     except UnreadableError as error:
         raise refused(path, str(error)) from None
@@ -139,8 +138,6 @@ def open_current(path: Path) -> xr.Dataset:
     import xarray as xr
 
     if path.is_dir():
-        if find_spec("zarr") is None:
-            raise UnreadableError("is zarr; to read it: pip install 'calm-mooring[cluster]'")
         _refuse_large(path)
         return xr.open_dataset(
             path, engine="zarr", decode_times=False, cache=False, consolidated=False

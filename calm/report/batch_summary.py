@@ -13,7 +13,7 @@ from calm.batch.statistics.limits import Exceedance, RuleShare
 from calm.batch.statistics.summary import PERCENTILES, Distribution, Response, Summary, WorstProfile
 from calm.checks.finding import State
 from calm.report.blocks import Cell, Field, Table, number, quantity, table_of, words
-from calm.report.check_report import limit_document
+from calm.report.check_files import limit_document
 from calm.report.result_files import members
 from calm.version import __version__
 

@@ -341,5 +341,5 @@ def test_without_matplotlib_a_report_names_the_command_that_installs_it(calm, de
     write_values("v.nc", depths)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     said = refused(calm, "depths.nc", "v.nc", "--report", "page")
-    assert "calm grid --report needs matplotlib: pip install 'calm-mooring[plot]'" in said
+    assert "this needs matplotlib: pip install 'calm-mooring[plot]'" in said
     assert not Path("out.nc").exists()
