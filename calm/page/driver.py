@@ -1,4 +1,4 @@
-"""Textual's driver for a terminal in the page: text goes out, keys and sizes come in as messages."""
+"""Textual's driver for a terminal in a page: text goes out, keys and sizes come in."""
 
 from __future__ import annotations
 
