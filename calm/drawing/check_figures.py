@@ -143,9 +143,9 @@ def elevation(
         px, py = float(x(along(east, north, plane))), float(y(level))
         hollow = one.part.sign.symbol in _HOLLOW
         if one in listed:
-            down = _level(listed.index(one), len(listed), height)
+            row = _level(listed.index(one), len(listed), height)
             knee = flow + room + 6.0
-            page.path(f"M{px:.1f} {py:.1f}L{knee:.1f} {down:.1f}L{knee + 12.0:.1f} {down:.1f}",
+            page.path(f"M{px:.1f} {py:.1f}L{knee:.1f} {row:.1f}L{knee + 12.0:.1f} {row:.1f}",
                       fill="none", stroke=GREY, stroke_width=0.35)  # fmt: skip
         page.circle(px, py, 1.9, fill="white" if hollow else INK, stroke=INK, stroke_width=0.6)
     if listed:
