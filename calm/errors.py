@@ -101,8 +101,41 @@ def or_why_not(solve: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | 
         return failure
 
 
+EXTRAS: dict[str, tuple[str, ...]] = {
+    "records": ("numba", "xarray", "pandas", "h5netcdf", "h5py", "cf_xarray", "cftime"),
+    "cluster": ("distributed", "dask", "zarr"),
+    "plot": ("matplotlib",),
+}
+"""Libraries that a default installation lacks, by the extra of the package that brings them."""
+
+
+def how_to_install(missing: ModuleNotFoundError) -> str | None:
+    """One line that names a missing library and the command that installs it.
+
+    None if the missing module is one of CALM's own, or has no name: a fault of the program.
+    """
+    library = (missing.name or "").partition(".")[0]
+    if library in ("", "calm"):
+        return None
+    for extra, libraries in EXTRAS.items():
+        if library in libraries:
+            return f"this needs {library}: pip install 'calm-mooring[{extra}]'"
+    return f"this needs {library}, which is not installed: pip install {library}"
+
+
+def unexpected(error: Exception) -> str:
+    """Reason for an exception that CALM did not raise itself, in one line."""
+    advice = how_to_install(error) if isinstance(error, ModuleNotFoundError) else None
+    return advice or f"{type(error).__name__}: {error}"
+
+
 def internal_failure(error: Exception) -> NoEquilibrium:
-    """Report CALM's own failure as an unsolved line: it does not stop the others."""
+    """Report CALM's own failure, or a missing library, as an unsolved line: it does not stop the
+    others.
+    """
+    if isinstance(error, ModuleNotFoundError) and (advice := how_to_install(error)):
+        need, _, command = advice.partition(": ")
+        return NoEquilibrium("internal-error", f"T{need[1:]}.", f"Install it: {command}")
     return NoEquilibrium(
         "internal-error",
         f"CALM failed ({type(error).__name__}: {error}).",
@@ -124,8 +157,8 @@ def unknown(what: str, text: str, known: Iterable[str]) -> str:
     near = nearest(text, names)
     if near:
         return f"{what}; did you mean `{near}`?"
-    if len(names) <= 12:
-        return f"{what}; allowed: {', '.join(sorted(names)) or 'none'}"
+    if 0 < len(names) <= 12:
+        return f"{what}; allowed: {', '.join(sorted(names))}"
     return what
 
 

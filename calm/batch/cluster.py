@@ -34,16 +34,11 @@ def on_cluster(
     Raises
     ------
     UsageError
-        `distributed` is not installed; no scheduler answers; the workers have no CALM; the
+        No scheduler answers; the workers have no CALM; the
         scheduler is lost, or one block loses its worker again and again.
     """
-    try:
-        from distributed import CancelledError, Client, KilledWorker
-    except ImportError:
-        raise UsageError(
-            "--scheduler needs dask: pip install 'calm-mooring[cluster]', here, for the scheduler "
-            "and on the workers"
-        ) from None
+    from distributed import CancelledError, Client, KilledWorker
+
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:

@@ -255,7 +255,7 @@ class Batch:
         false = self._implausible((depth, u, v, w))
         if false.any():
             u[false] = np.nan
-        endings = np.zeros(len(status), np.int64)
+        endings = np.zeros(len(status), np.intp)
         self._solve_rows(leg, (depth, u, v, w), rows, endings, MANY_ROOM)
         for ending in np.unique(endings).tolist():
             status[endings == ending] = status_of(leg, ending)
@@ -276,7 +276,7 @@ class Batch:
             np.zeros((0, len(OF_ENDS))),
         )
         current = np.zeros((1, 1)), none, none, none
-        return self._march(leg, current, rows, np.zeros(0, np.int64), MANY_ROOM, None)
+        return self._march(leg, current, rows, np.zeros(0, np.intp), MANY_ROOM, None)
 
     def _solve_rows(
         self,
@@ -325,7 +325,7 @@ class Batch:
         pieces = leg.file.pieces[:-1]
         paper = ProfileArrays(
             on=on,
-            may_lie=np.array([one.component.kind == "chain" for one in pieces], np.int64),
+            may_lie=np.array([one.component.kind == "chain" for one in pieces], np.intp),
         )
         find = by_address(find_asked, AskedSearch(search, referee))
         given = (find, search, referee, paper, starts is None, depth, *parts, rows, endings)

@@ -27,8 +27,10 @@ from calm.checks import (
     arrangement,
     catalogue_rules,
     handling,
+    joints,
     planned,
     posture,
+    serials_and_dates,
     situations,
     strength,
 )
@@ -43,6 +45,7 @@ from calm.checks.assessment import (
 )
 from calm.checks.criterion import limits_used
 from calm.checks.drag_range import drag_coefficient
+from calm.checks.environments import environment
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, governing
 from calm.checks.inventory import inventory_of
 from calm.checks.missing import is_lacking, missing, with_missing
@@ -55,7 +58,7 @@ from calm.errors import NoEquilibrium, or_why_not
 from calm.files import MooringFile, Place
 from calm.files.pieces import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
-from calm.solve import expect_many
+from calm.solve import Solver, expect_many
 
 
 def judged_stand(
@@ -208,10 +211,14 @@ def _numbers(stands: Sequence[MooringInEnvironment]) -> dict[str, int]:
 def findings_of_currents(
     legs: Sequence[Leg], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
-    """Return what the rule of the currents finds in the environments of a mooring of a name."""
-    for leg, verdict in currents.judge(legs):
-        environment = leg.file.environment.name or OWN
-        yield acceptance.of(currents.find(verdict, name, environment))
+    """What the rules of the environments find in those of a mooring of a name."""
+    for each in OF_ENVIRONMENTS:
+        for leg, verdict in each.judge(legs):
+            yield acceptance.of(each.find(verdict, name, leg.file.environment.name or OWN))
+
+
+OF_ENVIRONMENTS = (currents, environment)
+"""What is judged of all environments of a mooring together."""
 
 
 def findings_of_drag(
@@ -306,7 +313,17 @@ def _handled(stand: MooringInEnvironment) -> Handling:
     return Handling(leg, failure, failure, breaks_of(leg), losses_of(leg))
 
 
-_MODULES = (arrangement, catalogue_rules, handling, planned, posture, situations, strength)
+_MODULES = (
+    arrangement,
+    catalogue_rules,
+    handling,
+    joints,
+    planned,
+    posture,
+    serials_and_dates,
+    situations,
+    strength,
+)
 
 
 _ORDER = list(TEXTS)
@@ -332,7 +349,7 @@ ONCE = _judging(once=True)
 
 _WAVE_RULES = {each.name for each in IN_WAVES}
 
-_WHOLE = equilibrium, currents, drag_coefficient, missing
+_WHOLE = equilibrium, *OF_ENVIRONMENTS, drag_coefficient, missing
 
 RULES = {each.name: each for each in (*_WHOLE, *STANDING, *IN_WAVES, *ONCE)}
 """Every rule by its name."""
@@ -360,7 +377,7 @@ def with_probabilities(
         The number of samples is not a power of two, or none that is solved.
     """
     normals = normals_of(checked_samples(samples), seed)
-    expect_many(samples * len(assessment.stands))
+    expect_many(samples * len(assessment.stands), Solver.NEARBY)
     draws = draws_of(assessment.file.uncertainty, normals)
     stands = tuple(_stand(stand, draws, mapped) for stand in assessment.stands)
     first = next((stand for stand in assessment.stands if stand.result is not None), None)

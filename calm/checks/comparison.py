@@ -146,7 +146,7 @@ def _figures_of_leg(result: LegResult) -> _Figures:
             "body.tension": ("pull on the body", "tension", body.tension),
             "tow_point.tension": ("pull on the tow point", "tension", point.tension),
         }
-    top, anchor = result.top, result.anchor
+    top, anchor = result.top, result.anchor_load
     found: _Figures = {
         "top.depth": ("depth of the top", "depth", top.depth),
         "top.knockdown": ("knockdown of the top", "knockdown", top.knockdown),

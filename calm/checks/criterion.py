@@ -163,10 +163,10 @@ READINGS: dict[str, Callable[[LegResult, JudgedPart], float]] = {
     "top_depth": lambda result, _: result.top.depth,
     "knockdown": lambda result, _: nan if result.top.knockdown is None else result.top.knockdown,
     "offset": lambda result, _: _offset(result),
-    "required_weight": lambda result, _: result.anchor.required_weight,
-    "vertical": lambda result, _: result.anchor.vertical,
+    "required_weight": lambda result, _: result.anchor_load.required_weight,
+    "vertical": lambda result, _: result.anchor_load.vertical,
     "slide": lambda result, _: (
-        result.anchor.horizontal + result.anchor.friction * result.anchor.vertical
+        result.anchor_load.horizontal + result.anchor_load.friction * result.anchor_load.vertical
     ),
     "reserve": lambda result, _: (
         1.0 - result.top.used_buoyancy if result.type == "surface" else 0.0

@@ -25,9 +25,11 @@ from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN
 from calm.checks.handling import backup
 from calm.checks.inventory import inventory_of
+from calm.checks.joints import joints
 from calm.checks.leg_graph import LegGraph
 from calm.checks.missing import with_missing
 from calm.checks.planned import planned_depth, planned_parts
+from calm.checks.serials_and_dates import serials_and_dates
 from calm.errors import NoEquilibrium
 from calm.files.legs import stand_in_anchor
 from calm.files.mooring_file import refuse_tow
@@ -120,14 +122,14 @@ def assessment_of(
     breaks, losses = graph.breaks(whole), graph.losses(whole)
     handling = Handling(estimated(whole), _NOT_SOLVED, _NOT_SOLVED, breaks, losses)
     first = whole.file.environment.name or OWN
-    once = [(hardware, hardware.judge(handling), first), (figures, figures.judge(handling), first)]
+    once = [(each, each.judge(handling), first) for each in (hardware, figures, serials_and_dates)]
     if graph.anchored:
         once.append((release_present, graph.release_verdicts(), first))
         once.append((backup, backup.judge(handling), first))
     for stand in own.values():
         alone = Handling(estimated(stand.leg), _NOT_SOLVED, _NOT_SOLVED, ())
         once += [(each, each.judge(alone), stand.environment)
-                 for each in (swivel, clamp_place, metals)]  # fmt: skip
+                 for each in (joints, swivel, clamp_place, metals)]  # fmt: skip
     for result in [each for each in found if planned_parts(each)] or found[:1]:
         alone = Handling(estimated(result.leg), _NOT_SOLVED, _NOT_SOLVED, (), result=result)
         once.append((planned_depth, planned_depth.judge(alone), first))

@@ -28,14 +28,14 @@ from calm.files.logbook import DeployedItem
 from calm.physics.line import Water
 from calm.quantities import say
 from calm.records.current_file import strongest_of
-from calm.records.current_terms import left_out
 from calm.records.grids import kilometres_from
+from calm.records.value_tests import left_out
 from calm.solve import Status
 
 STILL, STILL_LOW = "still water", "still low water"
 HIGH, LOW = "high water", "low water"
-SOLVES = 6.0
-"""About how many equilibria one mooring in one environment takes."""
+SOLVES = 3.0
+"""About how many lines are solved for one mooring in one environment."""
 
 FOULED, STRUMMING, DEPLOYED = "fouling", "strumming", "as deployed"
 

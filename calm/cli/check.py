@@ -122,8 +122,10 @@ def check(
     assessments = [each.assessment for each in judged]
     for design, assessment in zip(designs, assessments, strict=True):
         of_files = (notice for one in design.moorings for notice in one.file.notices)
+        found = {finding.message for finding in assessment.all_findings()}
         for notice in dict.fromkeys((*of_files, *assessment.notices)):
-            narrate(f"{design.path}: {notice}")
+            if notice not in found:
+                narrate(f"{design.path}: {notice}")
     drawings = [each.drawn for each in judged if each.drawn is not None]
     if earlier is not None:
         from calm.checks.comparison import comparison_of

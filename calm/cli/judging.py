@@ -115,14 +115,14 @@ def judge(
 def load_ahead(stands: int, drawn: bool) -> None:
     """Import the modules that judging so many moorings needs, before processes are forked.
 
-    The compiled march is loaded if it is cached, but not compiled before all files are valid.
+    The compiled solver is loaded if it is in the cache.
     """
     import calm.checks.assess
     import calm.checks.recovery
     from calm.checks.situations import SOLVES
-    from calm.solve.solution import COLD, expect_many
+    from calm.solve import expect_many
 
-    expect_many(min(SOLVES * stands, COLD - 1))
+    expect_many(SOLVES * stands)
     if drawn:
         import calm.report.check_report
         import calm.report.html  # noqa: F401

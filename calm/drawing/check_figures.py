@@ -133,8 +133,8 @@ def elevation(
         _draw_flow(page, legs[0], sea, scale)
     for code, drawn in reversed(lines.items()):
         stroke = _STROKES.get("first" if code == cases[0].code else code[-1], _THIN)
-        for across, down in drawn:
-            points = " L".join(f"{a:.1f} {b:.1f}" for a, b in zip(x(across), y(down), strict=True))
+        for across, below in drawn:
+            points = " L".join(f"{a:.1f} {b:.1f}" for a, b in zip(x(across), y(below), strict=True))
             page.path(f"M{points}", fill="none", **stroke)
     marks = [one for one in labels if one.at is not None]
     for one in marks:

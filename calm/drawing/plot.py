@@ -8,13 +8,11 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from calm.drawing.line_drawing import LEAST_SPAN, LINE_COLOUR, SEABED_COLOUR, SIGNS, WATER_COLOUR
 from calm.drawing.line_picture import LineKind, LinePicture
 from calm.drawing.picture import within_xml
-from calm.errors import UsageError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,12 +24,6 @@ _STYLES: dict[LineKind, dict[str, Any]] = {
     LineKind.BESIDE: {"color": "grey", "linewidth": 1.0},
     LineKind.SEABED: {"color": SEABED_COLOUR, "linewidth": 3.0},
 }
-
-
-def require_matplotlib(what: str) -> None:
-    """Reject something that draws by matplotlib if that is not installed: UsageError."""
-    if find_spec("matplotlib") is None:
-        raise UsageError(f"{what} needs matplotlib: pip install 'calm-mooring[plot]'")
 
 
 def empty_figure(width: float, height: float, **options: Any) -> Figure:
@@ -68,7 +60,6 @@ def figure_svg(figure: Figure) -> str:
 def plot_elevation(side: LinePicture, ax: Axes | None = None) -> Axes:
     """Draw a line from the side on matplotlib axes, by default those of a new figure."""
     if ax is None:
-        require_matplotlib("plot")
         ax = empty_figure(6.0, 6.0, layout="constrained").subplots()
     if side.surface:
         ax.axhline(0.0, color=WATER_COLOUR, linewidth=1)

@@ -185,7 +185,7 @@ def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
     least = np.where(share > NOT_SHORT, count * LEAST, 1.0)
     cuts = np.where(line.flexible, np.ceil(np.maximum(share * count, least)), 1.0)
     cuts[line.length == 0.0] = 0.0
-    bars, span = np.zeros((pieces, 2), dtype=np.int64), np.zeros((pieces, 2))
+    bars, span = np.zeros((pieces, 2), dtype=np.intp), np.zeros((pieces, 2))
     length: list[float] = []
     owner: list[int] = []
     rigid = float(line.length[:head].sum())
@@ -206,7 +206,7 @@ def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
         below = bars[piece, 0] < len(length)
         span[piece] = (0.0, 0.0) if below else (1.0, 1.0)
         bars[piece] -= 0 if below else 1
-    return np.array(length), np.array(owner, dtype=np.int64), bars, span
+    return np.array(length), np.array(owner, dtype=np.intp), bars, span
 
 
 def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tuple[Integers, Floats]:
@@ -215,7 +215,7 @@ def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tupl
     begin, stop = span[piece].T
     way = begin + share * (stop - begin)
     whole = way * np.maximum(end - first, 1)
-    bar = np.minimum(whole.astype(np.int64), np.maximum(end - first - 1, 0))
+    bar = np.minimum(whole.astype(np.intp), np.maximum(end - first - 1, 0))
     return first + bar, np.clip(whole - bar, 0.0, 1.0)
 
 

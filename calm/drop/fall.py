@@ -11,6 +11,7 @@ from calm.drop.motion import ChainState, FallingAnchor, Mover, NoStep
 from calm.errors import NoEquilibrium, UsageError
 from calm.physics.line import Line, Water
 from calm.solve import Status
+from calm.solve.bracketed_root import bracketed_root
 
 SKIN, THICKEST_SKIN = 5e-4, 0.3
 """Thickness of the layer in which floats lose their buoyancy: share of the depth, and upper limit
@@ -246,8 +247,6 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
 
     If the free end were held closer in the full flow, the line would bend unlike a rope.
     """
-    from scipy.optimize import brentq
-
     sea = mover.sea
     reach = float(mover.chain.length.sum())
     current = sea.water.current_at(np.zeros(()))
@@ -268,7 +267,7 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
                 f"behind a ship that hardly moves the line still streams {_streamed(state):.1f} m: "
                 f"it cannot be streamed to {streamed:g} m"
             )
-    excess(brentq(excess, share, min(2.0 * share, 1.0), rtol=1e-7))
+    excess(bracketed_root(excess, share, min(2.0 * share, 1.0), rtol=1e-7))
     if abs(_streamed(state) - streamed) > STREAMED_WITHIN * reach:
         raise Status.NOT_CONVERGED.because(
             f"No speed of the ship streams the line to {streamed:g} m."

@@ -3,19 +3,20 @@
 The forces on every node cancel at the end of the step, with drag for the velocity V = (X - Xₙ)/Δt
 over the step (implicit Euler), and the length of every bar follows from its tension. Nodes and
 tensions are unknown together, so that bars may be stiff or inextensible. The equations are solved
-by Newton's method with a banded matrix.
+by Newton's method; a node and the bar below it are one block of a block-tridiagonal matrix.
 """
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
 from calm.drop.chain import BarChain
 from calm.drop.loads import SLOWEST, Loads, WaterColumn, loads_on
-from calm.physics.line import Floats, Integers
+from calm.physics.line import Floats
 from calm.physics.reynolds import Smooth, drag_variation
 from calm.physics.seawater import REFERENCE_DENSITY
+from calm.solve.block_tridiagonal import solve_blocks
 
 MOST_ROUNDS = 16
 """Largest number of Newton iterations; a step that needs more is too long."""
@@ -280,13 +281,6 @@ class Mover:
         return (*upper, last, last + 1, last + 2) if self.held else upper
 
 
-_SIDE = 6
-"""Number of diagonals of the band on either side."""
-_MIDDLE = 2 * _SIDE
-"""Row of the main diagonal; the rows above the band hold fill-in of the factors."""
-_ROWS = 3 * _SIDE + 1
-
-
 def _solved(
     residual: Floats,
     diagonal: Floats,
@@ -307,41 +301,19 @@ def _solved(
     slack : (n,) derivative of a bar's length by its tension, negative
     fixed : rows of the known unknowns
     """
-    from scipy.linalg.lapack import dgbsv
-
-    size = 4 * len(slack) + 4
-    band = np.zeros((size, _ROWS))
-    blocks = (diagonal, *beside, axis, -axis, -axis, axis, slack)
-    band.reshape(-1)[_places(len(slack))] = np.concatenate([block.reshape(-1) for block in blocks])
-    equations = residual.T.reshape(-1)
-    band[-1, _MIDDLE], equations[-1] = 1.0, 0.0
-    for row in fixed:
-        columns = np.arange(max(row - _SIDE, 0), min(row + _SIDE + 1, size))
-        band[columns, _MIDDLE + row - columns] = 0.0
-        band[row, _MIDDLE], equations[row] = 1.0, 0.0
-    _, _, change, singular = dgbsv(
-        _SIDE, _SIDE, band.T, equations, overwrite_ab=True, overwrite_b=True
-    )
-    found: Floats = change.reshape(-1, 4)
-    return np.full_like(found, np.nan) if singular else found
-
-
-@lru_cache
-def _places(bars: int) -> Integers:
-    """Indices of the blocks in the flattened band matrix."""
-    node = np.arange(3)[:, np.newaxis] + 4 * np.arange(bars + 1)
-    pull = 4 * np.arange(bars) + 3
-    above, below = node[:, :-1], node[:, 1:]
-    rows_and_columns = (
-        (node[:, np.newaxis], node),
-        (above[:, np.newaxis], below),
-        (below[:, np.newaxis], above),
-        (above, pull),
-        (below, pull),
-        (pull, above),
-        (pull, below),
-        (pull, pull),
-    )
-    return np.concatenate(
-        [(column * _ROWS + _MIDDLE + row - column).reshape(-1) for row, column in rows_and_columns]
-    )
+    nodes, along = residual.shape[1], axis.T
+    own, upper = np.zeros((nodes, 4, 4)), np.zeros((nodes - 1, 4, 4))
+    lower, equations = np.zeros((nodes - 1, 4, 4)), residual.T.copy()
+    own[:, :3, :3] = diagonal.transpose(2, 0, 1)
+    own[:-1, :3, 3], own[:-1, 3, :3], own[:-1, 3, 3] = along, -along, slack
+    upper[:, :3, :3], lower[:, :3, :3] = (each.transpose(2, 0, 1) for each in beside)
+    upper[:, 3, :3], lower[:, :3, 3] = along, -along
+    for node, row in (divmod(each, 4) for each in (*fixed, 4 * nodes - 1)):
+        own[node, row], equations[node, row] = 0.0, 0.0
+        own[node, row, row] = 1.0
+        if node:
+            lower[node - 1, row] = 0.0
+        if node < nodes - 1:
+            upper[node, row] = 0.0
+    found: Floats = solve_blocks(own, upper, lower, equations[..., np.newaxis])[..., 0]
+    return found

@@ -59,7 +59,7 @@ class Cuts(NamedTuple):
         return Cuts(lengths, np.concatenate([self.counts, others.counts]))
 
 
-NO_CUTS = Cuts(np.zeros(0), np.zeros(0, np.int64))
+NO_CUTS = Cuts(np.zeros(0), np.zeros(0, np.intp))
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ def march(
         raise MarchError(FAILURES[int(left[FAILURE])])
     if cuts is None:
         used = np.array(lengths[: int(left[USED])])
-        cuts = Cuts(used, np.array(counts, np.int64))
+        cuts = Cuts(used, np.array(counts, np.intp))
     force = float(left[FX]), float(left[FY]), float(left[FZ])
     return End(float(left[Z]), force, cuts, columns, int(left[NODES]))
 
@@ -139,7 +139,7 @@ def _paper(
     """Create the work arrays of a march: cuts, their counts, the record, and its results."""
     cables = len(course.cables)
     if compiled:
-        lengths, counts = cuts or (np.empty(room), np.zeros(cables, np.int64))
+        lengths, counts = cuts or (np.empty(room), np.zeros(cables, np.intp))
         return lengths.copy(), counts.copy(), np.empty((COLUMNS, nodes)), np.zeros(LEFT)
     if cuts is None:
         given: tuple[list[float], list[int]] = ([0.0] * room, [0] * cables)

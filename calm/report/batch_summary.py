@@ -42,6 +42,7 @@ def summary_document(summary: Summary) -> dict[str, Any]:
         "calm": __version__,
         "name": summary.name,
         **summary.source,
+        "read": list(summary.read),
         "profiles": {
             "count": summary.count,
             **{ending.name.lower(): count for ending, count in summary.endings.items()},

@@ -131,7 +131,7 @@ def _findings(assessment: Assessment, every: bool) -> Iterator[dict[str, Any]]:
 
 def _accepted(assessment: Assessment) -> Iterator[dict[str, Any]]:
     for one in assessment.accepted_findings():
-        by = members(one.accept, "reason", "by", "date", "until")
+        by = members(one.accept, "reason", "by", "date", "until", "load")
         yield {"mooring": assessment.name, **members(one, "rule", "component"), **by}
 
 
@@ -146,9 +146,9 @@ def _situation(situation: Situation) -> dict[str, Any]:
         **members(result, "status", "type"),
         "top_depth": result.top.depth,
         "knockdown": result.top.knockdown,
-        "anchor_vertical": result.anchor.vertical,
-        "anchor_horizontal": result.anchor.horizontal,
-        "required_weight": result.anchor.required_weight,
+        "anchor_vertical": result.anchor_load.vertical,
+        "anchor_horizontal": result.anchor_load.horizontal,
+        "required_weight": result.anchor_load.required_weight,
         "accuracy": asdict(result.accuracy),
         "warnings": result.warnings,
     }

@@ -153,9 +153,9 @@ _RESULTS: dict[str, Callable[[LegResult], float | None]] = {
     "offset": lambda result: hypot(result.top.x, result.top.y),
     "tilt": lambda result: float(result.components.tilt.max()),
     "tension": lambda result: float(result.components.tension.max()),
-    "vertical": lambda result: result.anchor.vertical,
-    "horizontal": lambda result: result.anchor.horizontal,
-    "required_weight": lambda result: result.anchor.required_weight,
+    "vertical": lambda result: result.anchor_load.vertical,
+    "horizontal": lambda result: result.anchor_load.horizontal,
+    "required_weight": lambda result: result.anchor_load.required_weight,
 }
 
 

@@ -59,7 +59,7 @@ def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
 def _rise(result: LegResult) -> str:
     """How a line rises; nothing of one at the surface, or without a solution."""
     with suppress(NoEquilibrium):
-        rise = recovery_of(result.leg, result, first_only=True)
+        rise = recovery_of(result.leg, result)
         if rise.time_to_surface is None:
             return "does not rise by itself"
         if rise.time_to_surface > 0.0:

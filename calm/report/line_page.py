@@ -166,20 +166,20 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
         return
     anchors = grouped(rows, lambda row: row[1].file.pieces[-1].label)
     if len(anchors) > 1 or len(rows) > 12:
-        rows = [max(group, key=lambda row: row[1].anchor.required_weight) for group in anchors]
+        rows = [max(group, key=lambda row: row[1].anchor_load.required_weight) for group in anchors]
     checks, angle = signed.assessment.file.checks, QUANTITIES["angle"].format
     factor, unit = checks.anchor_factor, LOAD.display_unit
     first = rows[0][1]
     name = first.file.pieces[-1].component.name or first.file.pieces[-1].label
     one_anchor = len(anchors) == 1
-    weighs = f", {LOAD.say(first.anchor.weight)} in water" if one_anchor else ""
+    weighs = f", {LOAD.say(first.anchor_load.weight)} in water" if one_anchor else ""
 
     def uplift(row: tuple[LoadCase, LegResult]) -> str:
-        anchor = row[1].anchor
+        anchor = row[1].anchor_load
         return percent_text(factor * anchor.vertical / anchor.weight)
 
     def sliding(row: tuple[LoadCase, LegResult]) -> str:
-        anchor = row[1].anchor
+        anchor = row[1].anchor_load
         holds = anchor.friction * (anchor.weight / factor - anchor.vertical)
         return percent_text(anchor.horizontal / holds if holds > 0.0 else inf)
 
@@ -189,16 +189,17 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
         words("", lambda row: Cell(row[0].code, strong=True), 0.0),
         words("Case" if one_anchor else "Anchor, case", lambda row: row[0].words if one_anchor
               else f"{row[1].file.pieces[-1].label}, {row[0].words}"),
-        number(f"Vertical {unit}", lambda row: load_text(row[1].anchor.vertical)),
-        number(f"Horizontal {unit}", lambda row: load_text(row[1].anchor.horizontal)),
-        number("Angle from\nvertical °", lambda row: angle(row[1].anchor.angle)),
-        number(f"Weight\nrequired {unit}", lambda row: load_text(row[1].anchor.required_weight)),
+        number(f"Vertical {unit}", lambda row: load_text(row[1].anchor_load.vertical)),
+        number(f"Horizontal {unit}", lambda row: load_text(row[1].anchor_load.horizontal)),
+        number("Angle from\nvertical °", lambda row: angle(row[1].anchor_load.angle)),
+        number(f"Weight\nrequired {unit}", lambda row: load_text(
+            row[1].anchor_load.required_weight)),
         number("Weight use %", lambda row: percent_text(
-            row[1].anchor.required_weight / row[1].anchor.weight)),
+            row[1].anchor_load.required_weight / row[1].anchor_load.weight)),
         number("Uplift use %", uplift),
         number("Sliding use %", sliding),
-        note=f"Required: {factor:g} (V + H / {first.anchor.friction:.3g}). Uplift: V against "
-        f"weight / {factor:g}. Sliding: H against {first.anchor.friction:.3g} "
+        note=f"Required: {factor:g} (V + H / {first.anchor_load.friction:.3g}). Uplift: V against "
+        f"weight / {factor:g}. Sliding: H against {first.anchor_load.friction:.3g} "
         f"(weight / {factor:g} − V). The soil is not judged.",
         ruled=False,
     )  # fmt: skip

@@ -127,9 +127,9 @@ class LoadCase:
     def anchor(self) -> tuple[float, str] | None:
         """The weight required over the weight of an anchor, and the anchor."""
         loads = [
-            (one.anchor.required_weight / one.anchor.weight, one.file.pieces[-1].label)
+            (one.anchor_load.required_weight / one.anchor_load.weight, one.file.pieces[-1].label)
             for one in self.results
-            if one.leg.anchored and one.anchor.weight > 0.0
+            if one.leg.anchored and one.anchor_load.weight > 0.0
         ]
         return max(loads, default=None)
 

@@ -168,6 +168,10 @@ def open_items(assessment: Assessment) -> list[OpenItem]:
 
 def _item(group: Sequence[Finding], number: int) -> OpenItem:
     worst = governing(group)
+    if worst.utilisation is None:  # the greatest value of its quantity
+        quantity = RULES[worst.rule].quantity
+        alike = [one for one in group if RULES[one.rule].quantity == quantity]
+        worst = max(alike, key=lambda one: (one.state.severity, abs(one.value or 0.0)))
     return OpenItem(worst.state, number, f"{_head(group, worst)}.", plain(_told(group, worst)))
 
 

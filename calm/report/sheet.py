@@ -57,7 +57,7 @@ def result_part(
     table = table_of_line(result)
     quality = quality_of(result.leg).lines if verbose else ()
     summary = Pairs((*summary_pairs(result.leg), *facts))
-    warnings = blocks.warned(result.leg.warnings)
+    warnings = blocks.warned(result.warnings)
     shown: tuple[blocks.Block, ...] = (summary, *warnings, Note((table.note, *map(str, quality))))
     return ReportPart(title_of(result.leg), (replace(table, note=""), *shown))
 
@@ -137,8 +137,8 @@ def _line_text(result: LegResult) -> str:
     told = f"{say('depth', sum(row.length for row in rows))} under load"
     if result.leg.anchored:
         told += f", scope {sum(row.cut_length for row in rows) / result.leg.water.depth:.3f}"
-    if result.anchor.grounded_length > 0.0:
-        told += f", {say('grounded_length', result.anchor.grounded_length)} on the seabed"
+    if result.anchor_load.grounded_length > 0.0:
+        told += f", {say('grounded_length', result.anchor_load.grounded_length)} on the seabed"
     most = max(rows, key=lambda row: row.tension)
     told += f"; largest tension {say('tension', most.tension)} in {most.label}"
     known = [row for row in rows if not math.isnan(row.safety_factor)]
@@ -150,7 +150,7 @@ def _line_text(result: LegResult) -> str:
 
 def _anchor_text(result: LegResult) -> str:
     """What the anchor weighs and is to weigh, and how it is pulled."""
-    anchor, share = result.anchor, ""
+    anchor, share = result.anchor_load, ""
     if anchor.weight > 0.0:
         share = f" ({percent_used(anchor.required_weight / anchor.weight):.0f} %)"
     beyond = f" {State.FAIL.sign}" * (anchor.weight < anchor.required_weight)

@@ -85,7 +85,7 @@ class _Lumps:
         self.fixed = np.array(fixed)
         self.lift, self.drag = np.array(lift), np.array(drag)
         self.insensitive, self.bed = np.array(insensitive), np.array(bed)
-        self.springs: Integers = np.array(springs, dtype=np.int64)
+        self.springs: Integers = np.array(springs, dtype=np.intp)
         self.lengths = np.array(lengths)
         self.place = self._spread(np.array(places), legs)
         self.typical = float(np.abs(self.lift).sum()) + 1.0

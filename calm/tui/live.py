@@ -137,7 +137,7 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     if view.complete or not view.anchored or view.result is None or view.result.towed:
         return view
     file = view.result.file
-    moorings, problems = _in_all_environments(view, view.result.design, catalogs)
+    moorings, problems = in_all_environments(view, view.result.design, catalogs)
     assessment = design_check.check(*moorings)
     findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
     rows = tuple(rows_of(file, view.result, (*findings, *tighter)))
@@ -147,8 +147,8 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     )  # fmt: skip
 
 
-def _in_all_environments(
-    view: View, here: Design, catalogs: Sequence[str | Path]
+def in_all_environments(
+    view: View, here: Design, catalogs: Sequence[str | Path] = ()
 ) -> tuple[list[Design], list[Problem]]:
     """The mooring in each of its environments, as long in all as here; what is wrong with them."""
     found: list[Design] = []

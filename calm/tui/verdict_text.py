@@ -151,7 +151,7 @@ def _mooring(result: LegResult, findings: Sequence[Finding], pending: bool) -> I
     from calm.checks.posture import knockdown, reserve
     from calm.checks.strength import anchor_weight
 
-    anchor, top = result.anchor, result.top
+    anchor, top = result.anchor_load, result.top
     pull = f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} off the vertical"
     yield Saying(pull, heading="Anchor")
     yield _holds(result, _worst(findings, anchor_weight), pending)
@@ -176,7 +176,9 @@ def _mooring(result: LegResult, findings: Sequence[Finding], pending: bool) -> I
 def _holds(result: LegResult, worst: Finding | None, pending: bool) -> Saying:
     """Return what the anchor is to weigh, and weighs; of a line without one the first alone."""
     if worst is None:
-        return Saying(f"needs {say('required_weight', result.anchor.required_weight)} in water")
+        return Saying(
+            f"needs {say('required_weight', result.anchor_load.required_weight)} in water"
+        )
     needs = f"needs {say('required_weight', worst.limit)}{_situation(worst)}"
     has = f"has {say('required_weight', worst.value)} in water"
     unsure = pending and worst.state is State.PASS

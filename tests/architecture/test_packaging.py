@@ -179,7 +179,7 @@ def test_constraints_name_every_direct_dependency() -> None:
         *settings["project"]["dependencies"],
         *(
             wanted
-            for extra in ("dev", "docs", "release", "browser", "cluster", "plot", "sheets")
+            for extra in ("dev", "docs", "release", "records", "cluster", "plot")
             for wanted in settings["project"]["optional-dependencies"][extra]
         ),
     ]

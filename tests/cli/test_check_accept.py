@@ -61,6 +61,7 @@ def test_a_failure_and_an_unknown_are_accepted_with_a_reason(calm, accepting):
     assert by_rule["strength"] == {
         "mooring": "Test", "rule": "strength", "component": "top float",
         "reason": "proof loaded to 20 kN", "by": "A. Nonymous", "date": "2026-11-22", "until": None,
+        "load": None,
     }  # fmt: skip
     assert by_rule["knockdown"]["by"] is None
     reasons = {f["reason"] for f in document["findings"] if f["state"] == "accepted"}

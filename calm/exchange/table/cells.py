@@ -6,7 +6,6 @@ import re
 import zipfile
 from collections.abc import Iterable
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,7 +16,7 @@ from calm.units import DIMENSIONS, KILOGRAM_FORCE, QuantityError, unit_factor
 from calm.whole_file import read_content
 
 _DIMENSIONS = {
-    **dict.fromkeys(("length", "diameter", "width", "at", "height"), "length"),
+    **dict.fromkeys(("length", "diameter", "width", "at", "height", "depth"), "length"),
     **dict.fromkeys(("buoyancy", "weight", "stiffness", "breaking_load"), "force"),
     **dict.fromkeys(("area", "drag_area", "tangential_area"), "area"),
     "mass": "mass",
@@ -347,10 +346,6 @@ def _text(path: Path, content: bytes) -> str:
 
 
 def _workbook(path: Path, content: bytes) -> tuple[dict[str, SheetRows], dict[str, str]]:
-    if find_spec("python_calamine") is None:
-        raise refused(
-            path, "is a workbook; install `calm-mooring[sheets]`, or save the sheet as CSV"
-        )
     try:
         return read_apart(_sheets, content)
     except ValueError as error:

@@ -13,6 +13,7 @@ import os
 import re
 import socket
 import stat
+import sys
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -290,8 +291,11 @@ class Keeper:
 
     @property
     def is_running(self) -> bool:
-        """Return whether it is known to be running still; of another machine this is not known."""
-        if not self.is_here or os.name != "posix":
+        """Return whether it is known to be running still; of another machine this is not known.
+
+        A web page has one process, whose sessions follow one another.
+        """
+        if not self.is_here or os.name != "posix" or sys.platform == "emscripten":
             return False
         try:
             os.kill(self.process, 0)

@@ -139,20 +139,3 @@ def test_nobody_at_the_address(tmp_path, monkeypatch):
         with pytest.raises(UsageError, match="no scheduler answers"):
             run_batch(mooring, record, tmp_path / "r.nc", scheduler=address)
         assert [path.name for path in tmp_path.glob("*.nc*")] == []
-
-
-def test_without_dask_it_says_what_to_install(tmp_path):
-    program = (
-        "import sys; sys.modules['distributed'] = None\n"
-        "from pathlib import Path\n"
-        "from calm.batch.cluster import on_cluster\n"
-        "from calm.errors import UsageError\n"
-        "try:\n"
-        "    next(on_cluster('tcp://127.0.0.1:9', None, iter(()), print))\n"
-        "except UsageError as error:\n"
-        "    print(error)\n"
-    )
-    finished = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
-    )
-    assert "pip install 'calm-mooring[cluster]'" in finished.stdout
