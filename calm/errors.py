@@ -157,8 +157,8 @@ def unknown(what: str, text: str, known: Iterable[str]) -> str:
     near = nearest(text, names)
     if near:
         return f"{what}; did you mean `{near}`?"
-    if len(names) <= 12:
-        return f"{what}; allowed: {', '.join(sorted(names)) or 'none'}"
+    if 0 < len(names) <= 12:
+        return f"{what}; allowed: {', '.join(sorted(names))}"
     return what
 
 

@@ -281,6 +281,40 @@ def unit_factor(text: str, dimension: str) -> float:
     return _factor_by_pint(unit, wanted)
 
 
+def unit_line(text: str, wanted: str) -> tuple[float, float]:
+    """Return the factor and the zero of a unit: x in it is ``factor * x + zero`` in another.
+
+    Both are those of pint, which knows the zeros of temperature scales.
+
+    Parameters
+    ----------
+    text : the unit, such as ``"K"`` or ``"S m-1"``
+    wanted : the other unit, as pint writes it
+
+    Raises
+    ------
+    QuantityError
+        The unit is unknown, or of another dimension.
+    """
+    registry = _registry()
+    plain = text.rpartition(",")[2].strip()  # `ITS-90, deg C`
+    plain = _SCALES.get(re.sub(r"[\W_]", "", plain.lower()), _tidy(plain))
+    try:
+        ends = [float(registry.Quantity(x, plain).to(wanted).magnitude) for x in (0.0, 1.0)]
+    except Exception:  # of many kinds, for what is no unit and for units of other kinds
+        raise QuantityError(f"is not {wanted}, or a unit of that kind") from None
+    return ends[1] - ends[0], ends[0]
+
+
+_SCALES = {
+    **dict.fromkeys(("degreecelsius", "degreescelsius", "celsius", "degc", "degreec", "degreesc",
+                     "c"), "degC"),
+    **dict.fromkeys(("degreekelvin", "degreeskelvin", "kelvin", "degk", "k"), "K"),
+    **dict.fromkeys(("degreefahrenheit", "degreesfahrenheit", "fahrenheit", "degf", "f"), "degF"),
+}  # fmt: skip
+"""What scales of temperature are called, letters alone."""
+
+
 def _split(text: str, wanted: Dimension) -> tuple[float, str]:
     """Return the number a text begins with, and the rest: its unit."""
     fraction = _FRACTION.match(text)

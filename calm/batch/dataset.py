@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -78,7 +79,10 @@ def layout_of(mooring: Design, record: Record) -> ResultLayout:
         "record",
         "currents": "; ".join(f"{key}: {value}" for key, value in record.source.items()),
         "notes": "\n".join(record.notes),
+        "read": json.dumps([card.to_dict() for card in record.cards], ensure_ascii=False),
     }
+    sentences = [card.sentence() for card in record.cards]
+    attributes["history"] = "\n".join([str(attributes["history"]), *sentences])
     if len(of_station) > 1:
         attributes["featureType"] = "timeSeriesProfile"
     known = {name: value for name, value in attributes.items() if value}

@@ -21,7 +21,7 @@ from calm.batch.solving import sea_of  # by name: what a compiled law calls
 from calm.batch.statuses import OF_PROFILES, STATUSES
 from calm.case.design import Design, Result, result_together
 from calm.case.line_figures import leaning_of
-from calm.case.net import net_legs
+from calm.case.net import net_legs, solve_together
 from calm.case.result_tables import MOORED_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
@@ -32,7 +32,7 @@ from calm.physics.line import BETTER, Floats, Water
 from calm.physics.profile import Sea
 from calm.physics.track import head_count
 from calm.records.grids import SeabedGrid
-from calm.solve import expect_many, leg_closing, leg_numbers
+from calm.solve import leg_closing, leg_numbers
 from calm.solve.leg_closing import NetTask, copy_values, do_task, drifts
 from calm.solve.leg_numbers import Marching, NetProblem, above_bed, place_of
 from calm.solve.net import NetSearch, NetSolution
@@ -195,9 +195,9 @@ class NetProfiles:
     @cached_property
     def still(self) -> NetSolution | None:
         """The net in still water; None where it does not stand there."""
-        expect_many(inf)
+        settings = replace(self.net.settings, compiled=True)
         try:
-            return self.net.together(self.net.water.still())
+            return solve_together(self.net.legs, self.net.water.still(), settings, None)
         except NoEquilibrium:
             return None
 

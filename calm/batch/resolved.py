@@ -19,6 +19,7 @@ RESOLVED, HASH = "input_resolved", "input_sha256"
 
 _NO_MATTER = frozenset(
     {"path", "line", "column", "checks", "notices", "variants", "description", "current"}
+    | {"doubts", "named"}
     | {"sources", "searched", "prefer", "waves", "seas"}
 )
 """What of a mooring file changes no figure of its results: every profile has its own current."""

@@ -18,7 +18,7 @@ import numpy as np
 
 from calm.assemble import assemble_water
 from calm.case.leg import Leg
-from calm.case.leg_result import LegResult, leg_result_of
+from calm.case.leg_result import LegResult
 from calm.case.memory import Forgetful, Memory
 from calm.case.parts import Origin, OtherEnvironment
 from calm.case.profilers import ProfilerTravel, profilers_of
@@ -37,7 +37,6 @@ from calm.case.result_tables import (
     documents,
 )
 from calm.case.strumming import Strumming, StrummingBand
-from calm.case.warnings import warnings_of
 from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 from calm.files import MooringFile, Piece
 from calm.files.environment import Environment
@@ -288,15 +287,14 @@ class Design:
             closure=found.closure,
             accuracy=found.accuracy,
             legs=(found,),
-            warnings=found.warnings,
         )
 
 
 def solved_alone(leg: Leg) -> LegResult:
     """Solve a leg by itself, with its profilers at all their places; raises NoEquilibrium."""
     solution = leg.equilibrium()
-    found = leg_result_of(leg, solution, leg.still_beside(solution))
-    return replace(found, profilers=profilers_of(leg), warnings=warnings_of(found, solution))
+    still = leg.still_beside(solution)
+    return LegResult(leg=leg, solution=solution, still=still, profilers=profilers_of(leg))
 
 
 def result_together(design: Design, found: NetSolution, still: Sequence[Solution | None]) -> Result:
@@ -313,9 +311,7 @@ def result_together(design: Design, found: NetSolution, still: Sequence[Solution
         leg.refuse_a_lifted_anchor(solution)
         leg.refuse_in_the_slope(solution)
         meant = replace(leg, for_surface=bool((before or solution).afloat))
-        result = leg_result_of(meant, solution, before)
-        legs.append(replace(result, warnings=warnings_of(result, solution)))
-    anchors = [end for leg in legs for end in leg.ends if end.weight is not None]
+        legs.append(LegResult(leg=meant, solution=solution, still=before))
     places = zip(nodes_of(design.file.legs), found.nodes, found.imbalance, strict=True)
     return Result(
         design=design,
@@ -329,17 +325,6 @@ def result_together(design: Design, found: NetSolution, still: Sequence[Solution
         nodes=tuple(
             NodePlace(name, -float(at[2]), float(at[0]), float(at[1]), float(left))
             for name, at, left in places
-        ),
-        warnings=(
-            *design.file.notices,
-            *(said for leg in legs for said in leg.warnings),
-            *(said for leg in legs if (said := _upside_down(leg))),
-            *(
-                f"The anchors of legs {one.leg} and {other.leg} stand in one place, and each is "
-                "judged for itself; where they are one anchor, join the legs at a node above it."
-                for one, other in combinations(anchors, 2)
-                if dist((one.x, one.y), (other.x, other.y)) < 1e-3
-            ),
         ),
     )
 
@@ -386,11 +371,27 @@ class Result:
     accuracy: Accuracy
     legs: tuple[LegResult, ...]
     nodes: tuple[NodePlace, ...] = ()
-    warnings: tuple[str, ...] = ()
 
     notebook_form: ClassVar[Callable[[Any], str] | None] = None
     netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
     plot_form: ClassVar[Callable[[Any, Any], Any] | None] = None
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """Warnings, those of the file first."""
+        if not self.several:
+            return self.leg.warnings
+        return (
+            *self.file.notices,
+            *(said for leg in self.legs for said in leg.warnings),
+            *(said for leg in self.legs if (said := _upside_down(leg))),
+            *(
+                f"The anchors of legs {one.leg} and {other.leg} stand in one place, and each is "
+                "judged for itself; where they are one anchor, join the legs at a node above it."
+                for one, other in combinations(self.anchors, 2)
+                if dist((one.x, one.y), (other.x, other.y)) < 1e-3
+            ),
+        )
 
     @property
     def anchors(self) -> tuple[EndLoad, ...]:
@@ -449,7 +450,9 @@ class Result:
 
     @property
     def anchor(self) -> AnchorLoad:
-        """Load on the anchor of the leg."""
+        """Load on the anchor of the leg; UsageError for a tow."""
+        if self.leg.anchor is None:
+            raise UsageError(f"{self.name} has no anchor")
         return self.leg.anchor
 
     @property

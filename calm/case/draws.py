@@ -16,7 +16,6 @@ from calm.case.memory import Forgetful
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Spread, Uncertainty
 from calm.physics.line import Floats, Line, Water
-from calm.physics.track import Track
 from calm.solve import Settings, Solution, solve_mooring
 from calm.solve.mooring import Nearby
 
@@ -147,7 +146,6 @@ class Neighbours(Forgetful):
         self._leg = leg
         self._moving = Nearby(leg.line, leg.water, leg.settings)
         self._still: Nearby | None = None
-        self._laid: tuple[Line, Track] | None = None
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
         """Return what the solver returns."""
@@ -160,15 +158,10 @@ class Neighbours(Forgetful):
         moving = water.moving or not self._leg.water.moving
         try:
             if moving:
-                return self._moving.solved(line, water, self._track(line))
-            return self._at_rest(line, settings).solved(line, water, self._track(line))
+                return self._moving.solved(line, water)
+            return self._at_rest(line, settings).solved(line, water)
         except NoEquilibrium:
             return solve_mooring(line, water, settings)
-
-    def _track(self, line: Line) -> Track:
-        if self._laid is None or self._laid[0] is not line:
-            self._laid = line, Track.of(line)
-        return self._laid[1]
 
     def _at_rest(self, line: Line, settings: Settings) -> Nearby:
         if self._still is None:

@@ -17,7 +17,7 @@ from calm.files import Place
 from calm.files.mooring_file import refuse_tow
 from calm.files.pieces import clamps_in
 from calm.physics.line import Floats, Line, Water
-from calm.solve import expect_many
+from calm.solve import Solver, expect_many
 
 SOLVES = 100.0
 """About how many equilibria an explanation takes, by work."""
@@ -143,6 +143,7 @@ def explain(result: Result, label: str | None = None) -> Explanation:
     except LookupError as error:
         raise UsageError(str(error.args[0])) from None
     expect_many(SOLVES)
+    expect_many(SOLVES, Solver.NEARBY)
     figures = figures_of(result, part.place)
     quantities: tuple[str, ...] = ("knockdown", "excursion")
     surface = leg_at(result, part.place).type == "surface"

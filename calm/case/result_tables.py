@@ -767,14 +767,14 @@ MOORED_ENDS = (
         QUANTITIES["vertical"],
         "upward pull of the line on the anchor",
         _OF_ENDS,
-        found=lambda line: line.anchor.vertical,
+        found=lambda line: line.anchor_load.vertical,
     ),
     ResultColumn(
         "anchor_horizontal",
         QUANTITIES["horizontal"],
         "horizontal pull of the line on the anchor",
         _OF_ENDS,
-        found=lambda line: line.anchor.horizontal,
+        found=lambda line: line.anchor_load.horizontal,
     ),
     ResultColumn(
         "used_buoyancy",

@@ -20,11 +20,10 @@ from calm.case.design import Result
 from calm.case.draws import CAUSES, SAMPLES, Draw, checked_samples, drawn, draws_of, normals_of
 from calm.case.ends import anchor_load
 from calm.case.leg import Leg
-from calm.case.line_figures import LineFigures
-from calm.case.measure import clamps_of
+from calm.case.line_figures import ClampFigures, LineFigures
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats
-from calm.solve import expect_many
+from calm.solve import Solver, expect_many
 
 BLOCK = 128
 """Samples that one process solves at a time."""
@@ -147,7 +146,7 @@ def uncertain(
     """
     leg = result.design.moored
     checked_samples(samples)
-    expect_many(samples)
+    expect_many(samples, Solver.NEARBY)
     _figures(leg, [Draw()])  # fetches what is compiled, once for the processes that are forked
     normal = normals_of(samples, seed) if normals is None else normals()
     draws = draws_of(leg.file.uncertainty, normal)
@@ -207,8 +206,9 @@ def _figures_of(leg: Leg) -> tuple[Floats, tuple[float, float]]:
     offset = (x * x[0] + y * y[0]) / excursion if excursion else np.zeros(len(x))
     pieces = np.stack([-up, rows.knockdown, rows.tilt, tension, offset])
     anchor = [-rows.bottom[-1, 2], 0.0, 0.0, load.tension, 0.0]
-    held = clamps_of(leg.file.pieces[:-1], solution, still)
-    clamps = np.stack([held.depth, held.knockdown, held.tilt, held.tension, 0.0 * held.depth])
+    held = ClampFigures(leg.file.pieces[:-1], solution, still)
+    depth = -held.position[:, 2]
+    clamps = np.stack([depth, held.knockdown, held.tilt, held.tension, 0.0 * depth])
     return np.column_stack([pieces, anchor, clamps]), (load.tension, load.required_weight)
 
 

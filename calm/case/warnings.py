@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from math import hypot
+from typing import Protocol
 
 import numpy as np
 
-from calm.case.leg_result import LegResult
+from calm.case.leg import Leg
 from calm.case.parts import below_the_seabed
-from calm.files import Cable, Component
+from calm.case.result_tables import AnchorLoad, Clamps, ComponentRow, Components, Shape
+from calm.case.strumming import Strumming
+from calm.files import Cable, Component, MooringFile
 from calm.files.pieces import clamps_in, parts_of
+from calm.physics.line import Water
 from calm.physics.materials import fibre_of, published_stiffnesses
 from calm.quantities import say
 from calm.solve import Solution
@@ -42,15 +46,42 @@ def counted_working_load(component: Component) -> float | None:
     return component.working_load
 
 
-def warnings_of(result: LegResult, solution: Solution) -> tuple[str, ...]:
+class _Measured(Protocol):
+    """The figures of a `LegResult` that lead to warnings."""
+
+    @property
+    def leg(self) -> Leg: ...
+    @property
+    def solution(self) -> Solution: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def file(self) -> MooringFile: ...
+    @property
+    def water(self) -> Water: ...
+    @property
+    def anchor_load(self) -> AnchorLoad: ...
+    @property
+    def components(self) -> Components: ...
+    @property
+    def clamps(self) -> Clamps: ...
+    @property
+    def shape(self) -> Shape: ...
+    @property
+    def still_shape(self) -> Shape | None: ...
+    @property
+    def strumming(self) -> Strumming | None: ...
+
+
+def warnings_of(result: _Measured) -> tuple[str, ...]:
     """Return every warning of the result of a leg, the file's own notices first."""
     # a leg that is marched from its other end is no tow
     doubts = (*_OF_ANY, *(_OF_A_TOW if result.leg.towed else _OF_A_MOORING))
-    found = [warning for doubt in doubts for warning in doubt(result, solution)]
+    found = [warning for doubt in doubts for warning in doubt(result, result.solution)]
     return (*result.file.notices, *found)
 
 
-def _overloaded(result: LegResult, _: Solution) -> Iterator[str]:
+def _overloaded(result: _Measured, _: Solution) -> Iterator[str]:
     for row in result.components:
         if row.safety_factor < 1.0:
             pull = say("tension", row.tension)
@@ -60,7 +91,7 @@ def _overloaded(result: LegResult, _: Solution) -> Iterator[str]:
             yield f"{row.label} is overloaded: {pull} is above its working load."
 
 
-def _same_serial(result: LegResult, _: Solution) -> Iterator[str]:
+def _same_serial(result: _Measured, _: Solution) -> Iterator[str]:
     seen: dict[tuple[str, str], str] = {}
     for part in parts_of(result.file.pieces):
         if part.serial is not None:
@@ -69,8 +100,8 @@ def _same_serial(result: LegResult, _: Solution) -> Iterator[str]:
                 yield f"{other} and {part.label} have the same serial number, {part.serial}."
 
 
-def _anchor_too_light(result: LegResult, _: Solution) -> Iterator[str]:
-    anchor = result.anchor
+def _anchor_too_light(result: _Measured, _: Solution) -> Iterator[str]:
+    anchor = result.anchor_load
     if anchor.weight < anchor.required_weight:
         of = f" of leg {result.name}" if result.leg.of_several else ""
         yield (
@@ -79,7 +110,7 @@ def _anchor_too_light(result: LegResult, _: Solution) -> Iterator[str]:
         )
 
 
-def _anchor_of_unknown_material(result: LegResult, _: Solution) -> Iterator[str]:
+def _anchor_of_unknown_material(result: _Measured, _: Solution) -> Iterator[str]:
     if not result.file.anchor.material_known:
         yield (
             f"{result.file.pieces[-1].label} gives only its mass and is taken as steel, 7850 "
@@ -87,7 +118,7 @@ def _anchor_of_unknown_material(result: LegResult, _: Solution) -> Iterator[str]
         )
 
 
-def _tilted(result: LegResult, _: Solution) -> Iterator[str]:
+def _tilted(result: _Measured, _: Solution) -> Iterator[str]:
     for row in (*result.components, *result.clamps):
         component, leans = row.part.component, f"{row.label} leans {row.tilt:.1f} degrees"
         limit, warned = component.max_tilt, component.warn_tilt
@@ -97,7 +128,7 @@ def _tilted(result: LegResult, _: Solution) -> Iterator[str]:
             yield f"{leans}, above its warning limit of {warned:g}."
 
 
-def _stiffness_unknown(result: LegResult, _: Solution) -> Iterator[str]:
+def _stiffness_unknown(result: _Measured, _: Solution) -> Iterator[str]:
     for piece, tension in zip(result.file.pieces, result.components.tension, strict=True):
         strains = unknown_stretch(piece.component, tension)
         if strains is not None:
@@ -140,7 +171,7 @@ def _percent(share: float) -> str:
     return f"{100 * share:.2g}" if share < 0.995 else f"{100 * share:.0f}"
 
 
-def _overstretched(result: LegResult, solution: Solution) -> Iterator[str]:
+def _overstretched(result: _Measured, solution: Solution) -> Iterator[str]:
     line, greatest = solution.line, np.zeros(len(solution.line.length))
     linear = line.compliance[solution.element_piece] > 0.0
     np.maximum.at(greatest, solution.element_piece, np.where(linear, solution.strain, 0.0))
@@ -150,7 +181,7 @@ def _overstretched(result: LegResult, solution: Solution) -> Iterator[str]:
             yield f"{label} stretches by {100 * strain:.0f} %: beyond any linear stiffness."
 
 
-def _beyond_the_table(result: LegResult, solution: Solution) -> Iterator[str]:
+def _beyond_the_table(result: _Measured, solution: Solution) -> Iterator[str]:
     line = solution.line.reversed() if solution.line.towed else solution.line
     for row, curve in zip(result.components, line.elongation, strict=False):
         if curve is not None and row.tension > curve.limit:
@@ -161,30 +192,39 @@ def _beyond_the_table(result: LegResult, solution: Solution) -> Iterator[str]:
             )
 
 
-def _fast_flow(result: LegResult, solution: Solution) -> Iterator[str]:
-    line = solution.line.reversed() if solution.line.towed else solution.line
-    curves = [*line.drag_curve, None]
-    fast = [
+def _fast_flow(result: _Measured, _: Solution) -> Iterator[str]:
+    """Of a tow, which no design check judges."""
+    fast = fast_pieces(result)
+    if fast:
+        row, limit = fast[0]
+        others = f" and {len(fast) - 1} more" if len(fast) > 1 else ""
+        yield (
+            f"Reynolds number above {power_text(limit)} ({row.label}: "
+            f"{power_text(row.reynolds)}{others}): check the drag coefficient."
+        )
+
+
+def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
+    """Spheres and cylinders with a greater Reynolds number than their drag coefficient holds for.
+
+    Each has the limit; the farthest beyond comes first.
+    """
+    curves = [*result.leg.line.drag_curve, None]
+    rows = [
         (row, LARGEST_REYNOLDS if curve is None else curve.largest_reynolds)
         for row, curve in zip(result.components, curves, strict=False)
         if row.kind in ("sphere", "cylinder")
     ]
-    fast = [(row, limit) for row, limit in fast if row.reynolds > limit]
-    if fast:
-        row, limit = max(fast, key=lambda entry: entry[0].reynolds / entry[1])
-        others = f" and {len(fast) - 1} more" if len(fast) > 1 else ""
-        yield (
-            f"Reynolds number above {_power(limit)} ({row.label}: "
-            f"{_power(row.reynolds)}{others}): check the drag coefficient."
-        )
+    fast = [(row, limit) for row, limit in rows if row.reynolds > limit]
+    return sorted(fast, key=lambda entry: -entry[0].reynolds / entry[1])
 
 
-def _power(number: float) -> str:
+def power_text(number: float) -> str:
     """Write a number in two digits, as 2e5."""
     return f"{number:.2g}".replace("e+0", "e")
 
 
-def _bight(result: LegResult, solution: Solution) -> Iterator[str]:
+def _bight(result: _Measured, solution: Solution) -> Iterator[str]:
     if result.leg.of_several:  # which hang as their ends are held
         return
     water, (east, north, up) = solution.water, solution.force[1:].T
@@ -200,7 +240,7 @@ def _bight(result: LegResult, solution: Solution) -> Iterator[str]:
         )
 
 
-def _on_the_seabed(result: LegResult, solution: Solution) -> Iterator[str]:
+def _on_the_seabed(result: _Measured, solution: Solution) -> Iterator[str]:
     lying = solution.element_piece[solution.hanging :]
     rigid = [p for p in dict.fromkeys(lying.tolist()) if not solution.line.flexible[p]]
     clamps = [m for m in solution.element_clamp[solution.hanging :].tolist() if m >= 0]
@@ -221,7 +261,7 @@ def _on_the_seabed(result: LegResult, solution: Solution) -> Iterator[str]:
         yield "In still water the line on the seabed may lie any way: the offset is the greatest."
 
 
-def _slack(result: LegResult, solution: Solution) -> Iterator[str]:
+def _slack(result: _Measured, solution: Solution) -> Iterator[str]:
     if solution.slack > 0.0:
         pieces = result.file.pieces
         lying = {pieces[p].component.kind for p in solution.element_piece[solution.hanging :]}
@@ -232,7 +272,7 @@ def _slack(result: LegResult, solution: Solution) -> Iterator[str]:
         )
 
 
-def _far_too_long(result: LegResult, solution: Solution) -> Iterator[str]:
+def _far_too_long(result: _Measured, solution: Solution) -> Iterator[str]:
     line, depth, pieces = solution.line, solution.water.depth, result.file.pieces
     times = float(line.length.sum()) / depth
     lying = solution.element_piece[solution.hanging :].tolist()
@@ -244,7 +284,7 @@ def _far_too_long(result: LegResult, solution: Solution) -> Iterator[str]:
         )
 
 
-def _other_equilibrium(_: LegResult, solution: Solution) -> Iterator[str]:
+def _other_equilibrium(_: _Measured, solution: Solution) -> Iterator[str]:
     other = solution.other
     if other is None:
         return
@@ -263,7 +303,7 @@ def _other_equilibrium(_: LegResult, solution: Solution) -> Iterator[str]:
     )
 
 
-def _hull_unknown(result: LegResult, solution: Solution) -> Iterator[str]:
+def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
     """A float of unknown draft is taken as just immersed, or dragged by its `k_surface`."""
     riding, immersed = solution.riding, result.file.solver.buoy_drag == "immersed"
     if solution.surface and immersed and (riding is None or np.isnan(riding.draft)):
@@ -277,7 +317,7 @@ def _hull_unknown(result: LegResult, solution: Solution) -> Iterator[str]:
         yield f"{', '.join(afloat)} {reason}: {taken}, without a draft."
 
 
-def _wind_ignored(result: LegResult, solution: Solution) -> Iterator[str]:
+def _wind_ignored(result: _Measured, solution: Solution) -> Iterator[str]:
     wind = result.file.environment.wind
     floating = solution.line.floating
     felt = floating is not None and (floating.hull is not None or floating.wind_area is not None)
@@ -285,7 +325,7 @@ def _wind_ignored(result: LegResult, solution: Solution) -> Iterator[str]:
         yield "Wind on the float is neglected: its area above the water is not known."
 
 
-def _below_the_sea(result: LegResult, _: Solution) -> Iterator[str]:
+def _below_the_sea(result: _Measured, _: Solution) -> Iterator[str]:
     lowest = float(result.shape.depth.max())
     towing = result.leg.towing
     if towing.in_air and towing.height > 0.0 and lowest > 0.0:
@@ -294,7 +334,7 @@ def _below_the_sea(result: LegResult, _: Solution) -> Iterator[str]:
         )
 
 
-def _strums_along_the_flow(result: LegResult, solution: Solution) -> Iterator[str]:
+def _strums_along_the_flow(result: _Measured, solution: Solution) -> Iterator[str]:
     law = solution.line.strumming
     if law is None or result.strumming is None:
         return
@@ -311,15 +351,16 @@ def _strums_along_the_flow(result: LegResult, solution: Solution) -> Iterator[st
         )
 
 
-_OF_ANY: tuple[Callable[[LegResult, Solution], Iterator[str]], ...] = (
+_OF_ANY: tuple[Callable[[_Measured, Solution], Iterator[str]], ...] = (
     _same_serial, _overloaded, _tilted, _stiffness_unknown, _overstretched, _beyond_the_table,
-    _fast_flow, _other_equilibrium,
+    _other_equilibrium,
 )  # fmt: skip
-_OF_A_MOORING: tuple[Callable[[LegResult, Solution], Iterator[str]], ...] = (
+_OF_A_MOORING: tuple[Callable[[_Measured, Solution], Iterator[str]], ...] = (
     _anchor_too_light, _anchor_of_unknown_material, _bight, _on_the_seabed, _slack,
     _far_too_long, _hull_unknown, _wind_ignored,
 )  # fmt: skip
-_OF_A_TOW: tuple[Callable[[LegResult, Solution], Iterator[str]], ...] = (
+_OF_A_TOW: tuple[Callable[[_Measured, Solution], Iterator[str]], ...] = (
     _below_the_sea,
+    _fast_flow,
     _strums_along_the_flow,
 )

@@ -49,4 +49,3 @@ def build(
     from calm.tui.start import build
 
     return ExitCode(build(file, environment, catalog or []))
-

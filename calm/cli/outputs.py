@@ -22,13 +22,14 @@ from calm.version import __version__
 
 if TYPE_CHECKING:
     from calm.drawing.schematic.in_terminal import TerminalSchematic
+    from calm.records.card import ReadCard
     from calm.report.blocks import ReportPart
 
     TerminalPart = ReportPart | TerminalSchematic
 
 _NARROWEST = 40  # columns: figures are no longer cut, but wrapped by the terminal
 _WRITTEN_OUT = "calm-written-out"  # the handler of signs that a stream cannot carry
-_SIGNS = "°×–−→≤≥²³"  # those of the tables
+_SIGNS = "°×–−→≤≥²³█▒◦≈"  # those of the tables
 
 
 def prepare() -> None:
@@ -92,6 +93,17 @@ def _on_terminal() -> bool:
 def narrate(text: str) -> None:
     """Write a line to the standard error, and nothing in it that steers a terminal."""
     print(printable(text), file=sys.stderr, flush=True)
+
+
+def narrate_card(card: ReadCard) -> None:
+    """Write what was read from a file to the standard error."""
+    from calm.records.card import card_rows
+
+    rows = card_rows(card.to_dict())
+    width = max(len(name) for name, _ in rows)
+    narrate(f"{card.file}: read as")
+    for name, value in rows:
+        narrate(f"  {name:{width}}  {' '.join(value.split())}")
 
 
 def _abandon_output() -> None:

@@ -79,7 +79,7 @@ def run(
         and 95 % points of its figures and the causes of their spread; in the
         JSON, the picture and the reports too.
     verbose
-        Also say below the table how the solution was found.
+        Also say below the table how accurate the figures are, and how they were found.
 
     Examples
     --------

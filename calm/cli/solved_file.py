@@ -10,7 +10,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from calm.cli.outputs import ExitCode, narrate
+from calm.cli.outputs import ExitCode, narrate, narrate_card
 from calm.errors import NoEquilibrium
 
 if TYPE_CHECKING:
@@ -120,6 +120,8 @@ def solve_files(
     drawn_often = None if draws is None else _to_draw_often(*draws)
     outcomes = []
     for file, line in zip(files, lines, strict=True):
+        if (card := line.file.environment.current.card) is not None:
+            narrate_card(card)
         result, failure = _solved(file, line)
         outcomes.append(FileOutcome(
             file, line.file.name, result, failure, verbose=verbose,

@@ -12,6 +12,7 @@ from itertools import repeat
 import numpy as np
 
 from calm.case.design import AnyResult
+from calm.case.leg_result import LegResult
 from calm.case.result_tables import Shape, rows_down
 from calm.case.uncertain import Uncertain
 from calm.physics.line import Floats, Water
@@ -192,20 +193,26 @@ def plane_of(result: AnyResult) -> Floats:
 
     It is east of a mooring that stands upright, and of a net the one in which it is widest.
     """
-    if result.several:
-        x, y = (np.concatenate([getattr(leg.shape, name) for leg in result.legs]) for name in "xy")
+    return plane_of_legs(result.legs)
+
+
+def plane_of_legs(legs: Sequence[LegResult]) -> Floats:
+    """The same of one leg, or of those of a net."""
+    depth = max(leg.water.depth for leg in legs)
+    if len(legs) > 1:
+        x, y = (np.concatenate([getattr(leg.shape, name) for leg in legs]) for name in "xy")
         width, ways = np.linalg.eigh(np.cov(x, y))
-        wide = ways[:, 1] if width[1] > 1e-12 * result.water.depth**2 else (1.0, 0.0)
+        wide = ways[:, 1] if width[1] > 1e-12 * depth**2 else (1.0, 0.0)
         way = np.array(wide)
         return way if (way[0] + 1e-9 * way[1]) >= 0.0 else -way
-    if (tow := result.file.tow) is not None:
+    if (tow := legs[0].file.tow) is not None:
         heading = np.radians(tow.toward)
         return -np.array([np.sin(heading), np.cos(heading)])
-    top = result.legs[0].top
+    top = legs[0].top
     excursion = np.array([top.x, top.y])
     distance = np.linalg.norm(excursion)
     east = np.array([1.0, 0.0])
-    return excursion / distance if distance > 1e-6 * result.water.depth else east
+    return excursion / distance if distance > 1e-6 * depth else east
 
 
 def levels_of(result: AnyResult) -> tuple[float, float]:

@@ -52,7 +52,7 @@ def set_apart(svg: str, prefix: str) -> str:
 # Signs that XML has no place for, that command a terminal, or that turn other signs around.
 _UNPRINTABLE = "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
 _IN_ASCII = str.maketrans({
-    **dict(zip("–−×·₀₁✓\u00a0", "--x*01+ ", strict=True)),
+    **dict(zip("–−×·₀₁✓◦≈█▒’“”\u00a0", "--x*01+o=#:'\"\" ", strict=True)),
     "°": "deg", "→": "->", "…": "...", "≤": "<=", "≥": ">=", "√": "sqrt", "²": "^2", "³": "^3",
     "\u2003": "  ",
 })  # fmt: skip

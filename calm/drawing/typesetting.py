@@ -12,7 +12,10 @@ from typing import Literal
 import numpy as np
 
 FONTS = Path(str(files("calm.drawing") / "fonts"))
-"""Folder of DejaVu Sans, regular and bold, and its licence. Typst includes DejaVu Sans Mono."""
+"""Folder of DejaVu Sans and Source Sans 3, unmodified, with their licences.
+
+Typst includes DejaVu Sans Mono; signs that Source Sans lacks are set in DejaVu Sans.
+"""
 
 DOTS_PER_INCH = 200.0
 

@@ -243,6 +243,6 @@ def rest_difference(result: LegResult, rest: Motion) -> float:
     )
     found = np.concatenate([upper, lower]) - [*state.node[-1, :2], 0.0]
     away = np.linalg.norm(found - expected, axis=1)
-    if result.anchor.grounded_length > 0.0:
+    if result.anchor_load.grounded_length > 0.0:
         away = away[expected[:, 2] > -result.leg.water.depth + 1e-6 * result.leg.water.depth]
     return float(away.max())

@@ -17,8 +17,8 @@ from calm.drop.fall_record import piece_tensions
 from calm.drop.motion import FallingAnchor, NoStep
 from calm.errors import UsageError
 from calm.physics.line import Floats, Line, Water
-from calm.physics.track import head_count
 from calm.quantities import bearing_of
+from calm.solve import looped
 
 AXIAL_DRAG_BAND = 2.0
 """Factor by which the tangential drag of the line and the drag of the anchor may be larger or
@@ -188,7 +188,5 @@ def _at_last(drop: Motion, fineness: Fineness, along: float, of_anchor: float) -
 
 def _tangles(drop: Motion) -> tuple[int, ...]:
     """Pieces with a bar that is upside down at touchdown."""
-    chain, height = drop.mover.chain, drop.states[-1].node[:, 2]
-    back = np.diff(height) > 0.0
-    pieces = np.unique(chain.piece[back])
-    return tuple(int(piece) for piece in pieces if piece >= head_count(chain.line))
+    chain = drop.mover.chain
+    return looped(chain.line, chain.piece, np.diff(drop.states[-1].node[:, 2]))

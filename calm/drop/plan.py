@@ -15,6 +15,7 @@ from calm.drop.fall_record import rest_difference
 from calm.drop.motion import ChainState
 from calm.errors import NoEquilibrium
 from calm.files import Position
+from calm.files.definition import in_si
 from calm.physics.line import Floats
 from calm.positions import Frame
 from calm.quantities import bearing_of
@@ -204,9 +205,9 @@ LEAST_TIME_ERROR = 5e-4
 
 def drop_plan(
     mooring: Design,
-    ship_speed: float = launch.SHIP_SPEED,
-    streamed: float | None = None,
-    course: float | None = None,
+    ship_speed: float | str = launch.SHIP_SPEED,
+    streamed: float | str | None = None,
+    course: float | str | None = None,
     result: Result | None = None,
     fineness: Fineness = FINE,
     deck_time: Mapping[str, float] | None = None,
@@ -215,7 +216,8 @@ def drop_plan(
 
     Parameters
     ----------
-    ship_speed : speed of the ship over the ground [m/s]
+    ship_speed : speed of the ship over the ground [m/s]; `ship_speed`, `streamed` and `course` may
+        be texts with a unit, such as ``"2 knot"``
     streamed : horizontal distance from the anchor to the free end at the release [m]; by default
         the distance under tow
     course : course of the ship over the ground [degrees]; by default against the current at the
@@ -235,9 +237,13 @@ def drop_plan(
         ``not-converged`` if no step is found.
     """
     leg = mooring.moored
+    ship_speed = in_si("ship_speed", ship_speed, "speed")
+    streamed = None if streamed is None else in_si("streamed", streamed, "length")
+    if course is None:
+        course = launch.course_into_current(leg.water)
+    course = in_si("course", course, "angle") % 360.0
     if result is None:
         result = _equilibrium(mooring)
-    course = launch.course_into_current(leg.water) if course is None else course % 360.0
     ship = launch.ship_of(leg, ship_speed, course, streamed)
     anchor, falling = launch.falling_anchor(leg), launch.falling_line(leg)
     water = leg.water

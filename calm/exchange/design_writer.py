@@ -148,7 +148,7 @@ def _counted(items: list[model.ImportedPiece]) -> list[model.ImportedPiece]:
     """Equal items that follow each other as one with a count."""
 
     def what(item: model.ImportedPiece) -> object:
-        if item.clamps or item.guess or item.label or item.serial:
+        if item.clamps or item.guess or _called(item):
             return id(item)
         return item.component.identity(), item.length, item.component.entry
 
@@ -179,7 +179,9 @@ def _write_item(page: _Page, item: model.ImportedPiece, ids: dict[int, str]) -> 
 
 def _called(item: model.ImportedPiece | model.ImportedClamp) -> list[str]:
     named = (("label", item.label), ("serial", item.serial))
-    return [f"{key}: {quoted(text)}" for key, text in named if text]
+    planned = item.planned_depth
+    depth = [] if planned is None else [f"planned_depth: {_number(planned)} m"]
+    return [f"{key}: {quoted(text)}" for key, text in named if text] + depth
 
 
 def _write_component(

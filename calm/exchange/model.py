@@ -107,6 +107,7 @@ class ImportedClamp:
     guess: str = ""
     label: str = ""
     serial: str = ""
+    planned_depth: float | None = None
 
 
 @dataclass(eq=False)
@@ -120,6 +121,7 @@ class ImportedPiece:
     label: str = ""
     count: int = 1
     serial: str = ""
+    planned_depth: float | None = None
 
     @property
     def extent(self) -> float:

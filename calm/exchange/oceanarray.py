@@ -76,6 +76,24 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
     return design
 
 
+def listed_instruments(path: Path) -> list[tuple[int, str, str, float]]:
+    """Return line, label, serial number and height above the bottom [m] of each instrument.
+
+    One without a serial number or a height is left out. InputError: the file is damaged.
+    """
+    document, problems = read_document(path), list[Problem]()
+    reading = _Reading(document, problems)
+    reading.depth = reading.metres(document.data, (), "waterdepth")
+    entries = [one for key in ("inline", "clamp", "instruments") for one in reading.entries(key)]
+    if problems:
+        raise InputError(problems)
+    return [
+        (document.problem(one.place, "").line, one.label, one.serial, one.height)
+        for one in entries
+        if one.serial and one.height is not None
+    ]
+
+
 _Location = tuple[str | int, ...]
 """Where something stands in the file: keys, and numbers of items."""
 

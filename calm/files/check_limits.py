@@ -15,7 +15,7 @@ from pydantic import AfterValidator, WithJsonSchema, model_validator
 
 from calm.errors import shown, unknown
 from calm.files import definition
-from calm.files.rule_texts import ACCEPTABLE, RULES
+from calm.files.rule_texts import ACCEPTABLE, LOADED, RULES
 from calm.files.yaml_document import SourceMapping
 
 _FACTOR = definition.QuantityField("number", above=0)
@@ -259,6 +259,9 @@ class AcceptKeys(definition.Model):
     by: definition.Text | None = definition.optional("who accepts it", "A. Martin")
     date: Day | None = definition.optional("day, e.g. 2026-11-20", "2026-11-22")
     until: Day | None = definition.optional("last day on which it counts", "2027-12-31")
+    load: Annotated[float | None, definition.QuantityField("force", above=0)] = definition.optional(
+        "greatest tension that is accepted, such as a proof load", "25 kN"
+    )
 
     @model_validator(mode="after")
     def _ends_after_it_begins(self) -> AcceptKeys:
@@ -310,6 +313,9 @@ def _accept(
         rule = shown(keys.rule)
         message = unknown(f"no rule that can be accepted is called `{rule}`", rule, ACCEPTABLE)
         top.refuse((*here, "rule"), message)
+    if keys.load is not None and keys.rule not in LOADED:
+        message = f"`load` is a tension, and `{keys.rule}` judges none"
+        top.refuse((*here, "load"), message)
     covered = None
     if keys.component is not None and labels is not None:
         covered = tuple(matching(keys.component, labels))

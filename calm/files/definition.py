@@ -25,9 +25,17 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
+from calm.errors import UsageError, about_quantity
 from calm.physics.materials import MATERIAL_NAMES
 from calm.positions import HEMISPHERES
-from calm.units import DIMENSIONS, KILOGRAM_FORCE, QuantityRange, with_unit
+from calm.units import (
+    DIMENSIONS,
+    KILOGRAM_FORCE,
+    QuantityError,
+    QuantityRange,
+    parse_quantity,
+    with_unit,
+)
 
 
 class Model(BaseModel):
@@ -117,6 +125,19 @@ Role = Annotated[
 def quantity_of(field: FieldInfo) -> QuantityField | None:
     """Return the quantity that a field of a model holds, None where it holds none."""
     return next((one for one in field.metadata if isinstance(one, QuantityField)), None)
+
+
+def in_si(name: str, value: float | str, dimension: str) -> float:
+    """Return an argument in SI (degrees, degC): a number as it is, a text with its unit converted.
+
+    UsageError, with the name of the argument: the text is no quantity of this dimension.
+    """
+    if not isinstance(value, str):
+        return value
+    try:
+        return parse_quantity(value, dimension)
+    except QuantityError as error:
+        raise UsageError(about_quantity(name, value, error)) from error
 
 
 CATALOGUE_DENSITY = 1025.0
@@ -289,6 +310,11 @@ class Definition(Model):
     )
     grip: PositiveForce = optional(
         "pull at which its clamp slips along the line, e.g. 1 kN", "1 kN"
+    )
+    insulated: bool | None = optional(
+        "whether plastic or rubber keeps its metal from what it touches: jaws of its clamp, bushes "
+        "in its eyes; taken as true of what is clamped, and else as false",
+        True,
     )
     max_tilt: Annotated[float | None, TILT] = optional(
         "tilt beyond which it is not to be trusted", "20 deg"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os.path
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -19,6 +19,7 @@ from calm.files.yaml_document import SourceMapping, validate
 from calm.physics.line import Floats
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
 from calm.records.grids import SeabedGrid
+from calm.records.profile_doubts import direction_doubts, profile_doubts
 from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater, components, read_current
 from calm.records.sea_states import SeaState
 from calm.units import QuantityError
@@ -102,6 +103,7 @@ class Environment:
     seabed : how it slopes; level where it is not given
     waves : as they are written
     seas : those of `waves`
+    doubts : what is possible and mostly is a mistake, in sentences
     """
 
     name: str | None
@@ -118,6 +120,7 @@ class Environment:
     waves: WaveKeys | None = None
     seas: tuple[SeaState, ...] = ()
     seabed: Seabed | None = None
+    doubts: tuple[str, ...] = field(default=(), compare=False, repr=False)
 
 
 class Fouling(Model):
@@ -285,14 +288,55 @@ def read_environment(
         seabed = _seabed(moored.seabed, where, moored.depth, section, notices)
     if density is None or current is None or len(section.problems) > before:
         return None
-    notices.extend(water.density_notices(density, keys.depth))
+    doubts: list[str] = []
+    if keys.fluid == "water":
+        doubts += _current_doubts(current, keys.depth)
+        doubts += water.density_doubts(density, keys.depth)
+        doubts += _wind_doubts(keys.wind)
+    doubts += _tide_doubts(moored.depth_range) if moored and moored.depth_range else ()
+    notices.extend(doubts)
     if isinstance(density, SeaWater) and position is None:
         notices.append(
             "Density from temperature and salinity without a `position`: taken at 45 degrees of "
             "latitude, in sea water of the reference composition."
         )
     found = {"name": name, "density": density, "current": current, "position": position}
-    return Environment(**dict(keys) | found | {"seas": seas, "seabed": seabed})
+    more = {"seas": seas, "seabed": seabed, "doubts": tuple(doubts)}
+    return Environment(**dict(keys) | found | more)
+
+
+GREATEST_TIDE = 20.0
+"""Range of the greatest tides, 17 m in Ungava Bay and the Bay of Fundy, and a surge [m]."""
+
+STRONGEST_WIND = 75.0
+"""Strongest wind measured over 1 min at sea, in round figures [m/s]."""
+
+
+def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
+    """Return remarks on a current that a person wrote, none on one from a record."""
+    if current.record is not None:
+        return []
+    levels, u, v = (np.array(each) for each in (current.depth, current.u, current.v))
+    water_depth = math.inf if depth is None else depth
+    found = (*current.doubts, *profile_doubts(levels, u, v, water_depth))
+    return [f"{said[0].upper()}{said[1:]}" + "." * (said[-1] != "?") for said in found]
+
+
+def _wind_doubts(wind: water.Wind | None) -> list[str]:
+    if wind is None or wind.speed <= STRONGEST_WIND:
+        return []
+    return [
+        f"The wind of {wind.speed:g} m/s is stronger than any at sea: were km/h or knots meant?"
+    ]
+
+
+def _tide_doubts(levels: tuple[float, float]) -> list[str]:
+    if (between := levels[1] - levels[0]) <= GREATEST_TIDE:
+        return []
+    return [
+        f"`depth_range` spans {between:g} m, and the greatest tides 17 m: was it cm, or are these "
+        "not low and high water?"
+    ]
 
 
 def _seabed(
@@ -370,7 +414,8 @@ def _current(
         if reason := too_fast(u, v, current.w, terms.maximum_speed):
             section.refuse(("current", "speed"), reason)
             return None
-        return CurrentTable((0.0,), (u,), (v,), (current.w,))
+        doubts = direction_doubts([current.toward] if current.speed else [], "toward")
+        return CurrentTable((0.0,), (u,), (v,), (current.w,), doubts=tuple(doubts))
     path = Path(section.home("current").document.path).parent / current.file
     if not (os.path.isfile(path) or os.path.isdir(path)):
         section.refuse(("current", "file"), f"`file: {shown(current.file)}`: no such file")

@@ -7,6 +7,7 @@ from typing import Annotated, Any, TypeGuard
 
 from pydantic import Field
 
+from calm.errors import shown
 from calm.files import definition
 from calm.files.check_limits import Day
 from calm.files.definition import Text, described, optional
@@ -61,6 +62,10 @@ class LengthAt(definition.Model):
     )
 
 
+ASSEMBLY_FIGURES = (
+    "working_load", "breaking_load", "opening_load", "grip", "max_tilt", "depth_rating"
+)  # fmt: skip
+"""Figures of an assembly, which are those of its parts that lack them."""
 MOST_PIECES = 10_000
 """Pieces a line may have, after assemblies and counts are expanded."""
 
@@ -117,8 +122,8 @@ def read_equipment(item: SourceMapping) -> Equipment:
 
 
 def check_counted(item: SourceMapping, count: int) -> None:
-    """Check that serial numbers given as a list are as many as the item, and its clamps, count,
-    and that one planned depth is not given for several pieces.
+    """Check that serial numbers given as a list differ and are as many as the item, and its clamps,
+    count, and that one planned depth is not given for several pieces.
     """
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]
@@ -127,9 +132,18 @@ def check_counted(item: SourceMapping, count: int) -> None:
         if _is_list(serials) and len(serials) != count:
             message = f"`serial` has {len(serials)} numbers for a count of {count}"
             item.refuse((*place, "serial"), message)
+        elif _is_list(serials) and (twice := _numbers_twice(serials)):
+            item.refuse((*place, "serial"), f"`serial` lists {shown(twice)} twice")
         if isinstance(data, dict) and "planned_depth" in data and count > 1:
             message = f"`planned_depth` is of one piece; this item counts {count}: list them"
             item.refuse((*place, "planned_depth"), message, key=True)
+
+
+def _numbers_twice(serials: Sequence[object]) -> str:
+    """Return the first number that a list has twice; "" if none, as in a list of question marks."""
+    texts = [str(one) for one in serials]
+    numbers = (one for one in texts if any(digit.isdigit() for digit in one))
+    return next((one for one in numbers if texts.count(one) > 1), "")
 
 
 def _is_list(value: object) -> TypeGuard[Sequence[object]]:

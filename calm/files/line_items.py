@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any, TypeVar
 
 from calm.errors import about_quantity, shown, unknown
 from calm.files import components, item_keys
@@ -10,7 +11,7 @@ from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, Defined, d
 from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Anchor, Component, Flexible, Outline
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
-from calm.files.item_keys import MOST_PIECES
+from calm.files.item_keys import ASSEMBLY_FIGURES, MOST_PIECES
 from calm.files.pieces import Clamp, Piece, Place, placed, unplanned
 from calm.files.planned_depth import named_depth
 from calm.files.rigid import Profiler, Rigid
@@ -20,7 +21,9 @@ from calm.units import QuantityError
 _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
 _ITEM_KEYS = frozenset(item_keys.ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
+_SOURCE_KEYS = frozenset({"source", "sources"})
 _CLAMP_KEYS = frozenset(item_keys.ClampKeys.model_fields)
+_Part = TypeVar("_Part", Piece, Clamp)
 _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
@@ -95,7 +98,7 @@ class LineReader:
             self._clamps(item, None)
             return ()
         if isinstance(definition, Assembly):
-            once = self._assembly(entry, item)
+            once = self._filled(self._assembly(entry, item), definition, entry, item)
         else:
             once = (self._piece(definition, item),)
         if len(once) * count > MOST_PIECES:
@@ -169,6 +172,7 @@ class LineReader:
             fit_body_depth=fit_depth if self._towed else None,
             equipment=self._equipment(item, component, clamped=False),
             measured_load=load,
+            named=self._named(item),
         )
 
     def _measured(self, item: SourceMapping, component: Flexible) -> tuple[float, float]:
@@ -230,7 +234,8 @@ class LineReader:
                 where = Place(0, clamp=len(clamps))
                 own = self._equipment(clamp, component, clamped=True)
                 label = self._label(clamp)
-                clamps.append(Clamp(clamp.data["use"], label, component, at, where, own))
+                use, named = clamp.data["use"], self._named(clamp)
+                clamps.append(Clamp(use, label, component, at, where, own, named=named))
             elif component is not None and at is not None:
                 message = f"a component of kind {component.kind} cannot be clamped on a line"
                 clamp.refuse(("use",), message)
@@ -259,11 +264,33 @@ class LineReader:
             self._assemblies[entry.id] = self.read(entry.section.into(self._problems), "parts")
             self._open.pop()
         place = item.problem((), "")
-        prefix = f"{self._label(item)} " if "label" in item.data else ""
+        prefix, named = f"{self._label(item)} " if "label" in item.data else "", self._named(item)
+        line, column = place.line, place.column
         return tuple(
-            replace(piece, label=prefix + piece.label, line=place.line, column=place.column)
+            replace(piece, label=prefix + piece.label, line=line, column=column, named=named)
             for piece in self._assemblies[entry.id]
         )
+
+    def _filled(
+        self,
+        pieces: tuple[Piece, ...],
+        assembly: Assembly,
+        entry: CatalogueEntry,
+        item: SourceMapping,
+    ) -> tuple[Piece, ...]:
+        """Return the pieces of an assembly with its figures where they lack them."""
+        for key in ASSEMBLY_FIGURES:
+            value = getattr(assembly, key)
+            if value is None:
+                continue
+            given: dict[str, Any] = item.data if key in item.data else entry.section.data
+            source = (given.get("sources") or {}).get(key) or given.get("source")
+            filled = tuple(_with_figure(piece, key, value, source) for piece in pieces)
+            if filled == pieces and key in item.data:
+                message = f"no part of `{entry.id}` lacks a `{key}`"
+                item.refuse((key,), f"{message}; use its parts to change one", key=True)
+            pieces = filled
+        return pieces
 
     def _entry(self, item: SourceMapping) -> CatalogueEntry | None:
         """Return the catalogue entry that an item uses."""
@@ -302,10 +329,14 @@ class LineReader:
             self._defined[entry.id] = self._define(entry, own)
         definition = self._defined[entry.id]
         if isinstance(definition, Assembly):
-            for key in item.data.keys() - _ASSEMBLY_KEYS:
-                message = unknown(f"`{key}` cannot be set on an assembly", key, _ASSEMBLY_KEYS)
+            allowed = _ASSEMBLY_KEYS.union(ASSEMBLY_FIGURES, _SOURCE_KEYS)
+            for key in item.data.keys() - allowed:
+                message = unknown(f"`{key}` cannot be set on an assembly", key, allowed)
                 item.refuse((key,), message, key=True)
-            return definition
+            figures = {key: item.data[key] for key in item.data.keys() - _ASSEMBLY_KEYS & allowed}
+            section = item.holding(figures).over(entry.section)
+            filling = self._define(entry, section) if figures else definition
+            return filling if isinstance(filling, Assembly) else None
         if definition is None:
             return None
         own_keys = item_keys if definition.kind in FLEXIBLE_KINDS else item_keys - {"length"}
@@ -387,8 +418,41 @@ class LineReader:
             item.refuse((key,), about_quantity(key, item.data[key], error))
             return None
 
+    def _named(self, item: SourceMapping) -> str:
+        """Return the label that an item or a clamp gives, "" if none."""
+        return self._label(item) if "label" in item.data else ""
+
     def _label(self, item: SourceMapping) -> str:
         label = item.data.get("label", item.data["use"])
         if not isinstance(label, str):
             item.refuse(("label",), "`label` must be plain text")
         return str(label)
+
+
+def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Piece:
+    """Add a figure to a piece of an assembly, or to clamps on it, that lack the figure."""
+
+    def filled(part: _Part) -> _Part:
+        component: Component = part.component
+        if not _lacks(component, key, clamped=isinstance(part, Clamp)):
+            return part
+        known: dict[str, Any] = {key: value}
+        if source:
+            known["sources"] = {**(component.sources or {}), key: source}
+        return replace(part, component=component.model_copy(update=known))
+
+    return filled(piece.with_clamps(filled))
+
+
+def _lacks(component: Component, key: str, *, clamped: bool) -> bool:
+    """Whether a component that needs a figure in its place does not specify it."""
+    if key in ("working_load", "breaking_load"):
+        return not clamped and component.working_load is component.breaking_load is None
+    if key == "grip":
+        return clamped and component.grip is component.breaking_load is None
+    roles = {
+        "opening_load": ("release",),
+        "max_tilt": ("release", "instrument"),
+        "depth_rating": ("release", "instrument", "float"),
+    }
+    return component.role in roles[key] and getattr(component, key) is None

@@ -177,7 +177,7 @@ def unknown_releases(
     items = () if deployed is None else deployed.items
     serials = {*designed.values(), *(one.serial for one in items if one.label in designed)}
     return [
-        f"`releases`: no release of the line has the serial number {release.serial}"
+        f"`releases`: no release of the line has the serial number {release.serial}."
         for release in releases
         if serials != {None} and release.serial is not None and release.serial not in serials
     ]

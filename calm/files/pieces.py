@@ -67,7 +67,8 @@ class Clamp:
     """Represent an instrument fixed to a piece, `at` metres (unstretched) from the piece's top.
 
     A profiler travels over `travel`, the same distance of its upper and its lower stop; inf is the
-    end of the piece. It is taken to be `at` its upper one.
+    end of the piece. It is taken to be `at` its upper one. `named` is its label as the file
+    gives it, "" where it gives none.
     """
 
     use: str
@@ -77,6 +78,7 @@ class Clamp:
     place: Place
     equipment: Equipment = NO_EQUIPMENT
     travel: tuple[float, float] | None = None
+    named: str = ""
 
     @property
     def serial(self) -> str | None:
@@ -108,6 +110,7 @@ class Piece:
     equipment : what the file says of this individual piece
     measured_load : load under which its length is measured [N], `length` being without load all the
         same
+    named : label as the file gives it, "" where it gives none
     """
 
     index: int
@@ -123,6 +126,7 @@ class Piece:
     fit_body_depth: float | None = None
     equipment: Equipment = NO_EQUIPMENT
     measured_load: float = 0.0
+    named: str = ""
 
     @property
     def serial(self) -> str | None:

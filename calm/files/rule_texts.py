@@ -20,6 +20,7 @@ class RuleText:
     source : of the rule and its limit as it is by default
     unseen : why no profile of a batch can be judged by it, where none can
     figures : of a component, without which the rule does not know
+    has_ratio : whether its values and limits are demand and capacity
     """
 
     title: str
@@ -29,6 +30,7 @@ class RuleText:
     source: str
     unseen: str = ""
     figures: tuple[str, ...] = ()
+    has_ratio: bool = True
 
 
 _WAVES = "waves are judged of an environment, by `calm check`"
@@ -47,6 +49,22 @@ RULES = {
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 of its speed, 0.2 "
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
+    "drag-coefficient": RuleText("Drag coefficient", "",
+        "spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond the curve of "
+        "`drag: reynolds`",
+        "a warning if the curve of a smooth shape makes the knockdown, or the offset at the "
+        "surface, greater by 5 %; else not judged, with the effect",
+        "Constant coefficients hold up to 2e5; beyond it, the drag of smooth shapes falls",
+        "the profiles of a record are solved with one law of drag"),
+    "environment": RuleText("Environment", "",
+        "what is possible in an environment, and mostly is a mistake: directions that are radians, "
+        "a level opposite to both its neighbours, a current that grows down to the seabed or is "
+        "stronger than any in deep water, the density of no sea, tides of more than 20 m, wind of "
+        "more than 75 m/s; levels of a storm weaker than half of the ordinary current; no `wind` "
+        "on a float at the surface that has a `wind_area`",
+        "a warning",
+        "Defaults of this program: what the sea has, and people type",
+        "environments are judged beside each other, by `calm check`"),
     "missing": RuleText("Missing figures", "",
         "figures that a component does not give and rules need: one finding for each component id "
         "and figure, with these rules and the pieces that they cannot judge",
@@ -68,7 +86,7 @@ RULES = {
         figures=("working_load", "opening_load")),
     "clamp-grip": RuleText("Grip of the clamps", "tension",
         "weight in water and drag of what is clamped, in the current, the fall and the rise",
-        "its `grip`, else its `breaking_load`; reported where neither is given",
+        "its `grip`, else its `breaking_load`; not judged where neither is given",
         "The maker's figures of the clamp",
         "the result does not hold the current at each clamp", figures=("grip",)),
     "profiler": RuleText("Profiler on its wire", "tension",
@@ -80,7 +98,8 @@ RULES = {
         "the profiles of a record are solved with it at its upper stop", figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "tension",
         "every piece, compared with the cables above and below it",
-        "half of their strength: a warning",
+        "half of their strength, as far as sources give both, of a piece that bears more than half "
+        "of what it is good for: a warning",
         "A default of this program: half the strength of the cables on both its sides",
         "the strengths of pieces side by side do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",
@@ -90,7 +109,7 @@ RULES = {
         "sediment trap 10°",
         figures=("max_tilt",)),
     "depth-rating": RuleText("Depth rating", "depth",
-        "depth in the current",
+        "depth in the current; of a surface float only where it gives its rating",
         "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
         "The maker's rating, less a margin for a stronger current than expected",
         figures=("depth_rating",)),
@@ -114,7 +133,8 @@ RULES = {
         "A default of this program: a sounding errs by as much; ropes are measured under "
         "a small load"),
     "fish-bite": RuleText("Fish bite", "depth",
-        "least depth of every synthetic rope, in more than 200 m of water",
+        "least depth of every synthetic rope, in more than 200 m of water and less than 60° from "
+        "the equator",
         "`fishbite_depth`, 1000 m: a warning",
         "Berteaux, Prindle & May, OCEANS '87: far from the shores fish bite from the surface to "
         "1000 m and more",
@@ -144,7 +164,8 @@ RULES = {
         "of a deadweight",
         figures=("weight", "density")),
     "slack": RuleText("Least tension", "tension",
-        "least tension of every wire and rope above the release that does not lie on the seabed",
+        "least tension of every wire and rope above the release that does not lie on the seabed, "
+        "of a line that is longer than 50 m above its release",
         "`minimum_tension`: 500 N wire, 300 N rope; `slack: allowed` on a piece exempts it",
         "Practice of mooring groups, 50 to 100 kgf above the release; no figure is published"),
     "wave-strength": RuleText("Strength in waves", "tension",
@@ -161,8 +182,8 @@ RULES = {
         _WAVES),
     "fatigue": RuleText("Fatigue in waves", "life",
         "life of every piece below the float in the seas of `waves: scatter:`",
-        "`fatigue_factor`, 3, × `service_time`, 365 days; unknown without a table of seas, and "
-        "of what no curve is published for",
+        "`fatigue_factor`, 3, × `service_time`, 365 days; not judged without a table of seas, and "
+        "unknown of what no curve is published for",
         "Dirlik 1985 and Miner's sum; curves of DNV-OS-E301 (chain, polyester) and API RP 2SK "
         "(wire); a life of three times the service",
         _WAVES),
@@ -177,12 +198,12 @@ RULES = {
         "the result does not hold how the float lies in the water"),
     "watch-circle": RuleText("Watch circle", "offset",
         "√(L² − h²): the line as stretched, the water above the anchor's top",
-        "`maximum_excursion`; reported where that is not given",
+        "`maximum_excursion`; not judged where that is not given",
         "Worst case √(L² - h²), h above the anchor, against the design's own `maximum_excursion`",
         "the result does not hold the stretched length of the line"),
     "scope": RuleText("Scope", "scope",
         "cut length over depth",
-        "none: it is reported",
+        "none: it is reported, not judged",
         "Reported, not judged",
         "it is reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
@@ -193,18 +214,19 @@ RULES = {
         _ONCE),
     "figures": RuleText("Figures of components", "",
         "figures of pieces and clamps that are impossible for their size and material: lift, "
-        "mass, stiffness, strength, depth rating, coefficients of drag",
-        "a failure; of a tilt warned of after the limit a warning; unknown where the line gives a "
-        "figure that flatters more than its component's, without a `source`, and of a `material` "
-        "that names none of those known",
+        "mass, density, stiffness, strength, depth rating, coefficients of drag",
+        "a failure; a warning of a tilt warned of after the limit, of an instrument that floats "
+        "and of a `wind_area` out of proportion; unknown where the line gives a figure that "
+        "flatters more than its component's, without a `source`, and of a `material` that names "
+        "none of those known, or another than the `name`",
         "The rules of `calm catalog check`",
         _ONCE),
     "release-present": RuleText("Release", "",
         "whether a piece of a sub-surface line has `role: release`, and whether that frees it",
         "unknown where none has, one that is clamped, or is called a shackle, swivel, rope or the "
-        "like; a failure where nothing floats above it; a warning of a single one (none is called "
-        "double, dual, twin or a pair), of less than 1 m between it and the anchor, and where "
-        "something below it floats",
+        "like; a failure where nothing floats above it; a warning of a single one in more than "
+        "100 m of water (none is called double, dual, twin or a pair), of less than 1 m between "
+        "it and the anchor, and where a float is below it",
         "Defaults of this program: a line to be recovered names its release",
         _ONCE),
     "hardware": RuleText("Hardware", "",
@@ -212,28 +234,44 @@ RULES = {
         "a warning where none has",
         "A default of this program: what joins the pieces has weight, drag and a strength",
         _ONCE),
+    "joints": RuleText("Joints", "",
+        "whether a piece with `role: connector` joins every two unlike pieces, of wire, chain and "
+        "what is rigid; ropes are spliced, and a wire with a `termination` says how it ends",
+        "a warning, one for all joints of the line; not of a line without any hardware",
+        "A default of this program: a shackle that is not listed is not bought, nor judged",
+        _ONCE),
     "clamp-place": RuleText("Places of the clamps", "",
         "clamps on a cable or chain that overlap, or stick out over its end",
         "5 cm: a failure",
         "Two things are not in one place",
         _ONCE),
+    "serials-and-dates": RuleText("Serial numbers and dates", "",
+        "labels of several rows, but for connectors; serial numbers of several items of one "
+        "component; codes of a release that is not in the line, or of two; batteries that end "
+        "before the deployment or the calibration, calibrations after the deployment; a document "
+        "that is not its latest revision, revisions out of order",
+        "a warning",
+        "A default of this program: what sheets and labels print must not contradict itself",
+        _ONCE),
     "swivel": RuleText("Swivel", "",
         "steel wire that ends at a float with no chain or rope between",
-        "a swivel between them, or wire that is `torque_balanced`, or called so by its name, "
-        "material or note where it does not give that: a warning",
+        "a swivel between them or at its other end, or wire that is `torque_balanced`, or called "
+        "so by its name, material or note where it does not give that: a warning",
         "A default of this program: wire that twists under load kinks when the load goes",
         _ONCE),
     "metals": RuleText("Dissimilar metals", "potential",
-        "pieces that touch, clamps and what they are on, where both give a metal as `material`",
+        "pieces that touch, and what is clamped on with `insulated: false`, where both give a "
+        "metal as `material` and neither is `insulated`",
         "0.2 V apart in sea water: a warning",
         "Galvanic series in sea water (Professional Boatbuilder 100, 2006); 0.15 to 0.2 V in harsh "
         "surroundings (Pantaenius)",
-        _ONCE),
+        _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "tension",
-        "net buoyancy of the part that still holds the release after the worst break that is "
-        "judged (below)",
-        "`backup_margin`, 0.1 of the weight lifted, and 250 N; a warning of a compact line of one "
-        "float",
+        "net buoyancy of the part that still holds the release after the worst break or loss of a "
+        "float that is judged (below)",
+        "`backup_margin`, 0.1 of the weight lifted, or its drag at `minimum_rise_speed` if that is "
+        "more; not judged of a float that alone brings up a line, over 50 m at most above the "
+        "release; a warning of a surface mooring without floats below its buoy",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
         "floats",
         _ONCE),
@@ -250,7 +288,7 @@ RULES = {
         "A default of this program: faster, an anchor may bury itself or break what stands on it",
         _ONCE, figures=("kt",)),
     "recovery": RuleText("Rise", "speed",
-        "speed of the rise without the anchor",
+        "speed of the rise without the anchor, of a line with a release or below the surface",
         "`minimum_rise_speed`, 0.3 m/s; a warning below 0.7 m/s and above 3 m/s",
         "Defaults of this program: below 0.3 m/s a rise is in doubt, below 0.7 m/s it takes long; "
         "above 3 m/s floats leap and the line loops",
@@ -265,3 +303,6 @@ RULES = {
 
 ACCEPTABLE = tuple(name for name in RULES if name != "equilibrium")
 """The rules of `checks: accept:`; of a mooring that does not stand nothing is known to accept."""
+
+LOADED = ("strength", "release-load", "clamp-grip", "wave-strength", "launch-strength", "missing")
+"""The rules of which an accept may give the greatest tension that it accepts."""

@@ -15,8 +15,8 @@ from calm.files.definition import DENSITY, Model, QuantityField, Text, described
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
 from calm.records import profile_tables
-from calm.records.current_terms import left_out
 from calm.records.profile_tables import QuantityTable
+from calm.records.value_tests import left_out
 from calm.units import QuantityError, QuantityRange
 
 USUAL_DENSITY = {"water": definition.CATALOGUE_DENSITY, "air": 1.225}
@@ -127,13 +127,34 @@ def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> Qua
     return QuantityTable(table.columns, table.rows, problem, section.problems)
 
 
-def density_notices(
+_LIGHTEST = 990.0
+"""Density of fresh water at 45 °C; no mooring stands in lighter water [kg/m³]."""
+_HEAVIEST = 1040.0, 0.0047
+"""Density of the heaviest sea water at the surface, Red Sea in winter 1030 kg/m³ and a margin, and
+what the pressure adds for each metre [kg/m³], [kg/m⁴]: 1050 kg/m³ at 5000 m. Brines are heavier."""
+
+
+def density_doubts(
     density: float | profile_tables.DepthTable | profile_tables.SeaWater, depth: float | None
 ) -> Iterator[str]:
-    """Yield what is odd about the density of the water as it was read, in sentences.
+    """Yield doubtful values of the water's density, in sentences.
 
-    Its depth [m] is None where it is not known.
+    The water depth [m] is None if unknown.
     """
+    given: tuple[tuple[float, float], ...] = ()
+    if isinstance(density, profile_tables.DepthTable):
+        given = tuple(zip(density.depth, density.value, strict=True))
+    elif isinstance(density, float):
+        given = ((depth or 0.0, density),)
+    at_surface, by_metre = _HEAVIEST
+    for below, value in given:
+        if not _LIGHTEST <= value <= at_surface + by_metre * below:
+            what = "brine" if value > _LIGHTEST else "hot fresh water"
+            yield (
+                f"The density of {value:.5g} kg/m^3 is that of {what}: sea water has 1000 to 1030 "
+                "kg/m^3 at the surface, and 4.5 kg/m^3 more for each 1000 m."
+            )
+            break
     if isinstance(density, profile_tables.SeaWater):
         profiles = {"temperature": density.temperature, "salinity": density.salinity}
         yield from _sea_water_notices(density)

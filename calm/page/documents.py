@@ -48,7 +48,7 @@ def _diagram(moorings: list[Design]) -> bytes:
 
 def _bill(moorings: list[Design]) -> bytes:
     from calm.checks import design_check
-    from calm.report.check_report import inventory_csv
+    from calm.report.check_files import inventory_csv
 
     return inventory_csv([design_check.check(*moorings)]).encode()
 

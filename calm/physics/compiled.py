@@ -225,10 +225,10 @@ def cache_folder() -> Path | None:
         return None
 
 
-def is_kept() -> bool:
-    """Whether compiled laws are cached from an earlier process."""
+def is_cached(law: str) -> bool:
+    """Whether the compiled code of a law is in the cache folder, from this or another process."""
     folder = cache_folder()
-    return folder is not None and next(folder.rglob("*.nbi"), None) is not None
+    return folder is not None and next(folder.rglob(f"*.{law}-*.nbi"), None) is not None
 
 
 def _user_cache() -> Path:

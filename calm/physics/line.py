@@ -4,6 +4,7 @@ record.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 from functools import partial, wraps
 from math import inf
@@ -144,7 +145,8 @@ class Trace:
     @staticmethod
     def of(record: Record, nodes: int) -> Trace:
         """Build the trace of a record with a number of nodes."""
-        columns = np.array([column[:nodes] for column in record])
+        compiled = isinstance(record, np.ndarray)
+        columns = record[:, :nodes].copy() if compiled else np.array([c[:nodes] for c in record])
         return Trace(
             position=columns[:3].T.copy(),
             force=columns[3:6].T.copy(),
@@ -169,10 +171,33 @@ class _Arrays:
         """Complete the arguments by columns that depend on other columns, before conversion."""
         return given
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Pickle the fields only, without what `once_per_input` has stored."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
+
     def _same_length(self, *names: str) -> None:
         lengths = {name: len(getattr(self, name)) for name in names}
         if len(set(lengths.values())) > 1:
             raise ValueError(f"{type(self).__name__}: arrays differ in length: {lengths}")
+
+
+_Given = TypeVar("_Given", bound=_Arrays)
+_Made = TypeVar("_Made")
+
+
+def once_per_input(make: Callable[[_Given], _Made]) -> Callable[[_Given], _Made]:
+    """Store the result of a function of a `Line` or a `Water` with it, as neither ever changes."""
+    name = f"{make.__module__}.{make.__qualname__}"
+
+    @wraps(make)
+    def stored(given: _Given) -> _Made:
+        kept = vars(given)
+        if name not in kept:
+            kept[name] = make(given)
+        result: _Made = kept[name]
+        return result
+
+    return stored
 
 
 _DTYPES: dict[str, Any] = {"Floats": np.float64, "Integers": np.intp, "Booleans": np.bool_}
@@ -353,6 +378,16 @@ class Line(_Arrays):
         total: Floats = (self.buoyancy + excess * self.volume) * whole
         on = self.clamp_piece
         np.add.at(total, on, self.clamp_buoyancy + excess[on] * self.clamp_volume)
+        return total
+
+    @property
+    def plumb_drag(self) -> Floats:
+        """(n,) drag of each whole piece with its clamps in a flow along the plumb line
+        [N/(m/s)²], in reference water and by constant coefficients.
+        """
+        along = np.where(self.directional, self.tangential_drag, self.normal_drag)
+        total: Floats = along * np.where(self.flexible, self.length, 1.0)
+        np.add.at(total, self.clamp_piece, self.clamp_drag)
         return total
 
     def with_length(self, piece: int, length: float) -> Line:

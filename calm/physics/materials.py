@@ -24,6 +24,8 @@ class Material:
     density : density of the solid [kg/m³], None if it varies
     potential : middle of its corrosion potential in sea water [V]
     stiffnesses : published stiffnesses of its ropes
+    strength : largest tensile strength of its rope wire or yarn [Pa], None if no ropes are made of
+        it
     """
 
     name: str
@@ -32,6 +34,7 @@ class Material:
     density: float | None = None
     potential: float | None = None
     stiffnesses: tuple[StiffnessLaw, ...] = ()
+    strength: float | None = None
 
 
 MATERIALS = (
@@ -40,7 +43,7 @@ MATERIALS = (
         r"(?:super )?duplex(?: stainless)?(?: steel)?|stainl\w*(?: steel)?|inox\w*|nirosta"
         r"|(?:a[24]|v[24]a|nitronic ?\d*|(?:aisi |ss ?)?(?:304|316)l?|1\.4\d\d\d?)\b(?: stainless)?"
         r"(?: steel)?",
-        "metal", STEEL_DENSITY, -0.05,
+        "metal", STEEL_DENSITY, -0.05, strength=2160e6,
     ),
     Material("titanium", r"titan\w*|ti\b", "metal", 4500.0, 0.0),
     Material("nickel alloy", r"(?:inconel|hastelloy|monel|nickel)\w*", "metal", 8400.0, 0.0),
@@ -50,36 +53,37 @@ MATERIALS = (
     Material(
         "steel",
         r"galv\w*\.?(?: steel)?|hdg|steel\w*|stahl\w*|acier|acero|nilspin",
-        "metal", STEEL_DENSITY, -0.66,
+        "metal", STEEL_DENSITY, -0.66, strength=2160e6,
     ),
     Material("aluminium", r"alumini?um\w*|alu\b", "metal", 2700.0, -0.88),
     Material("zinc", r"zin[ck]", "metal", 7140.0, -1.0),
     Material("lead", r"lead\b|blei|plomb", "metal", LEAD_DENSITY),
     Material(
         "nylon", r"nylon\w*|polyamide?\w*|perlon|pa6?\b", "fibre", 1140.0,
-        stiffnesses=((1.18e8, 0.0), (2.71e8, 0.0), (1.035e9, 1.15e9)),
+        stiffnesses=((1.18e8, 0.0), (2.71e8, 0.0), (1.035e9, 1.15e9)), strength=960e6,
     ),
     Material(
         "polyester", r"polyester\w*|dacron|terylene", "fibre", 1380.0,
-        stiffnesses=((1.09e9, 0.0), (5.42e8, 0.0), (4.312e9, 0.0)),
+        stiffnesses=((1.09e9, 0.0), (5.42e8, 0.0), (4.312e9, 0.0)), strength=1130e6,
     ),
     Material(
         "polypropylene", r"polypropyl\w*|pp\b", "fibre", 910.0,
-        stiffnesses=((1.06e9, 0.0), (2.71e8, 0.0)),
+        stiffnesses=((1.06e9, 0.0), (2.71e8, 0.0)), strength=620e6,
     ),
     Material(
         "HMPE", r"hmpe|uhmw\w*|dyneema|spectra|plasma|amsteel\w*", "fibre", 975.0,
-        stiffnesses=((7.85e10, 0.0), (3.248e10, 3.6456e10)),
+        stiffnesses=((7.85e10, 0.0), (3.248e10, 3.6456e10)), strength=3500e6,
     ),
     Material(
-        "polyethylene", r"polyethyl\w*|hdpe|pe\b", "fibre", 950.0, stiffnesses=((5.42e8, 0.0),)
+        "polyethylene", r"polyethyl\w*|hdpe|pe\b", "fibre", 950.0,
+        stiffnesses=((5.42e8, 0.0),), strength=620e6,
     ),
     Material("polyolefin", r"polyolefin\w*", "fibre"),
     Material(
         "aramid", r"aramid\w*|kevlar|technora|twaron", "fibre", 1440.0,
-        stiffnesses=((5.42e10, 0.0),),
+        stiffnesses=((5.42e10, 0.0),), strength=3100e6,
     ),
-    Material("Vectran", r"vectran|lcp\b", "fibre", 1410.0),
+    Material("Vectran", r"vectran|lcp\b", "fibre", 1410.0, strength=3200e6),
     Material("glass", r"(?:fibre|fiber)?glass|verre|glas\b|vitrovex", "other", 2230.0),
     Material("syntactic foam", r"(?:syntactic|pvc)? ?foam|syntactic|mousse", "other"),
     Material("concrete", r"concrete|b[ée]ton|cement", "other", CONCRETE_DENSITY),
@@ -98,7 +102,9 @@ Densities are handbook values. Potentials are the middle of the galvanic series 
 (ASTM G82); galvanised steel counts as steel, which its zinc protects. Stiffnesses of ropes are from
 the tables of OrcaFlex, as adopted by MoorPy (nylon, polyester, polypropylene); the moduli of R.
 Dewey's Mooring Design & Dynamics, on πD²/4; and MoorPy's default properties (nylon 5, polyester 14,
-HMPE 56 times its breaking load).
+HMPE 56 times its breaking load). Strengths are the highest rope grade of wire, 2160 MPa
+(EN 12385-2, grades 1770 to 2160), and the largest tenacity of industrial yarns (McKenna, Hearle and
+O'Hear 2004, Handbook of Fibre Rope Technology, chapter 2).
 """
 
 MATERIAL_NAMES = ", ".join(material.name for material in MATERIALS)

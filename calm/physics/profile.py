@@ -6,7 +6,7 @@ from math import inf, isfinite, sqrt
 from typing import NamedTuple
 
 from calm.physics.compiled import packed, within
-from calm.physics.line import Floats, Water
+from calm.physics.line import Floats, Water, once_per_input
 from calm.physics.seawater import REFERENCE_DENSITY
 
 SLIVER = 0.01
@@ -256,6 +256,10 @@ class Profile:
         """
         *_, density, _ = water_at(self.sea, depth, 0)
         return (density - REFERENCE_DENSITY) * self.sea.gravity
+
+
+profile_of = once_per_input(Profile)
+"""Return the `Profile` of a `Water`."""
 
 
 def _values_and_slopes(depths: list[float], column: Floats) -> tuple[list[float], list[float]]:

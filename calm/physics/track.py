@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from calm.physics.compiled import packed
-from calm.physics.line import Line
+from calm.physics.line import Line, once_per_input
 from calm.physics.stretch import ElongationCurve, Knot
 from calm.physics.strumming import AT_REST, Vibration
 
@@ -168,6 +168,7 @@ class Track:
         return replace(self, stages=stages, cables=cables)
 
     @staticmethod
+    @once_per_input
     def of(line: Line) -> Track:
         """Lay out a line, free end first; its head (see `head_count`) becomes one rod."""
         vibration = AT_REST if line.strumming is None else line.strumming.vibration(0.0)

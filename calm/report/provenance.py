@@ -70,6 +70,11 @@ def source_text(file: MooringFile) -> str | None:
         return None
 
 
+def file_name(file: MooringFile) -> str:
+    """The name of the mooring file without its folder."""
+    return Path(file.path).name
+
+
 def input_hash(files: Sequence[MooringFile]) -> str:
     """SHA-256 of the inputs, in hexadecimal digits, as read in each of the environments.
 
@@ -99,7 +104,7 @@ def canonical(value: Any) -> str:
 _BESIDE = (
     "obstacles in the beams of a current profiler, such as its own line or float",
     "growth where no `fouling` is given", "the soil below the anchor", "trawls, ice and ships",
-    "terminations and splices", "batteries and memory",
+    "terminations and splices", "batteries and memory", "magnetic steel beside a compass",
 )  # fmt: skip
 
 UNSEEN = (

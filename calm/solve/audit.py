@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from calm.physics.compiled import record_type
-from calm.physics.line import Floats, Line, Water
+from calm.physics.line import Floats, Line, Water, once_per_input
 from calm.physics.referee import Moored, RefereeBody, RefereeShape, element_loads, strumming
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
@@ -38,7 +38,7 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
 
     records: Any = np.array(knots, record_type(Knot))
     return Moored(
-        bodies if compiled else list(map(RefereeBody._make, bodies.tolist())),
+        bodies.copy() if compiled else list(map(RefereeBody._make, bodies.tolist())),
         records if compiled else knots,
         len(line.length),
         head_count(line),
@@ -64,6 +64,7 @@ def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Re
     return Referee(moored, copy(moored.bodies), first, last)
 
 
+@once_per_input
 def bodies_of(line: Line) -> tuple[Any, list[Knot]]:
     """The pieces of a line and, after them, its clamps, and the knots of its elongation curves.
 

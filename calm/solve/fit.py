@@ -18,11 +18,11 @@ from calm.solve.solution import (
     Settings,
     Status,
     refuse_unsupported,
-    runs_compiled,
     standing_lift,
     too_heavy,
 )
 from calm.solve.tow import Towing, solve_tow
+from calm.solve.two_speeds import runs_compiled
 
 
 def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings: Settings) -> float:

@@ -19,14 +19,15 @@ from typing import Any
 
 import numpy as np
 
-from calm.physics.line import Floats, Line, MarchError, Water
+from calm.physics.line import Booleans, Floats, Integers, Line, MarchError, Water
 from calm.physics.march import Cuts
 from calm.physics.track import head_count
 from calm.solve.audit import loads_of
 from calm.solve.free_march import Rising
 from calm.solve.free_search import FreePlace, terminal
 from calm.solve.search import LARGEST_CLOSURE
-from calm.solve.solution import Settings, Solution, Status, nodes_of, runs_compiled
+from calm.solve.solution import Settings, Solution, Status, nodes_of
+from calm.solve.two_speeds import runs_compiled
 
 
 @dataclass(frozen=True)
@@ -124,10 +125,31 @@ def _tangles(solution: Solution) -> tuple[int, ...]:
     line, piece = solution.line, solution.element_piece
     first, last = solution.piece_nodes.T
     pushed = (solution.force[first] + solution.force[last])[:, 2] < 0.0
-    back = pushed & (line.length == 0.0)
-    back[piece[np.diff(solution.position[:, 2]) > 0.0]] = True
-    back[: head_count(line)] = False  # nothing precedes the free end
-    return tuple(np.flatnonzero(back).tolist())
+    rise = np.diff(solution.position[:, 2])
+    return looped(line, piece, rise, pushed & (line.length == 0.0))
+
+
+SHORTEST_LOOP = 2.0
+"""Shortest loop of a line that may tangle [m]; a shorter one is a shackle that leans on the float
+below it."""
+
+
+def looped(
+    line: Line, piece: Integers, rise: Floats, pushed: Booleans | None = None
+) -> tuple[int, ...]:
+    """Find the pieces in loops of a line, or none if all loops are shorter than `SHORTEST_LOOP`.
+
+    Parameters
+    ----------
+    piece, rise : (k,) piece of every element, and height of its lower end above its upper end [m]
+    pushed : (n,) pieces without length that are under compression; they belong to a loop
+    """
+    up = np.zeros(len(line.length))
+    np.add.at(up, piece, np.maximum(rise, 0.0))
+    back = up > 0.0 if pushed is None else (up > 0.0) | pushed
+    back[: head_count(line)] = False  # nothing is ahead of the free end
+    loops = up[back].sum() >= SHORTEST_LOOP
+    return tuple(np.flatnonzero(back).tolist()) if loops else ()
 
 
 def part_of(line: Line, first: int, stop: int) -> Line:

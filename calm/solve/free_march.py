@@ -112,13 +112,10 @@ class Rising:
 
         The tension is estimated for the line at rest, minus the share of each piece in the drag.
         """
-        line = self.line
-        along = np.where(line.directional, line.tangential_drag, line.normal_drag)
-        drag = along * np.where(line.flexible, line.length, 1.0)
-        np.add.at(drag, line.clamp_piece, line.clamp_drag)
+        drag = self.line.plumb_drag
         pace = float(self.lifts.sum()) / max(float(drag.sum()), 1e-300)
         carried = np.cumsum(self.lifts - pace * drag)
-        first = max(head_count(line), 1)
+        first = max(head_count(self.line), 1)
         return first + int(np.argmax(carried[first - 1 :]))
 
     @cached_property

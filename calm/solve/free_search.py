@@ -7,8 +7,9 @@ from math import copysign, sqrt
 
 import numpy as np
 
-from calm.physics.line import Floats, MarchError
+from calm.physics.line import Floats, Line, MarchError, Water
 from calm.physics.march import NO_CUTS, Cuts
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve.free_march import Rising
 from calm.solve.least_change import root_near
 from calm.solve.solution import Status
@@ -68,38 +69,68 @@ def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
     return replace(rising, water=replace(water, u=u, v=v))
 
 
-def _plumb(rising: Rising, angle_step: float) -> FreePlace:
-    """Find the motion of the line as if it were plumb and drifted with the mean current.
+def plumb_speed(line: Line, water: Water, top: float) -> float:
+    """Terminal speed of a line that hangs plumb in still water [m/s], + up.
 
-    Drag is almost proportional to the square of the speed, so secants in the squared speed converge
-    at once. Smooth pieces in the drag crisis may allow several speeds; the search finds one.
+    The sum of weight, buoyancy and drag is zero, whether or not the parts pull at one another. Drag
+    is almost proportional to the square of the speed, so secants in the squared speed converge at
+    once. Smooth pieces in the drag crisis may allow several speeds; the search finds one.
+
+    Parameters
+    ----------
+    line, water : see `calm.physics.line`; the current and the stretch are neglected
+    top : depth of the line's upper end [m]
+
+    Raises
+    ------
+    NoEquilibrium
+        ``no-equilibrium`` if no piece has drag.
     """
-    none = np.zeros_like(rising.water.u)
-    upright = replace(rising, water=replace(rising.water, u=none, v=none))
-    depth = rising.guessed_depth
-
-    def meeting(squared: float) -> tuple[FreePlace, float]:
-        """Return the position at a signed squared speed, and the vertical imbalance there [N]."""
-        velocity = np.array([0.0, 0.0, copysign(sqrt(abs(squared)), squared)])
-        met = upright.meet(upright.flow(velocity), depth, COARSE * angle_step)
-        return FreePlace(velocity, depth + met.gap), float(met.force[2])
+    whole = np.where(line.flexible, line.length, 1.0)
+    middle = top + np.cumsum(line.length) - 0.5 * line.length
+    density, on = water.density_at(middle), line.clamp_piece
+    lift = float(line.net_force((density - REFERENCE_DENSITY) * water.gravity).sum())
+    across = np.concatenate([np.where(line.directional, 0.0, line.normal_drag), line.clamp_drag])
+    along = np.append(np.where(line.directional, line.tangential_drag, 0.0), 0.0 * line.clamp_drag)
+    upward = np.append(line.lift, line.clamp_lift)
+    share = np.append(whole * density, density[on]) / REFERENCE_DENSITY
+    viscosity = water.viscosity_at(middle)
+    curves = (line.drag_curve or (None,) * len(whole)) + line.clamp_drag_curve
+    viscosity = np.append(viscosity, viscosity[on])
+    smooth = [
+        (place, curve, curve.diameter / viscosity[place])
+        for place, curve in enumerate(curves)
+        if curve is not None
+    ]
 
     def lifted(_: None, squared: float) -> float:
-        return meeting(squared)[1]
+        """Vertical imbalance at a signed squared speed [N]."""
+        drag = across.copy()
+        for place, curve, reynolds in smooth:
+            drag[place] *= curve.factor(reynolds * sqrt(abs(squared)))
+        return lift + float(share @ (upward * abs(squared) - (drag + along) * squared))
 
-    resting = lifted(None, 0.0)
-    slope = lifted(None, copysign(1.0, resting)) - resting
+    slope = lifted(None, copysign(1.0, lift)) - lift
     limit = FASTEST**2
     found, squared, _, _ = root_near(
-        lifted, None, 0.0, -abs(slope), -limit, limit, NEAR * abs(resting), 1e-9
+        lifted, None, 0.0, -abs(slope), -limit, limit, CLOSE * abs(lift), 1e-12
     )
     if not found:
         raise Status.NO_EQUILIBRIUM.because(
             "The rise speed of the line is unlimited, since its pieces have no drag.",
             advice="Set the drag of its pieces.",
         )
-    place, _ = meeting(squared)
-    return replace(place, velocity=place.velocity + _mean_current(rising, place, angle_step))
+    return copysign(sqrt(abs(squared)), squared)
+
+
+def _plumb(rising: Rising, angle_step: float) -> FreePlace:
+    """Find the motion of the line as if it were plumb and drifted with the mean current."""
+    still, depth = rising.water.still(), rising.guessed_depth
+    velocity = np.array([0.0, 0.0, plumb_speed(rising.line, still, rising.top)])
+    upright = replace(rising, water=still)
+    met = upright.meet(upright.flow(velocity), depth, COARSE * angle_step)
+    place = FreePlace(velocity, depth + met.gap)
+    return replace(place, velocity=velocity + _mean_current(rising, place, angle_step))
 
 
 def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats:
@@ -119,13 +150,21 @@ def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats
     return mean * [1.0, 1.0, 0.0]
 
 
+_FOLLOWED = 8
+"""Largest number of updates of the depth of a plumb line's lower end; two or three suffice."""
+
+
 def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
     """Find the motion near a known one, on the segments that the march chooses there, or None.
 
     A march that chooses its segments freely is not quite continuous, so the line is closed on given
     segments: first on coarse ones, then on those that the march chooses at that solution.
+
+    For a plumb line only the forces are closed, and the depth of the lower end follows: if the line
+    doubles back within a cable, that depth is not continuous.
     """
-    unknown = np.array([not rising.plumb, not rising.plumb, True, True])
+    sheared = not rising.plumb
+    unknown = np.array([sheared, sheared, True, sheared])
     speed, span = max(float(np.linalg.norm(place.velocity)), SLOWEST), rising.water.depth
     units = np.array([speed, speed, speed, span])[unknown]
     values = np.append(place.velocity, place.depth)
@@ -147,10 +186,17 @@ def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePl
             cuts = rising.meet(rising.flow(here.velocity), here.depth, step).cuts
         except MarchError:
             return None
-        root = system_root(partial(left, step, cuts), x, small, slopes)
-        if root is None:
-            return None
-        x, slopes = root
+        for _ in range(1 if sheared else _FOLLOWED):
+            root = system_root(partial(left, step, cuts), x, small, slopes)
+            if root is None:
+                return None
+            x, slopes = root
+            here = at(x)
+            if not sheared:
+                gap = rising.meet(rising.flow(here.velocity), here.depth, step, cuts).gap
+                values[3] += gap
+                if abs(gap) <= CLOSE * span:
+                    break
     return at(x), cuts
 
 

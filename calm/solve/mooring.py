@@ -14,7 +14,6 @@ import numpy as np
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import NO_ROOM, Floats, Line, Trace, Water
 from calm.physics.passing import FAILURE
-from calm.physics.track import Track
 from calm.solve.accuracy import Errors, take_as_marched
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root, miss_at, not_closed, planned, polish, whole_line
@@ -43,10 +42,10 @@ from calm.solve.solution import (
     Solution,
     Status,
     refuse_unsupported,
-    runs_compiled,
     standing_lift,
 )
 from calm.solve.starts import fill_starts
+from calm.solve.two_speeds import Solver, runs_compiled
 
 MOST_DEPTHS = 500
 """Largest length of a line, in water depths: segments are at most a hundredth of the depth."""
@@ -87,11 +86,12 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     """
     settings = settings or Settings()
     refuse_endless(line, water)
-    refuse_unsupported(line, water, standing_lift(line, water))
+    lift = standing_lift(line, water)
+    refuse_unsupported(line, water, lift)
     compiled = runs_compiled(settings, line)
     room = ROOM
     while True:
-        problem = problem_of(line, water, settings, compiled=compiled, room=room)
+        problem = problem_of(line, water, settings, compiled=compiled, room=room, lift=lift)
         search = search_of(problem, compiled)
         referee = referee_of(line, water, 0.0, compiled)
         found = find_compiled(search, referee) if compiled else find_shape(search, referee)
@@ -237,7 +237,7 @@ class Nearby:
         self.solution = solve_mooring(line, water, settings)
         self._water, self._settings = water, settings
         self._room = 2 * len(self.solution.cut) + 64
-        self._compiled = compiled = runs_compiled(settings, line)
+        self._compiled = compiled = runs_compiled(settings, line, Solver.NEARBY)
         problem = problem_of(line, water, settings, compiled=compiled, room=self._room)
         search = search_of(problem, compiled)
         closed: Closed = outcome(close_coarsely, compiled, search, self.solution.landed)
@@ -270,13 +270,13 @@ class Nearby:
         NoEquilibrium
             ``not-converged`` or ``slack``.
         """
-        search, closed = self._closed(line, self._water, None)
+        search, closed = self._closed(line, self._water)
         trace = Trace.of(search.problem.work.records[FINE], closed.nodes)
         position = trace.position
         position[:, :2] -= position[-1, :2]
         return position, _used(search.problem, closed, line)
 
-    def solved(self, line: Line, water: Water, track: Track | None = None) -> Solution:
+    def solved(self, line: Line, water: Water) -> Solution:
         """Solve a different line on the cuts of this line.
 
         The error estimates are those of this line, since the cuts are the same.
@@ -284,14 +284,13 @@ class Nearby:
         Parameters
         ----------
         line, water : a line of the same pieces, with all cables scaled by one factor, and its water
-        track : the track of the line, if known
 
         Raises
         ------
         NoEquilibrium
             No shape passes every check, or none of the same kind is near.
         """
-        search, closed = self._closed(line, water, track)
+        search, closed = self._closed(line, water)
         base, compiled = self.solution, self._compiled
         if closed.landed != base.landed:
             raise Status.NOT_CONVERGED.because("Only one of the lines has a part on the seabed.")
@@ -304,11 +303,9 @@ class Nearby:
         found = outcome(audited, compiled, problem, referee, found)
         return solution_found(found, problem, line, water, self._settings)
 
-    def _closed(self, line: Line, water: Water, track: Track | None) -> tuple[Search, Closed]:
+    def _closed(self, line: Line, water: Water) -> tuple[Search, Closed]:
         compiled = self._compiled
-        problem = problem_of(
-            line, water, self._settings, compiled=compiled, track=track, room=self._room
-        )
+        problem = problem_of(line, water, self._settings, compiled=compiled, room=self._room)
         given, cables = self.solution.line, line.flexible
         longer = line.length[cables].sum() / given.length[cables].sum() if cables.any() else 1.0
         work = problem.work

@@ -16,7 +16,7 @@ import numpy as np
 from calm.errors import NoEquilibrium
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import FAILURES, GOES_ON, NO_ROOM, Floats, Line, Trace, Water
-from calm.physics.profile import Profile
+from calm.physics.profile import profile_of
 from calm.solve import leg_closing, leg_numbers
 from calm.solve.finish import refuse_unbalanced
 from calm.solve.leg_closing import NetTask, copy_values, do_by_address, do_task
@@ -30,9 +30,8 @@ from calm.solve.solution import (
     Settings,
     Solution,
     Status,
-    expect_many,
-    runs_compiled,
 )
+from calm.solve.two_speeds import Solver, count_lines, runs_compiled
 
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
@@ -82,7 +81,7 @@ class NetSearch:
         self, legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
         room: int = ROOM, rough: bool = False,
     ) -> None:  # fmt: skip
-        self.compiled, self.settings = runs_compiled(settings), settings
+        self.compiled, self.settings = runs_compiled(settings, solver=Solver.LEGS), settings
         self.laid = [LaidLeg.of(leg, water, settings, rough) for leg in legs]
         self.nodes, self.room = nodes, room
         self.net = lay_net(self.laid, nodes, self.compiled, room)
@@ -90,7 +89,7 @@ class NetSearch:
 
     def put_in(self, water: Water) -> None:
         """Replace the water by other water of the same depth and density."""
-        profile = Profile(water)
+        profile = profile_of(water)
         self.water, self.sea = water, profile.packed if self.compiled else profile.sea
 
     def begin(self, start: NetStart) -> Floats:
@@ -230,7 +229,7 @@ def solve_net(
         No equilibrium was found, or the one found fails a check.
     """
     settings = settings or Settings()
-    expect_many(4.0 * len(legs))
+    count_lines(4.0 * len(legs), Solver.LEGS)
 
     def solved(net: NetSearch) -> NetSolution:
         found = net.solution(settled_from(net, near))

@@ -10,7 +10,7 @@ from calm.physics.compiled import record_type
 from calm.physics.hull import NEVER_AFLOAT, HullRow, SurfaceFloat
 from calm.physics.line import COLUMNS, Bed, Floats, Line, Water
 from calm.physics.passing import LEFT
-from calm.physics.profile import Interval, Profile, Sea
+from calm.physics.profile import Interval, Sea, profile_of
 from calm.physics.track import ROD, Course, Load, Track
 from calm.solve.solution import (
     SUPPORTED,
@@ -239,34 +239,34 @@ def problem_of(
     settings: Settings,
     *,
     compiled: bool,
-    track: Track | None = None,
     rough: bool = False,
     room: int = ROOM,
     intervals: int = 0,
+    lift: Floats | None = None,
 ) -> LineProblem:
     """Prepare a line and its water for the search.
 
     Parameters
     ----------
     compiled : whether it is for compiled code; its sequences are then arrays
-    track : the track of the line, if known
     rough : whether it is solved in a batch, without an audit
     room : number of segments that the work arrays hold
     intervals : largest number of intervals of other water in which it will be solved
+    lift : the `standing_lift` of the line, if known
     """
-    track = track or Track.of(line)
-    profile = Profile(water)
+    track = Track.of(line)
+    profile = profile_of(water)
     span = float(line.length.sum()) if line.towed else water.depth
     floating = None if line.towed else line.floating
     surfacing = []
-    lift = np.zeros(0)
+    upright = np.zeros(0)
     moving = at_rest = SUPPORTED
     standing = 0.0
     if not line.towed:
-        lift = standing_lift(line, water)
-        surfacing = _surfacing(line, water, track, lift)
-        standing = standing_length(line, lift)
-        moving, at_rest = (support_of(lift, still)[0] for still in (False, True))
+        upright = standing_lift(line, water) if lift is None else lift
+        surfacing = _surfacing(line, water, track, upright)
+        standing = standing_length(line, upright)
+        moving, at_rest = (support_of(upright, still)[0] for still in (False, True))
     blown = floating is not None and floating.blown
     excess = profile.excess_at(water.depth) if np.isfinite(water.depth) else 0.0
     bed = Bed(
@@ -284,7 +284,7 @@ def problem_of(
         near=ROUGHLY_NEAR * span if rough else 0.0,
         length=float(line.length.sum()),
         standing=float(standing),
-        lift=float(lift.sum()),
+        lift=float(upright.sum()),
         rides=floating is not None,
         at_rest=not (water.moving or blown),
         blown=bool(blown),

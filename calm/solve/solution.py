@@ -1,23 +1,14 @@
-"""Settings of a solve, and its result: a solution, or a status that explains why there is none.
+"""Settings of a solve, and its result: a solution, or a status that explains why there is none."""
 
-If the settings do not decide whether the solver is interpreted or compiled by numba, it is compiled
-as soon as this saves time: loading the compiled code costs as much as `WARM` moorings, compiling
-for the first time as much as `COLD`. `CALM_COMPILED=never` and `CALM_COMPILED=always` override this
-choice.
-"""
-
-import os
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
-from importlib.util import find_spec
 from math import nan, radians
 from typing import NamedTuple
 
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import is_kept
 from calm.physics.hull import Riding
 from calm.physics.line import Floats, Integers, Line, Trace, Water
 from calm.physics.seawater import REFERENCE_DENSITY
@@ -36,7 +27,7 @@ class Settings:
     tolerance : allowed miss of the anchor, as a share of the water depth
     seabed_friction : friction coefficient of a line on the seabed [-]
     compiled : whether the solver is compiled or interpreted, with identical
-        results; None leaves the choice to `runs_compiled`
+        results; None leaves the choice to `calm.solve.two_speeds`
     """
 
     angle_step: float = radians(1.0)
@@ -251,49 +242,6 @@ class Status(Enum):
     # it folds in still water
     FOLDED,
 ) = range(16)  # fmt: skip
-
-
-WARM, COLD = 60, 1200
-"""Number of moorings above which it pays to load the compiled solver, and to compile it."""
-AS_MANY = 8
-"""Number of pieces and clamps of a typical mooring, to which solution times are relative."""
-
-
-class _Count:
-    """Number of lines that this process has solved or will solve, and whether compiling pays."""
-
-    def __init__(self) -> None:
-        self.solves = 0.0
-        self.asked_at = 0.0
-        self.pays = False
-
-
-_count = _Count()
-
-
-def expect_many(solves: float) -> None:
-    """Announce that a number of lines will be solved."""
-    _add(solves)
-    _count.pays = _count.pays or solves >= COLD
-
-
-def runs_compiled(settings: Settings, line: Line | None = None) -> bool:
-    """Whether the solver is compiled for a line that is about to be solved."""
-    if settings.compiled is not None:
-        return settings.compiled
-    if line is not None:
-        _add(max((len(line.length) + len(line.clamp_piece)) / AS_MANY, 1.0))
-    wish = os.environ.get("CALM_COMPILED")
-    if wish == "never" or not (_count.pays or wish == "always"):
-        return False
-    return find_spec("numba") is not None
-
-
-def _add(solves: float) -> None:
-    _count.solves += solves
-    if not _count.pays and _count.solves >= max(WARM, 2.0 * _count.asked_at):
-        _count.asked_at = _count.solves
-        _count.pays = is_kept()
 
 
 def standing_lift(line: Line, water: Water) -> Floats:

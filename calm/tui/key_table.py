@@ -68,7 +68,7 @@ equipment | N | serial number |  | Serial number, calibration, sampling, battery
 find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
 find_next(1) | greater_than_sign,f3 | find next |  | To the next row that has them.
 find_next(-1) | less_than_sign | find last |  | To the one before.
-weakest | W | weakest |  | To the piece with the least margin of its strength.
+weakest | W | weakest |  | To the piece whose strength is used most.
 column | number_sign | fill column |  | Serial numbers, lengths, labels or codes of the marked rows,
   or of all of the component under the cursor, one below the other or pasted.
 repeat | R | repeat |  | Repeat the piece, or those marked, as often as you say.

@@ -211,7 +211,7 @@ def mooring_in_sea(
                 twice_cut_off=twice.loads(at, mean, own),
                 measured_low=full.loads(at, mean, own, band.low) if band else None,
                 measured_high=full.loads(at, mean, own, band.high) if band else None,
-                **asdict(full.loads(at, mean, own)),
+                **vars(full.loads(at, mean, own)),
             )
         )
     depth = -0.5 * (line.position[1:, 2] + line.position[:-1, 2])

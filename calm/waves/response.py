@@ -12,7 +12,6 @@ import numpy as np
 
 from calm.physics.line import Floats
 from calm.records.sea_states import SeaState
-from calm.solve.block_tridiagonal import solve_blocks
 from calm.waves.buoy import SIDEWAYS_ADDED, Buoy
 from calm.waves.lumped_line import Complexes, LumpedLine
 
@@ -218,7 +217,7 @@ def respond(
     afloat = None if buoy is None else _Afloat.of(line.position[0], buoy, waves)
     axes, rate = _axes(line), 1j * omega[:, None, None]
     pitch, held = np.zeros(len(omega), complex), None
-    undamped = _undamped(line, omega)
+    undamped = _undamped(line)
     for _ in range(MOST_ITERATIONS):
         damping = drag_factor * _linearised(line, buoy, flow[:-1])
         if afloat is not None:
@@ -264,7 +263,7 @@ def _axes(line: LumpedLine) -> Floats:
 
 def _deviations(axes: Floats, relative: Complexes, weight: Floats) -> Floats:
     """(n, 3) standard deviations of the flow past nodes, along their axes [m/s]."""
-    own = np.einsum("nac,fnc->fna", axes, relative)
+    own = _times(axes, relative)
     return np.asarray(np.sqrt((np.abs(own) ** 2 * weight[:, None, None]).sum(0)) + STILL)
 
 
@@ -321,10 +320,18 @@ def _inertia_force(line: LumpedLine, waves: Waves, water: Complexes) -> Complexe
     return np.asarray(1j * waves.omega[:, None, None] * accelerated)
 
 
-def _undamped(line: LumpedLine, omega: Floats) -> tuple[Floats, Floats]:
-    """Return the blocks of springs and masses: of the nodes (f, n, 3, 3), at each frequency, and
-    between neighbours (n-1, 3, 3).
-    """
+_BAND = 5
+"""Number of diagonals on each side of the main diagonal: a node has three directions and two
+neighbours.
+"""
+
+
+_ENTRIES = [(row, column) for row in range(3) for column in range(3)]
+"""Rows and columns of a block of the matrix."""
+
+
+def _undamped(line: LumpedLine) -> tuple[Floats, Floats]:
+    """Banded matrices (3n-3, 16) of the springs and of the masses."""
     eye, t, s = np.eye(3), line.tangent, line.spring
     outer = t[:, :, None] * t[:, None, :]
     mass = line.mass[:, None, None] * eye + line.added_across[:, None, None] * (eye - outer)
@@ -334,7 +341,7 @@ def _undamped(line: LumpedLine, omega: Floats) -> tuple[Floats, Floats]:
     springs = line.stiffness[:, None, None] * axial + sideways[:, None, None] * (eye - axial)
     held = springs.copy()
     held[1:] += springs[:-1]
-    return held - omega[:, None, None, None] ** 2 * mass[:-1], -springs[:-1]
+    return _banded(held, springs), _banded(mass[:-1], None)
 
 
 def _solved(
@@ -345,20 +352,47 @@ def _solved(
     forced: Complexes,
     damping: Floats,
 ) -> Complexes:
-    """Solve for the motion (f, n, 3) of the nodes, at each frequency.
+    """Solve for the motion (f, n, 3) of the nodes, with one banded matrix per frequency.
 
+    The matrices share one array that fits into the processor's cache.
     `top` holds the stiffness (f, 3, 3) and the force (f, 3) of the float at the first node.
     """
-    nodes, between = undamped
-    diagonal = nodes + 1j * omega[:, None, None, None] * damping[:-1]
-    push = forced + np.einsum("ncd,fnd->fnc", damping, water)
+    from scipy.linalg.lapack import zgbsv
+
+    springs, masses = undamped
+    damped = _banded(damping[:-1], None)
+    matrix = np.empty(springs.shape, complex)
+    push = forced + _times(damping, water)
     if top is not None:
         push[:, 0] += top[1]
-        diagonal[:, 0] += top[0]
-    beside = np.broadcast_to(between.astype(complex), (len(omega), *between.shape))
     motion = np.zeros(push.shape, complex)
-    motion[:, :-1] = solve_blocks(diagonal, beside, beside, push[:, :-1, :, None])[..., 0]
+    for one, rate in enumerate(omega):
+        np.subtract(springs, rate**2 * masses, out=matrix.real)
+        np.multiply(rate, damped, out=matrix.imag)
+        if top is not None:
+            for row, column in _ENTRIES:
+                matrix[column, 2 * _BAND + row - column] += top[0][one, row, column]
+        pushed = push[one, :-1].ravel()
+        *_, found, singular = zgbsv(_BAND, _BAND, matrix.T, pushed, overwrite_ab=True)
+        motion[one, :-1] = np.nan if singular else found.reshape(-1, 3)
     return motion
+
+
+def _times(matrices: Floats, vectors: Complexes) -> Complexes:
+    """Products (f, n, 3) of real matrices (n, 3, 3) with vectors (f, n, 3)."""
+    return np.asarray(sum(matrices[:, :, i] * vectors[:, :, i, None] for i in range(3)))
+
+
+def _banded(blocks: Floats, springs: Floats | None) -> Floats:
+    """Columns of the banded matrix of (n, 3, 3) blocks, with springs between neighbours."""
+    columns = np.zeros((len(blocks), 3, 3 * _BAND + 1))
+    for row, column in _ENTRIES:
+        at = 2 * _BAND + row - column
+        columns[:, column, at] = blocks[:, row, column]
+        if springs is not None:
+            columns[1:, column, at - 3] = -springs[:-1, row, column]
+            columns[:-1, column, at + 3] = -springs[:-1, row, column]
+    return columns.reshape(-1, 3 * _BAND + 1)
 
 
 def _pull(line: LumpedLine, motion: Complexes) -> Complexes:

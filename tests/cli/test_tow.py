@@ -39,7 +39,7 @@ def test_table_tells_both_ends_of_the_line(calm, write_tow):
     done = calm("run", write_tow())
     assert (done.code, done.err) == (0, "")
     assert done.out.startswith("Test tow: tow at 1.00 m/s towards 90°\n")
-    for words in ("\nwire ", "\nfish ", "Tow point pulled by", "N back", "Body ", "layback"):
+    for words in ("\nwire ", "\nfish ", "Tow point  pulled by", "N back", "Body ", "layback"):
         assert words in done.out
     assert done.out.index("\nwire ") < done.out.index("\nfish ")
     assert "Strumming" not in done.out
@@ -93,7 +93,7 @@ def test_strumming_is_told(calm, write_tow):
     file = write_tow(strumming="bourget-marichal")
     found = json.loads(calm("run", file, "--json", "-").out)["strumming"]
     cn = f"Cn from {found['cn_min']:.3f} to {found['cn_max']:.3f}"
-    told = f"Strumming at {found['frequency']:.2f} Hz, {cn}"
+    told = f"strumming at {found['frequency']:.2f} Hz, {cn}"
     assert told in calm("run", file).out
 
 

@@ -360,7 +360,7 @@ def test_the_check_judges_the_waves_of_the_file(calm, buoy, tmp_path):
     assert found["wave-strength", "rope"]["state"] == "fail"
     one_sea = "{significant_height: 1.5 m, peak_period: 6 s}"
     found = judged(calm, in_its_file(buoy, one_sea, stiff=strong))
-    assert found["fatigue", None]["state"] == "unknown"
+    assert found["fatigue", None]["state"] == "not-judged"
 
 
 def test_the_check_says_what_falls_slack(calm, buoy):

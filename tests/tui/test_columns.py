@@ -139,11 +139,11 @@ def test_the_weakest_piece_is_found(drive):
         await driver.settle()
         await driver.press("W")
         strengths = [
-            (each.share, each.place.row)
+            (each.utilisation, each.place.row)
             for each in (*driver.view.findings, *driver.view.tighter)
-            if each.rule == strength.name and each.share is not None
+            if each.rule == strength.name and each.utilisation is not None
         ]
-        assert driver.table.spot == min(strengths)[1]
+        assert driver.table.spot == max(strengths)[1]
         assert "The weakest" in driver.screen
 
     drive(story, shipped_folder("lines") / "deep-current-meters.yaml")

@@ -401,3 +401,13 @@ def test_the_drag_of_an_anchor_that_gives_none_is_that_of_a_cube(loaded):
     volume = 8000.0 / ((7850.0 - 1025.0) * 9.80665)
     assert plan.anchor_drag == pytest.approx(0.5 * 1025.0 * 1.05 * volume ** (2 / 3))
     assert not plan.drag_known
+
+
+def test_the_ship_is_given_in_si_or_with_units(loaded):
+    mooring = loaded(LEAN.format(depth=200, length=120, current=0.0))
+    told = drop_plan(mooring, "2 knot", "130 m", "90 deg", fineness=FEW)
+    plain = drop_plan(mooring, 2.0 * 1852.0 / 3600.0, 130.0, 90.0, fineness=FEW)
+    assert (told.ship_speed, told.course, told.streamed) == pytest.approx(
+        (plain.ship_speed, plain.course, plain.streamed)
+    )
+    assert told.touchdown_speed == pytest.approx(plain.touchdown_speed)

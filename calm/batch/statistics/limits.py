@@ -12,11 +12,12 @@ from calm.batch.statuses import Ending
 from calm.case import Design
 from calm.case.leg import Leg
 from calm.checks.assess import RULES, is_judged
+from calm.checks.assessment import estimated
 from calm.checks.criterion import AT_SURFACE, Criterion, JudgedPart
 from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.situations import equilibrium
-from calm.files.pieces import STAND_IN
+from calm.files.pieces import STAND_IN, parts_of
 from calm.files.rule_texts import RULES as TEXTS
 from calm.physics.seabed import required_weight
 
@@ -36,14 +37,16 @@ class CountedLimit:
     ----------
     rule : of the design check, whose quantity the values are
     criterion : what it asks
-    leg : of what
+    leg : of what, with the low bounds of estimates for figures that are not given
     seats : where one of several has its columns
+    on_estimate : whether the limit rests on such a bound: what is beyond it is not known to fail
     """
 
     rule: Rule
     criterion: Criterion
     leg: Leg
     seats: LegSeats | None = None
+    on_estimate: bool = False
 
     def values(self, series: ResultColumns) -> Column:
         """The (n,) values of a batch; NaN where there is nothing to judge."""
@@ -63,19 +66,27 @@ def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
 
     The tension of a piece is the greatest, or the least, of those at its ends and at the clamps on
     it, which is what a result holds. A line meant for the surface is judged as such wherever the
-    current takes its float. Each leg is judged as the design check judges it.
+    current takes its float. Each leg is judged as the design check judges it, by the low bounds of
+    estimates where a component does not give a figure.
     """
     seats = LegSeats.of_file(mooring.file) if mooring.several else (None,)
     order = list(RULES)
     found = [
-        CountedLimit(rule, criterion, leg, seat)
+        CountedLimit(rule, criterion, estimated(leg), seat, _on_estimate(rule, criterion, leg))
         for leg, seat in zip(mooring.meant, seats, strict=True)
         for rule in RULES.values()
         if rule.criteria is not None
-        for criterion in rule.criteria(leg)
+        for criterion in rule.criteria(estimated(leg))
         if is_judged(leg.file, rule, criterion.part.index)
     ]
     return tuple(sorted(found, key=lambda limit: order.index(limit.rule.name)))
+
+
+def _on_estimate(rule: Rule, criterion: Criterion, leg: Leg) -> bool:
+    """Whether a rule judges a part by a figure of which the leg as given has an estimate alone."""
+    figures, place = TEXTS[rule.name].figures, criterion.part.place
+    own = (part.component.estimates for part in parts_of(leg.file.pieces) if part.place == place)
+    return any(name in figures for estimates in own for name in estimates)
 
 
 def top_offset(series: ResultColumns) -> Column:
@@ -164,6 +175,8 @@ _LYING = 1e-6  # of the depth: what is no further above the seabed lies on it
 @dataclass(frozen=True)
 class Exceedance:
     """Describe how often a limit is broken: `share` of the `count` profiles that it can judge.
+
+    A profile beyond a limit that rests on an estimate is none of these.
 
     `worst` is the value furthest beyond the limit, or nearest to it, and `time` its time; None
     where there is no limit or nothing to judge.
@@ -262,6 +275,9 @@ def _exceedance(
         return Exceedance(limit, 0, None, None, None)
     values = limit.values(series)
     broken, known = limit.broken(values), np.isfinite(values)
+    if limit.on_estimate:
+        known &= ~broken
+        broken = np.zeros_like(broken)
     beyond |= broken
     judged |= known
     count = int(np.count_nonzero(known))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, nan
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,6 +110,7 @@ class Summary:
     rules : whether there is an equilibrium, and the rules that can be judged in every profile
     not_judged : why others are not, by their names
     source : what the result says of where it comes from, by the names in `SOURCE`
+    read : the cards of the files that it was made from
     limits_used : what the rules judge by, each with its default
     stops : of the profilers, down the line
     """
@@ -126,6 +128,7 @@ class Summary:
     rules: tuple[limits.RuleShare, ...]
     not_judged: Mapping[str, str]
     source: Mapping[str, str]
+    read: Sequence[Mapping[str, Any]]
     limits_used: tuple[LimitKey, ...] = ()
     stops: tuple[StopDepths, ...] = ()
 
@@ -191,6 +194,7 @@ def summarize(
             rules=(equilibrium, *limits.shares_of(series, limits.limits_of(mooring), unsolved)),
             not_judged=limits.NOT_JUDGED,
             source={name: str(dataset.attrs[name]) for name in SOURCE if name in dataset.attrs},
+            read=json.loads(dataset.attrs.get("read", "[]")),
             limits_used=tuple(
                 dict.fromkeys(
                     key

@@ -288,13 +288,13 @@ def draw_parts(page: Pen, parts: Sequence[PlacedPart], column: LineColumn, left:
     """The line with its symbols, and the texts beside it, `left` of the picture."""
     pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
     for part in parts:
-        _draw_symbol(pen.draw("g"), part, left + column.line_at)
+        draw_symbol(pen.draw("g"), part, left + column.line_at)
     for part in parts:
         _draw_texts(page, part, column, left)
 
 
-def _draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
-    """The line through a part, its symbol, or what is clamped on it."""
+def draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
+    """Draw the line through a part, its symbol, or what is clamped on it."""
     part = one.part
     if part.labels:
         pen.title(", ".join(part.labels))

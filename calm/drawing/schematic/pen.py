@@ -11,7 +11,7 @@ INK, SOFT, FAINT = "#1b2733", "#5a6672", "#c3ccd4"
 """Colours of what is to be read first, next, and last."""
 
 
-FONTS = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
+FONTS = "'Source Sans 3', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 """Of every text: the first of them that there is."""
 
 

@@ -16,7 +16,7 @@ from calm.units import DIMENSIONS, KILOGRAM_FORCE, QuantityError, unit_factor
 from calm.whole_file import read_content
 
 _DIMENSIONS = {
-    **dict.fromkeys(("length", "diameter", "width", "at", "height"), "length"),
+    **dict.fromkeys(("length", "diameter", "width", "at", "height", "depth"), "length"),
     **dict.fromkeys(("buoyancy", "weight", "stiffness", "breaking_load"), "force"),
     **dict.fromkeys(("area", "drag_area", "tangential_area"), "area"),
     "mass": "mass",

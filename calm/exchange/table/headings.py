@@ -15,7 +15,7 @@ from calm.units import KILOGRAM_FORCE
 COLUMNS = (
     "name", "label", "kind", "role", "length", "diameter", "width", "mass", "buoyancy", "weight",
     "cd", "area", "drag_area", "tangential_area", "material", "stiffness", "breaking_load", "count",
-    "at", "height",
+    "at", "height", "depth",
 )  # fmt: skip
 """What a column may hold, as `--columns` calls it."""
 
@@ -28,10 +28,11 @@ _WET = (
     r"|mojad)"
 )
 _AIR = r"(\bair\b|luft|trocken|\baire\b|\bsec[oa]?\b|\bdry\b)"
+_END = r"\b(anchor|bottom|btm|seabed|anker|grund|boden|ancre|fond|ancla|fondo|surface|top)\b"
 _PATTERNS: tuple[tuple[str, str], ...] = (
     ("count", r"^(qty|quantity|count|number|no\.? of|nb|nombre|qte|quantite)\b"),
     ("count", r"^(anzahl|antall|menge|stuck(zahl)?|stk|cant(idad)?)\b"),
-    ("at", r"clamped at|along|position sur|distance|geklemmt|abstand|distancia"),
+    ("at", rf"clamped at|along|position sur|geklemmt|(distance|abstand|distancia)(?!.*{_END})"),
     ("tangential_area", r"tangential cd x area"),
     ("drag_area", r"drag area|\bcd ?[x*.]? ?a(rea)?\b|\bcda\b"),
     ("area", r"area|surface|maitre.?couple|flache|superficie"),
@@ -50,6 +51,11 @@ _PATTERNS: tuple[tuple[str, str], ...] = (
         r"(height|hauteur|altitude|hohe|altura).*(bottom|btm|fond|seabed|above|grund|boden)",
     ),
     ("height", r"bottom_height|^altitude|^(height|hauteur|hohe|altura)\b"),
+    (
+        "depth",
+        r"^((planned|nominal|target|design|instrument|deployment|soll|geplante?) ?)?"
+        r"(depth|profondeur|immersion|tiefe|dybde|dyp|profundidad)\b(?!.*(rat|max|limit|water|wasser))",
+    ),
     ("length", r"^(length|longueur|lange|laenge|longitud|largo|long|len|l)\b"),
     ("length", r"length|longueur|lange\b|laenge|lengde|longitud"),
     ("material", r"^(material|materiau|werkstoff)\b"),
@@ -73,6 +79,7 @@ _BESIDE = re.compile(
 )  # a line beside another piece, which is not the length of that
 _ALONG = re.compile(r"tangent|axial")  # a drag along the piece, which has a column of its own
 _RUNNING = re.compile(r"cumul|kumul|acumul|running")
+_FROM_AN_END = re.compile(rf"(distance|abstand|distancia).*{_END}|(cumul|kumul|acumul|running)")
 _SEARCHED = 60  # rows in which the headings stand
 _UNIT = re.compile(r" ?\b(kgf?|g|lbf?|lbs|k?n|t)\b| ?/ ?(m|ft)\b| ?\b(per|total|whole|met\w+)\b")
 _MEASURES = {"length", "buoyancy", "weight", "mass"}
@@ -122,6 +129,7 @@ class ListHeadings:
     def problems(self) -> list[str]:
         """Units that are none, and lines that stand beside other pieces, each with its place."""
         beside = "has lines beside other pieces; a line needs a row of its own"
+        from_an_end = "counts lengths from an end of the line; give each piece its own length"
         return [
             *(
                 f"row {self.row + 1}, column {column.index + 1}, `{column.heading}`: {column.wrong}"
@@ -132,6 +140,11 @@ class ListHeadings:
                 f"row {self.row + 1}, `{heading}`: {beside}"
                 for heading in self.others
                 if _BESIDE.search(_plain(heading)) and not re.search("height|hohe", _plain(heading))
+            ),
+            *(
+                f"row {self.row + 1}, `{heading}`: {from_an_end}"
+                for heading in self.others
+                if "length" not in self.columns and _FROM_AN_END.search(_plain(heading))
             ),
         ]
 
@@ -300,7 +313,7 @@ def _column(what: str, index: int, heading: str) -> ListColumn:
     except ValueError as error:
         unit, wrong = None, str(error)
     plain = _plain(heading, keep="/")
-    per_metre = what not in ("length", "diameter", "width", "at", "height") and bool(
+    per_metre = what not in ("length", "diameter", "width", "at", "height", "depth") and bool(
         re.search(r"/ ?m\b|\b(per|par|pro|je|por) (m\b|met)|lineique|metergewicht", plain)
     )
     return ListColumn(

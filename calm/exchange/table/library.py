@@ -17,7 +17,7 @@ from calm.exchange.table.rows import ListRow, rows_of, weights_as_buoyancy
 from calm.units import KILOGRAM_FORCE
 from calm.whole_file import read_content
 
-_NOT_THEIRS = ("at", "count", "height")  # of an element, whatever the heading says
+_NOT_THEIRS = ("at", "count", "height", "depth")  # of an element, whatever the heading says
 _A_METRE = 1e-6  # m by which the length of a line's figures may miss a metre
 _SHEETS = 3  # with headings of their own make a library
 

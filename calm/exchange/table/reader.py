@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Mapping
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -74,6 +74,11 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     if sum(row.count for row in rows) > model.MOST_PIECES:
         raise refused(path, f"has more than {model.MOST_PIECES} pieces")
     rows = _from_the_top(rows, path, design)
+    if headings and "depth" in headings.columns and not _go_down(rows):
+        heading = headings.columns["depth"].heading
+        said.append(model.Remark(f"column {heading}", "does not grow down the line: left out"))
+        for row in rows:
+            row.figures.pop("depth", None)
     design.items = _items(rows)
     design.guessed += said
     if problems := [*problems, *(each for row in rows for each in row.problems)]:
@@ -225,6 +230,18 @@ def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign)
     return [*rows, ListRow(0, "anchor", kind="anchor", role="anchor")]
 
 
+def _go_down(rows: list[ListRow]) -> bool:
+    """Whether depths are those of places on the line: they grow from piece to piece, and differ."""
+    depths = [row.figures["depth"] for row in rows if "depth" in row.figures]
+    return len({*depths}) > 1 and all(upper <= lower for upper, lower in pairwise(depths))
+
+
+def _planned_depth(row: ListRow, component: model.ImportedComponent) -> float | None:
+    """Depth in the list of a single float, instrument or clamp [m]."""
+    of_its_own = "at" in row.figures or component.figures.get("role") in ("float", "instrument")
+    return row.figures.get("depth") if of_its_own and row.count == 1 else None
+
+
 def _turned(rows: list[ListRow]) -> list[ListRow]:
     pieces = accumulate(int("at" not in row.figures) for row in rows)
     numbered = sorted(zip(pieces, rows, strict=True), key=lambda pair: -pair[0])
@@ -235,14 +252,18 @@ def _items(rows: list[ListRow]) -> list[model.ImportedPiece]:
     items: list[model.ImportedPiece] = []
     for row in rows:
         component = component_of(row, anchor=row is rows[-1] and row.is_anchor)
-        at = row.figures.get("at")
+        at, planned = row.figures.get("at"), _planned_depth(row, component)
         if at is None:
             length = row.figures.get("length") if component.kind in FLEXIBLE_KINDS else None
             guess = "" if length is None else row.guesses.get("length", "")
             items += [
-                model.ImportedPiece(component, length, label=row.label, guess=guess)
+                model.ImportedPiece(
+                    component, length, label=row.label, guess=guess, planned_depth=planned
+                )
                 for _ in range(row.count)
             ]
         elif items:
-            items[-1].clamps.append(model.ImportedClamp(component, at, row.guesses.get("at", "")))
+            guess = row.guesses.get("at", "")
+            clamp = model.ImportedClamp(component, at, guess, planned_depth=planned)
+            items[-1].clamps.append(clamp)
     return items

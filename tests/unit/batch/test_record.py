@@ -184,7 +184,8 @@ def test_notes_tell_the_rules(tmp_path: Path) -> None:
         assert record.notes == (
             "the current is not given above 40.0 m and below 250.0 m: the value of the nearest "
             "level is used there, in 300.0 m of water",
-            "the strongest of 20 currents is 0.0092 m/s: cm/s or another unit read as m/s?",
+            "the strongest of 20 currents is 0.0092 m/s in the declared unit, cm/s; are they in "
+            "m/s or kn?",
             "levels where the current or their depth has no value are left out of their profile",
             "levels above the surface are left out",
             "levels below the seabed are used where they have a value: the current at the seabed "

@@ -12,6 +12,7 @@ from calm.exchange.importing import import_file
 from calm.exchange.model import ImportOptions
 from calm.exchange.table.cells import number
 from calm.files import Catalogue
+from calm.files.pieces import parts_of
 
 SITE = """\
 environment:
@@ -725,3 +726,42 @@ def test_a_chain_keeps_its_grade(tmp_path, site):
         other = "80" if grade == "30" else "30"
         assert not any(f"g{grade}" in each for each in matched(f"G{other}", weight, ""))
         assert not any(f"g{other}" in each for each in matched("alloy", weight, load))
+
+
+PLANNED = """\
+Name,Depth (m),Length (m),Diameter (mm),Weight in water (kg),Clamped at (m),Qty
+Float,50,1,1000,-350,,1
+RCM,51,0.8,130,15,,1
+Wire rope,52,100,8,16,,1
+Logger,60,0.3,60,2,8,1
+Glass ball,152,0.43,430,-25,,4
+Release,155,0.9,130,25,,1
+Anchor,156,0.8,900,900,,1
+"""
+
+
+@pytest.mark.parametrize("heading", ["Depth (m)", "Planned depth [m]", "Tiefe (m)", "Profondeur"])
+def test_a_column_of_depths_gives_the_planned_depths(heading, read, tmp_path):
+    found = parts_of(pieces(read(PLANNED.replace("Depth (m)", heading)), tmp_path))
+    planned = {part.label: part.planned_depth for part in found}
+    assert {name: depth for name, depth in planned.items() if depth is not None} == {
+        "float": 50.0, "rcm": 51.0, "logger": 60.0,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("Depth (m)", "Depth rating (m)"), (",51,", ",6000,"), ("Depth (m)", "Rated to")],
+)
+def test_depths_that_are_no_places_plan_nothing(old, new, read, tmp_path):
+    made = read(PLANNED.replace(old, new))
+    assert all(part.planned_depth is None for part in parts_of(pieces(made, tmp_path)))
+    told = [str(each) for each in made.guessed]
+    assert (new == ",6000,") == ("column Depth (m): does not grow down the line: left out" in told)
+
+
+@pytest.mark.parametrize("heading", ["Länge kumuliert [m]", "Distance from anchor (m)"])
+def test_lengths_from_an_end_are_refused_by_their_heading(heading, read):
+    text = ENGLISH.replace("Length (m)", heading)
+    with pytest.raises(InputError, match="counts lengths from an end of the line"):
+        read(text)

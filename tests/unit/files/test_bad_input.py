@@ -282,7 +282,12 @@ ONE_MISTAKE = {
     ),
     "override of an assembly": (
         changed("{use: plate}", "{use: pair, mass: 3 kg}"),
-        (12, 17, "`mass` cannot be set on an assembly; allowed: count, label, use"),
+        (
+            12,
+            17,
+            "`mass` cannot be set on an assembly; allowed: breaking_load, count, depth_rating, "
+            "grip, label, max_tilt, opening_load, source, sources, use, working_load",
+        ),
     ),
     "drag misspelt": (
         GOOD + "solver: {drag: reynold}\n",

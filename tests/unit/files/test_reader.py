@@ -275,7 +275,7 @@ def test_an_environment_that_is_not_there(mistakes: Mistakes) -> None:
     assert mistakes(VARIANTS, "calm") == [
         (14, 1, "no environment is called `calm`; allowed: shallow, storm")
     ]
-    assert mistakes(GOOD, "storm") == [(1, 1, "no environment is called `storm`; allowed: none")]
+    assert mistakes(GOOD, "storm") == [(1, 1, "no environment is called `storm`")]
 
 
 def test_an_environment_file(read: Read, tmp_path: Path) -> None:
