@@ -89,7 +89,7 @@ def test_a_taut_string_pushed_at_its_free_end():
     nothing = np.zeros((3, 401, 3), complex)
     push = nothing.copy()
     push[:, 0, 0] = 1.0
-    motion = _solved(_undamped(line, omega), None, omega, nothing, push, np.zeros((401, 3, 3)))
+    motion = _solved(_undamped(line), None, omega, nothing, push, np.zeros((401, 3, 3)))
     k = omega * sqrt(2.0 / 3000.0)
     assert motion[:, 0, 0].real == pytest.approx(np.tan(k * 100.0) / (3000.0 * k), rel=1e-4)
     assert np.abs(motion[:, :, 1:]).max() < 1e-12
@@ -105,7 +105,7 @@ def test_an_undamped_string_swings_at_its_natural_frequencies():
         push = np.zeros((81, 201, 3), complex)
         push[:, 0, 0] = 1.0
         zero = np.zeros((81, 201, 3), complex)
-        motion = _solved(_undamped(line, omega), None, omega, zero, push, np.zeros((201, 3, 3)))
+        motion = _solved(_undamped(line), None, omega, zero, push, np.zeros((201, 3, 3)))
         found = omega[np.abs(motion[:, 0, 0]).argmax()]
         assert found == pytest.approx(natural, rel=4e-4)
 
@@ -135,7 +135,7 @@ def test_the_swing_of_a_shipped_mooring_by_hand():
     nothing = np.zeros((len(omega), n, 3), complex)
     push = nothing.copy()
     push[:, 0, 0] = 1.0
-    motion = _solved(_undamped(line, omega), None, omega, nothing, push, np.zeros((n, 3, 3)))
+    motion = _solved(_undamped(line), None, omega, nothing, push, np.zeros((n, 3, 3)))
     assert omega[np.abs(motion[:, 0, 0]).argmax()] == pytest.approx(expected, rel=0.02)
 
 
