@@ -64,7 +64,7 @@ def test_every_command_is_explained_in_the_readme_or_the_manual() -> None:
 
 
 def test_the_readme_is_read_in_a_minute() -> None:
-    assert len(README.read_text(encoding="utf-8").splitlines()) < 150
+    assert len(README.read_text(encoding="utf-8").splitlines()) <= 120
 
 
 def test_the_citation_names_this_version_and_licence() -> None:

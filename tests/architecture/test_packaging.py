@@ -188,7 +188,8 @@ def test_constraints_name_every_direct_dependency() -> None:
         for line in (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
         if not line.startswith("#")
     }
-    missing = [name for name in wanted if re.split(r"[^\w.-]", name.lower())[0] not in pinned]
+    others = [name for name in wanted if not name.startswith("calm-mooring[")]
+    missing = [name for name in others if re.split(r"[^\w.-]", name.lower())[0] not in pinned]
     assert not missing
 
 
