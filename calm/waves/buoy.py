@@ -50,7 +50,7 @@ PANELS_ROUND = 28
 PANEL_FREQUENCIES = (0.1, *(0.5 + 0.25 * each for each in range(15)), 5.0, 7.0, 10.0)
 """Frequencies of the panel method, between which its results are interpolated [rad/s]."""
 
-FOLLOWING = 1e10
+PRESCRIBED_STIFFNESS = 1e10
 """Stiffness that forces a prescribed motion of a float [N/m]."""
 
 
@@ -119,9 +119,13 @@ class Buoy:
         from scipy.special import j1
 
         if self.follows:
-            return np.full(omega.shape, FOLLOWING + 0j), np.full(omega.shape, FOLLOWING + 0j)
+            return np.full(omega.shape, PRESCRIBED_STIFFNESS + 0j), np.full(
+                omega.shape, PRESCRIBED_STIFFNESS + 0j
+            )
         if self.rao:
-            return np.full(omega.shape, FOLLOWING + 0j), FOLLOWING * self._given(omega, 1)
+            return np.full(
+                omega.shape, PRESCRIBED_STIFFNESS + 0j
+            ), PRESCRIBED_STIFFNESS * self._given(omega, 1)
         spring = density * gravity * pi * self.radius**2
         if self.panels is not None:
             rows = [np.interp(omega, self.panels[0].real, one) for one in self.panels]
@@ -162,8 +166,8 @@ class Buoy:
         held[2] += self.righting(profile, density, gravity)
         if self.follows or (self.rao and len(self.rao[0]) > 3):
             given = 1j * number if self.follows else self._given(omega, 3) * pi / 180.0
-            held[2] += FOLLOWING
-            pushing[1] += FOLLOWING * given
+            held[2] += PRESCRIBED_STIFFNESS
+            pushing[1] += PRESCRIBED_STIFFNESS * given
         return held, pushing
 
     def _given(self, omega: Floats, column: int) -> Complexes:

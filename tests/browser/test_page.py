@@ -198,6 +198,7 @@ def test_mouse_and_help(visit):
     visit.page.click("#actions >> text=Water")
     visit.page.wait_for_function("document.getElementById('told').textContent.includes('Esc')")
     visit.page.keyboard.press("Escape")
+    visit.shows("ADCP float +302")  # the line, behind the help until now
     visit.page.click("#actions >> text=Water")
     visit.shows("The water of")
     visit.picture("page-water")
