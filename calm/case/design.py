@@ -539,7 +539,7 @@ class Result:
         return self.components.to_pandas()
 
     def to_xarray(self) -> Any:
-        """The dataset that `calm run --netcdf` writes: components, clamps and shape, with units."""
+        """The dataset that `calm run -o FILE.nc` writes: components, clamps, shape, with units."""
         from io import BytesIO
 
         from xarray import load_dataset

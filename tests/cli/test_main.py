@@ -151,7 +151,7 @@ def test_full_disk_behind_a_file(calm, write_mooring, monkeypatch):
         raise UsageError("cannot write x.json: No space left on device")
 
     monkeypatch.setattr("calm.report.folder.write_file", full)
-    done = calm("run", write_mooring(), "--json", "x.json")
+    done = calm("run", write_mooring(), "-o", "x.json")
     assert done.code == 2
     assert done.err == "calm: cannot write x.json: No space left on device\n"
 
