@@ -148,6 +148,10 @@ def _place_of(file: MooringFile, label: str) -> Location:
     from calm.files.editing import LINE, clamps_of
 
     places = {part.label: part.place for part in parts_of(file.pieces)}
+    numbered = re.compile(rf"{re.escape(label)} \d+")  # as the pieces of a `count` are labelled
+    copies = [place for name, place in places.items() if numbered.fullmatch(name)]
+    if len({(place.item, place.clamp) for place in copies}) == 1:
+        places.setdefault(label, copies[0])
     if label not in places:
         raise UsageError(unknown(f"no piece or clamp is labelled `{label}`", label, places))
     place = places[label]

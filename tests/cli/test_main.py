@@ -50,7 +50,6 @@ def test_no_words_show_the_help(calm):
         "catalog",
         "catalog list",
         "catalog show",
-        "catalog search",
         "catalog add",
         "catalog check",
     ],

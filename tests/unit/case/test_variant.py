@@ -124,3 +124,12 @@ def test_a_number_without_a_unit_is_reported_wherever_it_stands(mooring, speed):
     table = {"columns": ["depth m", "speed m/s", "toward deg"], "rows": rows}
     sheared = mooring.with_(environment={"current": table})
     assert float(sheared.water.u[0]) == pytest.approx(float(speed), rel=1e-6)
+
+
+def test_a_label_without_its_number_means_the_item_with_a_count(tmp_path):
+    path = tmp_path / "m.yaml"
+    path.write_text(FILE.replace("{use: ball, label: top}", "{use: ball, label: top, count: 2}"))
+    mooring = calm.load(path)
+    changed = mooring.with_("top", count=3)
+    assert len(changed.file.pieces) == len(mooring.file.pieces) + 1
+    assert changed.file == mooring.with_("top 1", count=3).file
