@@ -65,7 +65,7 @@ def assemble_line(
         k = drag.sphere_drag(anchor.diameter, TOWED_SPHERE_CX)
         drags[-1], curves[-1] = (k, k, False), None
     clamps = [(i, clamp) for i, piece in enumerate(above) for clamp in piece.clamps]
-    hung = [clamp.component for _, clamp in clamps]
+    clamped = [clamp.component for _, clamp in clamps]
     return Line(
         length=np.array([piece.length or 0.0 for piece in above]),
         flexible=np.array([isinstance(part, files.Flexible) for part in parts]),
@@ -80,19 +80,19 @@ def assemble_line(
         thinning=np.array([0.5 if isinstance(part, Cable) else 0.0 for part in parts]),
         clamp_piece=np.array([i for i, _ in clamps]),
         clamp_at=np.array([clamp.at for _, clamp in clamps]),
-        clamp_buoyancy=np.array([net_buoyancy(part, gravity) for part in hung]),
-        clamp_volume=np.array([part.displaced_volume or 0.0 for part in hung]),
+        clamp_buoyancy=np.array([net_buoyancy(part, gravity) for part in clamped]),
+        clamp_volume=np.array([part.displaced_volume or 0.0 for part in clamped]),
         # clamped items: use the drag normal to their axis, for any inclination of the line
-        clamp_drag=np.array([drag_of(part)[0] for part in hung]),
+        clamp_drag=np.array([drag_of(part)[0] for part in clamped]),
         anchor_height=anchor.length if isinstance(anchor, files.Anchor) else 0.0,
         lift=np.array([getattr(part, "lift", None) or 0.0 for part in parts]),
-        clamp_lift=np.array([getattr(part, "lift", None) or 0.0 for part in hung]),
+        clamp_lift=np.array([getattr(part, "lift", None) or 0.0 for part in clamped]),
         diameter=np.array([part.diameter if isinstance(part, Cable) else 0.0 for part in parts]),
         friction=Friction(solver.friction),
         strumming=vibration_law(solver),
         elongation=tuple(map(_elongation, parts)),
         drag_curve=tuple(curves),
-        clamp_drag_curve=tuple(_drag_curve(part, solver) for part in hung),
+        clamp_drag_curve=tuple(_drag_curve(part, solver) for part in clamped),
     )
 
 

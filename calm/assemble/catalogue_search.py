@@ -69,10 +69,10 @@ class Listed:
     @cached_property
     def sizes(self) -> tuple[float, ...]:
         """Diameter, and sizes found in the name [m]."""
-        told = tuple(
+        named = tuple(
             _metres(*found) for found in _SIZE.findall(f"{self.name} {self.id}".casefold())
         )
-        return told if self.diameter is None else (*told, self.diameter)
+        return named if self.diameter is None else (*named, self.diameter)
 
 
 class Index:
@@ -131,7 +131,7 @@ class Index:
         first : ids, in their order, that precede all others except an exact match
         by : key of a column to sort by: largest first, unknown values last
         """
-        plain, limits = _asked(text)
+        plain, limits = _parsed(text)
         words = _words(plain)
         sizes = [(_words(found[0]), _metres(*found.groups())) for found in _SIZE.finditer(plain)]
         others = _words(_SIZE.sub(" ", plain))
@@ -167,7 +167,7 @@ class Index:
         every = " ".join(each.searched for each in self._listed.values())
         own = _BETWEEN.split(" ".join(each.own_words for each in self._listed.values()))
         known = {word for word in own if word.isalpha() and len(word) >= _SHORT - 1}
-        for word in _words(_SIZE.sub(" ", _asked(text)[0])):
+        for word in _words(_SIZE.sub(" ", _parsed(text)[0])):
             if len(word) >= _SHORT and word.isalpha() and word not in every:
                 near = difflib.get_close_matches(word, known, 1, _ALIKE)
                 text = re.sub(re.escape(word), near[0] if near else word, text, flags=re.I)
@@ -178,11 +178,11 @@ class Index:
         return inf if value is None else -abs(value)
 
 
-def _asked(text: str) -> tuple[str, list[Wanted]]:
+def _parsed(text: str) -> tuple[str, list[Wanted]]:
     """Split a text into its plain words, in lower case, and its limits."""
-    asked = [(word.casefold(), wanted(word)) for word in text.split()]
-    limits = [limit for _, limit in asked if limit is not None]
-    return " ".join(word for word, limit in asked if limit is None), limits
+    parsed = [(word.casefold(), wanted(word)) for word in text.split()]
+    limits = [limit for _, limit in parsed if limit is not None]
+    return " ".join(word for word, limit in parsed if limit is None), limits
 
 
 def _words(text: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""Places of the ends of a leg, and the loads on their supports."""
+"""Positions of the ends of a leg, and the loads on their supports."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ class LegResult:
     profilers: tuple[ProfilerTravel, ...] = ()
 
     def __repr__(self) -> str:
-        """Return its name, and how many components it has."""
+        """Summary with name, type and number of components."""
         return f"LegResult({self.name!r}, {self.type}, {len(self.components)} components)"
 
     @property

@@ -82,9 +82,9 @@ def tabulate(tows: Sequence[Design], outputs: Outputs, speeds: Sequence[float]) 
 def _swept(file: Path, tow: Design, speeds: Sequence[float]) -> TabulatedTow:
     from calm.case.tow import SOLVES, sweep
     from calm.report.tabulation import by_speed
-    from calm.solve import Solver, expect_many
+    from calm.solve import CompiledPart, expect_many
 
-    expect_many(SOLVES * len(speeds), Solver.LEGS)
+    expect_many(SOLVES * len(speeds), CompiledPart.LEGS)
     outcomes = sweep(tow, progress(speeds, f"speeds of {file}"))
     failed = [
         (speed, outcome)

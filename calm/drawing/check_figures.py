@@ -1,6 +1,6 @@
-"""The figures of a design check: the mooring to scale, its loads, and a line for a row of a table.
+"""The figures of a design check: the mooring to scale, its loads, and the line in rows of a table.
 
-They are black on white: nothing hangs on colour. Lengths are in points.
+They are black on white, so that no information depends on colour. Lengths are in points.
 """
 
 import re
@@ -27,22 +27,22 @@ from calm.physics.line import Floats
 from calm.quantities import QUANTITIES
 
 FONT = 8.0
-"""Size of the letters; nothing is smaller."""
+"""Font size, also the smallest size."""
 ROW_WIDTH = 52.0
-"""Width of the line beside the rows of a table."""
+"""Width of the drawing of the line in rows of a table."""
 INK, GREY, PALE = "black", "#6e6e6e", "#cdcdcd"
 
-_LEFT = 28.0  # for the scale of the depths
-_FLOW = 38.0  # for the profile of the current
+_LEFT = 28.0  # width of the depth axis
+_FLOW = 38.0  # width of the current profile
 _SYMBOLS = 44.0
 _ABOVE, _BELOW = 14.0, 10.0
-_NEAREST = 9.5  # of two labels
-_LEAST = 0.45  # of the height that the water is to fill
+_NEAREST = 9.5  # smallest distance of two labels
+_LEAST = 0.45  # smallest share of the height used for the water depth
 
 
 @dataclass(frozen=True)
 class DrawnCase:
-    """A load case as it is drawn: its code, and its legs."""
+    """A load case in the drawing: its code and its legs."""
 
     code: str
     legs: Sequence[LegResult]
@@ -50,10 +50,10 @@ class DrawnCase:
 
 @dataclass(frozen=True)
 class Label:
-    """What is named beside the line, from the top: a part, its text, and its depth in words.
+    """A label beside the line: a part, its text, and its depth as text.
 
-    `at` is its depth, and its places east and north [m]; of a cable it is None. `tag` is the mark
-    and number of what is open about it.
+    `at` is its depth and its positions east and north [m]; None for a cable. `tag` is the mark and
+    the number of its open finding.
     """
 
     part: ShownPart
@@ -64,7 +64,7 @@ class Label:
 
 
 def grey(svg: str) -> str:
-    """A drawing whose colours are greys as light as they were."""
+    """Return a drawing with its colours replaced by greys of the same luminance."""
 
     def of(match: re.Match[str]) -> str:
         red, green, blue = (int(match[1][at : at + 2], 16) for at in (0, 2, 4))
@@ -77,17 +77,19 @@ def grey(svg: str) -> str:
 def elevation(
     title: str, cases: Sequence[DrawnCase], labels: Sequence[Label], size: tuple[float, float]
 ) -> tuple[str, float]:
-    """The mooring from the side as SVG, to one scale, and that scale: so many metres are 1 pt.
+    """Return the elevation of the mooring as SVG, to a single scale, and the scale in metres per
+    point.
 
-    The first case is drawn solid, still water dashed, strumming cables dotted, all others thin.
-    Beside it stand the current of the first case and, from the top down, the labels with their
-    symbols. A line that is wider than deep has no room for them: its parts are marked alone.
+    The first case is a thick solid line, still water is dashed, strumming cables are dotted, and
+    other cases are thin lines. The current of the first case is drawn on the left. The labels and
+    their symbols are on the right, from the top down; without room for them, in a wide mooring,
+    only the places of the parts are marked.
 
     Parameters
     ----------
-    cases : those that are drawn, the first one marked; all in the vertical plane of that one
-    labels : from the top
-    size : width and height
+    cases : the load cases, all drawn in the vertical plane of the first one
+    labels : the labels, from the top
+    size : width and height of the drawing
     """
     width, height = size
     page = picture(width, height, title)
@@ -143,9 +145,9 @@ def elevation(
         px, py = float(x(along(east, north, plane))), float(y(level))
         hollow = one.part.sign.symbol in _HOLLOW
         if one in listed:
-            down = _level(listed.index(one), len(listed), height)
+            drop = _level(listed.index(one), len(listed), height)
             knee = flow + room + 6.0
-            page.path(f"M{px:.1f} {py:.1f}L{knee:.1f} {down:.1f}L{knee + 12.0:.1f} {down:.1f}",
+            page.path(f"M{px:.1f} {py:.1f}L{knee:.1f} {drop:.1f}L{knee + 12.0:.1f} {drop:.1f}",
                       fill="none", stroke=GREY, stroke_width=0.35)  # fmt: skip
         page.circle(px, py, 1.9, fill="white" if hollow else INK, stroke=INK, stroke_width=0.6)
     if listed:
@@ -159,27 +161,27 @@ _STROKES: dict[str, dict[str, float | str]] = {
     "s": {"stroke": INK, "stroke_width": 0.7, "stroke_dasharray": "1 1.6"},
     "0": {"stroke": GREY, "stroke_width": 0.7, "stroke_dasharray": "4 2"},
 }
-"""By the last letter of a code."""
+"""Strokes of the lines, by the last letter of a code."""
 _HOLLOW = (*BALLS, Symbol.SPHERE, Symbol.FOAM, Symbol.STREAMLINED, Symbol.BUOY)
 _WIDEST_LABEL, _FIGURES = 106.0, 26.0
 _REAL = 0.78
-"""Width of letters as they are set over the upper bound that `text_width` gives."""
+"""Ratio of the actual width of a text to the upper bound given by `text_width`."""
 _MOST_LEVELS = 7
 
 
 def _longest(labels: Sequence[Label]) -> float:
-    """Width of the labels with their depths."""
+    """Return the width of the labels with their depths."""
     widths = (text_width(f"{one.text} {one.tag}", FONT, bold=True) for one in labels)
     return min(_REAL * max(widths, default=0.0), _WIDEST_LABEL) + _FIGURES
 
 
 def _level(place: int, count: int, height: float) -> float:
-    """Return how far down a label stands."""
+    """Return the vertical position of a label."""
     return _ABOVE + (place + 0.5) * (height - _ABOVE) / count
 
 
 def _draw_flow(page: Pen, leg: LegResult, sea: float, scale: float) -> None:
-    """The speed of the current by depth, with an arrow at its levels, as many as have room."""
+    """Draw the current speed by depth, with arrows at as many levels as there is room for."""
     speed = np.hypot(leg.water.u, leg.water.v)
     fastest = float(speed.max())
     if fastest == 0.0:
@@ -205,7 +207,7 @@ def _draw_flow(page: Pen, leg: LegResult, sea: float, scale: float) -> None:
 def _draw_labels(
     page: Pen, labels: Sequence[Label], at: float, width: float, height: float
 ) -> None:
-    """The line not to scale, its parts with their symbols, names and depths."""
+    """Draw the line, not to scale, with the symbols, names and depths of its parts."""
     pitch = (height - _ABOVE) / len(labels)
     levels = [_level(number, len(labels), height) for number in range(len(labels))]
     pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
@@ -227,14 +229,14 @@ def _draw_labels(
 
 
 class PieceBar(NamedTuple):
-    """A piece in a chart: its tensions and capacities, in the unit of the chart.
+    """A piece in the load chart: its tensions and capacities, in the unit of the chart.
 
     Attributes
     ----------
-    number : in the line
-    tension, capacity : the greatest that stands, and what it may bear; None where not known
-    launch, launch_capacity : the same in the launch
-    judged : whether a capacity is asked of it
+    number : number of the piece in the line
+    tension, capacity : maximum tension, and the capacity; None if unknown
+    launch, launch_capacity : maximum tension and capacity during the launch
+    judged : whether the piece needs a capacity
     """
 
     number: int
@@ -246,7 +248,7 @@ class PieceBar(NamedTuple):
 
 
 def load_chart(title: str, loads: Sequence[PieceBar], size: tuple[float, float]) -> str:
-    """Tension and capacity of every piece as SVG, from the top of the line to the left.
+    """Return tension and capacity of every piece as SVG; the top of the line is on the left.
 
     `size` is its width and height.
     """
@@ -288,9 +290,9 @@ def load_chart(title: str, loads: Sequence[PieceBar], size: tuple[float, float])
 
 
 def beside_row(part: ShownPart, height: float, *, first: bool = False, last: bool = False) -> str:
-    """The line through a row of a table with the symbol of a part, as SVG.
+    """Return the line with the symbol of a part as SVG, for a row of a table.
 
-    The line begins at the first part of all, and ends at the last one.
+    The line begins in the row of the first part, and ends in the row of the last part.
     """
     page = _row_picture(height, ", ".join(part.labels))
     middle = height / 2
@@ -301,21 +303,21 @@ def beside_row(part: ShownPart, height: float, *, first: bool = False, last: boo
 
 
 def _row_picture(height: float, title: str) -> Pen:
-    """A picture without a ground, which would cover the rules of its table."""
+    """Return a picture without background, which would cover the rules of the table."""
     page = picture(ROW_WIDTH, height, title)
     page.element.remove(page.element[-1])
     return page
 
 
 def surface_row(height: float) -> str:
-    """The sea surface as SVG."""
+    """Return the sea surface as SVG."""
     page = _row_picture(height, "sea surface")
     draw_surface(page, ROW_WIDTH, height / 2)
     return grey(svg_text(page))
 
 
 def seabed_row(height: float) -> str:
-    """The seabed as SVG."""
+    """Return the seabed as SVG."""
     page = _row_picture(height, "seabed")
     page.line(0.0, 1.0, ROW_WIDTH, 1.0, stroke=INK, stroke_width=0.9)
     for at in range(int(ROW_WIDTH / 6.0)):
@@ -324,7 +326,7 @@ def seabed_row(height: float) -> str:
 
 
 def row_height(part: ShownPart) -> float:
-    """The least height of a row that has the symbol of a part in it."""
+    """Return the smallest height of a row that contains the symbol of a part."""
     if part.sign.symbol in LINES and part.floats is None:
         return 19.0
     scale = CLAMP_SCALE if part.clamped or part.floats else SYMBOL_SCALE

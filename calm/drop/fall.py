@@ -25,10 +25,10 @@ SLOWEST_FLOW = 0.01
 """Slowest flow past a line that is streamed less far than at the ship's speed [m/s]."""
 STREAMED_WITHIN = 1e-4
 """Tolerance of the streamed distance, as a share of the length of the line."""
-PUSHED = 1e-4
+LEAST_COMPRESSION = 1e-4
 """Smallest compression of a settled bar that is laid down, as a share of all weights."""
 _FALLS = 3
-HANDED = 0.6
+RELEASED_SHARE = 0.6
 """Share of the anchor's weight that the ship still carries in the second step, and factor on this
 share for each further step. The anchor is released gradually to avoid a jerk.
 """
@@ -129,7 +129,7 @@ def fall(
                 "the seabed."
             )
         # released at once, without inertia, the anchor would pass the line next to it
-        borne = HANDED ** (len(states) - 1)
+        borne = RELEASED_SHARE ** (len(states) - 1)
         lighter = replace(anchor, weight=(1.0 - borne) * anchor.weight)
         falling = mover if borne < 1e-3 else replace(mover, anchor=lighter)
         state = _stepped(falling, states[-1], step, water.depth)
@@ -224,7 +224,7 @@ def _laid_down(mover: Mover, state: ChainState) -> ChainState | None:
 
     None if no bar is compressed.
     """
-    pushed = state.tension < -PUSHED * mover.scale
+    pushed = state.tension < -LEAST_COMPRESSION * mover.scale
     if not pushed.any() or pushed[0]:
         return None
     node, axis = state.node.copy(), np.zeros(3)

@@ -28,7 +28,7 @@ SHIP_SPEED = 1.0
 """Speed of a ship that tows the line out [m/s], about two knots."""
 SLOWEST_SHIP = 0.05
 """Lowest ship speed through the water that streams a line [m/s]."""
-IN_SHORT = Fineness(bars=50, steps=50)
+CHECK_FINENESS = Fineness(bars=50, steps=50)
 """Resolution for the design check, half the resolution of the plan."""
 
 
@@ -76,7 +76,7 @@ class Launch:
         ]
 
 
-def launch_of(leg: Leg, fineness: Fineness = IN_SHORT) -> Launch:
+def launch_of(leg: Leg, fineness: Fineness = CHECK_FINENESS) -> Launch:
     """Compute the launch of a mooring, anchor last. Raises NoEquilibrium, see `fall`."""
     line, water, anchor = falling_line(leg), leg.water, falling_anchor(leg)
     ship = ship_of(leg, SHIP_SPEED, course_into_current(water))

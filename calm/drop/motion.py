@@ -20,7 +20,7 @@ from calm.solve.block_tridiagonal import solve_blocks
 
 MOST_ROUNDS = 16
 """Largest number of Newton iterations; a step that needs more is too long."""
-GENTLE = 10.0
+LINEAR_DRAG_SPEED = 10.0
 """Speed below which drag is linear in the speed, in the first iteration of a step from rest
 [m/s].
 """
@@ -114,7 +114,7 @@ class Mover:
             node[0, :2] = self.tether
         tension = state.tension.copy()
         reach = float(self.chain.length.sum())
-        slowest = GENTLE if gently else SLOWEST
+        slowest = LINEAR_DRAG_SPEED if gently else SLOWEST
         nearer = np.inf
         for _ in range(MOST_ROUNDS):
             moved = self._change(state.node, node, tension, variation, step, slowest)

@@ -21,12 +21,12 @@ from calm.positions import Frame
 from calm.quantities import bearing_of
 from calm.solve import Status
 
-ASTRAY = 1e-3
+REST_TOLERANCE = 1e-3
 """Allowed distance between the line at rest and its equilibrium, as a share of the depth; beyond
 it, results after the touchdown are not shown.
 """
 
-BRIEF = 60.0
+SHORT_FALL = 60.0
 """Fall time below which the neglected inertia affects the results noticeably [s]."""
 
 
@@ -131,13 +131,13 @@ class DropPlan:
                 "In still water the line is slack and its shape is not unique, so the line at rest "
                 "is not compared with an equilibrium."
             )
-        elif self.rest_difference > ASTRAY * self.mooring.water.depth:
+        elif self.rest_difference > REST_TOLERANCE * self.mooring.water.depth:
             said.append(
                 f"The line settles {self.rest_difference:.2f} m from its equilibrium, more than a "
                 "thousandth of the depth. The depths of instruments are not shown, and the results "
                 "of the fall are uncertain."
             )
-        if self.fall_time < BRIEF:
+        if self.fall_time < SHORT_FALL:
             said.append(
                 f"The fall takes only {self.fall_time:.0f} s. Inertia is neglected; it may add "
                 "half a second and change the fall-back by a metre."
@@ -197,7 +197,7 @@ equilibrium.
 """
 DRAG_BAND = 2.0
 """Factor by which the anchor's drag may be larger or smaller than specified."""
-CAUTION = 2.0
+ERROR_SAFETY = 2.0
 """Safety factor on the changes for steps and bars of twice the length, in the stated errors."""
 LEAST_TIME_ERROR = 5e-4
 """Smallest relative error of the fall time, in case the changes happen to be small."""
@@ -259,7 +259,7 @@ def drop_plan(
         return start, drop, rest, None if result is None else rest_difference(result.leg, rest)
 
     def is_astray(difference: float | None) -> bool:
-        return difference is not None and difference > ASTRAY * water.depth
+        return difference is not None and difference > REST_TOLERANCE * water.depth
 
     fine = fineness
     start, drop, rest, difference = dropped(fine)
@@ -302,8 +302,8 @@ def drop_plan(
         fall_time=landed.time,
         fall_back=back,
         aside=aside,
-        time_error=max(CAUTION * sum(map(abs, delays)), LEAST_TIME_ERROR * landed.time),
-        distance_error=CAUTION * sum(float(np.linalg.norm(each)) for each in missed),
+        time_error=max(ERROR_SAFETY * sum(map(abs, delays)), LEAST_TIME_ERROR * landed.time),
+        distance_error=ERROR_SAFETY * sum(float(np.linalg.norm(each)) for each in missed),
         fall_time_band=(min(times), max(times)),
         fall_back_band=(min(*backs, back), max(*backs, back)),
         touchdown_speed=-float(landed.velocity[-1, 2]),

@@ -1,4 +1,4 @@
-"""The `line` of a mooring file: items expanded into pieces, overrides applied, labels resolved."""
+"""Read the `line` of a mooring file: expand items into pieces, apply overrides, resolve labels."""
 
 import math
 from collections.abc import Iterable
@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from calm.errors import about_quantity, shown, unknown
 from calm.files import components, item_keys
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, Defined, define
-from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
+from calm.files.check_limits import LENIENT_IF_GREATER, LENIENT_IF_LESS, LimitKey
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Anchor, Component, Flexible, Outline
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.item_keys import ASSEMBLY_FIGURES, MOST_PIECES
@@ -28,9 +28,9 @@ _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
 class LineReader:
-    """Expand line items; mistakes go to those of the file, what is worth knowing to `notices`.
+    """Expand the items of a line; mistakes are added to those of the file, remarks to `notices`.
 
-    `towed` and `in_air` show which keys and figures the line may have.
+    `towed` and `in_air` determine the keys and figures allowed.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class LineReader:
         self._open: list[str] = []
 
     def check(self, ids: Iterable[str]) -> None:
-        """Check definitions, used in the line or not."""
+        """Validate definitions, whether or not the line uses them."""
         for id in ids:
             entry = self._catalogue.entry(id)
             if entry is not None:
@@ -63,7 +63,7 @@ class LineReader:
                     self._assembly(entry, section)
 
     def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
-        """Read the items of the list under a key; those with mistakes are left out."""
+        """Read the items of the list under a key; items with mistakes are left out."""
         pieces: list[Piece] = []
         items = self._items(section, key)
         for number, item in enumerate(items, 1):
@@ -74,7 +74,7 @@ class LineReader:
         return tuple(pieces)
 
     def _items(self, section: SourceMapping, key: str) -> list[SourceMapping]:
-        """Return the items of a list, each a mapping."""
+        """Return the items of a list, which are all mappings."""
         found = section.data[key]
         if not isinstance(found, (list, tuple)):
             section.refuse((key,), f"`{key}` must be a list of items")
@@ -104,10 +104,10 @@ class LineReader:
         if len(once) * count > MOST_PIECES:
             item.refuse(("count",), f"{count} times makes more than {MOST_PIECES} pieces")
             return ()
-        if count > 1:  # several do not hang at one depth
+        if count > 1:  # several pieces cannot have the same planned depth
             once = tuple(map(unplanned, once))
         number = item.location[-1]
-        assert isinstance(number, int)  # its place in a list
+        assert isinstance(number, int)  # the index in a list
         first = 0 if isinstance(definition, Assembly) else -1
         return tuple(
             placed(piece, Place(number, repeat, part))
@@ -116,8 +116,11 @@ class LineReader:
         )
 
     def _unknown_kind(self, item: SourceMapping, *, judged: bool) -> None:
-        """Judge the keys of an item without a component: the length, and by what they are of every
-        kind, unless they are `judged`, those that no component gives.
+        """Check the keys of an item whose component is unknown.
+
+        A length is checked. Of the other keys, those that are quantities of the same dimension in
+        all kinds are checked, and those of no kind are refused; with `judged` they are checked
+        elsewhere.
         """
         if item.data.get("length", "fit") != "fit":
             self._quantity(item, "length", POSITIVE_LENGTH, "")
@@ -151,7 +154,7 @@ class LineReader:
             message = "`length_at` is for cables and chains; this is as long as its definition says"
             item.refuse(("length_at",), message, key=True)
         elif "length" in item.data and "length_at" in item.data:
-            message = "gives both `length` and `length_at`; one says how long it is cut"
+            message = "gives both `length` and `length_at`, which exclude each other"
             item.refuse(("length_at",), message, key=True)
         fit_depth = self._fit_depth(item, fits=length is None)
         clamps = self._clamps(item, length)
@@ -176,7 +179,7 @@ class LineReader:
         )
 
     def _measured(self, item: SourceMapping, component: Flexible) -> tuple[float, float]:
-        """Return the unstretched length of what is measured under a load [m], and that load [N]."""
+        """Return the unstretched length [m] of a cable measured under a load, and the load [N]."""
         if not isinstance(item.data["length_at"], dict):
             example = "{load: 2 kN, length: 480 m}"
             item.refuse(("length_at",), f"`length_at` must be as `{example}`")
@@ -191,7 +194,9 @@ class LineReader:
         return measured.length / (1.0 + component.strain_under(measured.load)), measured.load
 
     def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
-        """Return the depth to cut a piece to: of the line's top, in a tow of its own lower end."""
+        """Return the depth to which a piece is cut to fit: that of the line's top, or in a tow that
+        of the piece's lower end.
+        """
         key, foreign, home = ("top_depth", "body_depth", "tows")
         if self._towed:
             key, foreign, home = ("body_depth", "top_depth", "moorings")
@@ -199,7 +204,7 @@ class LineReader:
             message = f"`{foreign}` belongs to {home}; here it is `{key}`"
             item.refuse((foreign,), message, key=True)
         if fits and (key in item.data or foreign not in item.data):
-            # depths are counted from the water, above which a tow in air may end
+            # depths count from the surface; a tow in air may end above it
             kind = QuantityField("length") if self._in_air else LENGTH
             return self._quantity(item, key, kind, "`length: fit` needs it")
         if key in item.data:
@@ -207,15 +212,15 @@ class LineReader:
         return None
 
     def _tell_of_mass(self, use: str, component: Component) -> None:
-        """Notice that in air a net force in water has to do where it is all that is known."""
+        """Add a notice if the net force in water is used as the weight in air."""
         if self._in_air and component.mass is None and component.displaced_volume is None:
             notice = (
-                f"{use}: no mass is known; its net force in water is taken as its weight in air"
+                f"{use}: the mass is unknown; its net force in water is used as its weight in air"
             )
             self._notices += [notice] * (notice not in self._notices)
 
     def _clamps(self, item: SourceMapping, length: float | None) -> tuple[Clamp, ...]:
-        """Return the clamps of an item, none beyond its length where that is known."""
+        """Return the clamps of an item; a clamp beyond a known length is refused."""
         clamps: list[Clamp] = []
         for clamp in self._items(item, "clamps") if "clamps" in item.data else ():
             entry = self._entry(clamp)
@@ -244,8 +249,8 @@ class LineReader:
     def _equipment(
         self, item: SourceMapping, component: Component, *, clamped: bool
     ) -> item_keys.Equipment:
-        """Return what an item or a clamp says of the individual thing, with the depth that its
-        label names unless it gives a `planned_depth`.
+        """Return the keys about the individual equipment; without `planned_depth`, the depth in the
+        label is used.
         """
         equipment, label = item_keys.read_equipment(item), item.data.get("label")
         if equipment.planned_depth is not None or not isinstance(label, str):
@@ -278,7 +283,7 @@ class LineReader:
         entry: CatalogueEntry,
         item: SourceMapping,
     ) -> tuple[Piece, ...]:
-        """Return the pieces of an assembly with its figures where they lack them."""
+        """Return the pieces of an assembly, which take its figures if they lack them."""
         for key in ASSEMBLY_FIGURES:
             value = getattr(assembly, key)
             if value is None:
@@ -315,7 +320,7 @@ class LineReader:
             notice = f"{use}: defined in {entry.place}, which hides that of {hidden.place}"
             if entry.section.base is not None:
                 keys = ", ".join(f"`{key}`" for key in entry.replaces)
-                notice = f"{use}: {keys} of {entry.place} in place of that of {hidden.place}"
+                notice = f"{use}: {keys} of {entry.place} replaces that of {hidden.place}"
             if entry.section.base is None or entry.replaces:
                 self._notices += [notice] * (notice not in self._notices)
         return entry
@@ -323,7 +328,7 @@ class LineReader:
     def _definition(
         self, entry: CatalogueEntry, item: SourceMapping, item_keys: frozenset[str]
     ) -> Component | Assembly | None:
-        """Return what an item uses, the item's overrides applied."""
+        """Return the definition that an item uses, with the item's overrides."""
         if entry.id not in self._defined:
             own = entry.section.into(self._problems)
             self._defined[entry.id] = self._define(entry, own)
@@ -371,10 +376,12 @@ class LineReader:
         definition: Component | Outline,
         component: Component,
     ) -> None:
-        """Keep what the line lets a component bear, lift, weigh or resist beyond its definition."""
-        loads = () if isinstance(component, Anchor) else LESSER_FLATTERS
+        """Record the overrides of a line that allow a component more load, depth or buoyancy, or
+        less weight or drag.
+        """
+        loads = () if isinstance(component, Anchor) else LENIENT_IF_LESS
         sourced = item.data.get("sources")
-        for key in (*GREATER_FLATTERS, *loads):
+        for key in (*LENIENT_IF_GREATER, *loads):
             before, after = (getattr(each, key, None) for each in (definition, component))
             if before is None or after is None:
                 continue
@@ -445,7 +452,7 @@ def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Pi
 
 
 def _lacks(component: Component, key: str, *, clamped: bool) -> bool:
-    """Whether a component that needs a figure in its place does not specify it."""
+    """Whether a component lacks a figure that it needs in its place."""
     if key in ("working_load", "breaking_load"):
         return not clamped and component.working_load is component.breaking_load is None
     if key == "grip":

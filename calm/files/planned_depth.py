@@ -1,4 +1,4 @@
-"""The planned depth of a piece or a clamp, as its label names it.
+"""The planned depth of a piece or a clamp, as given in its label.
 
 A label names a depth if it has exactly one number with the unit of a length (``meter 200 m``,
 ``CTD400m``, ``SBE37 @ 1500m``, ``buoy 650 ft``), a number after ``@``, or ends in four digits that
@@ -51,7 +51,7 @@ _LEAST_OF_A_FLOAT = 10.0
 
 
 def depth_in_label(label: str, serial: str | None = None, rating: float | None = None) -> float:
-    """Depth that a label names [m], by the rules above; NaN if it names none.
+    """Return the depth in a label [m] by the rules above; NaN if there is none.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def depth_in_label(label: str, serial: str | None = None, rating: float | None =
 def named_depth(
     label: str, component: Component, serial: str | None, *, clamped: bool
 ) -> float | None:
-    """Planned depth that the label of a piece or a clamp names [m]; None if it names none."""
+    """Return the planned depth in the label of a piece or a clamp [m]; None if there is none."""
     role = component.role
     measures = role in ("instrument", "float") or clamped
     if not measures or isinstance(component, Flexible | Profiler):

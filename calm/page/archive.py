@@ -32,12 +32,12 @@ _ALWAYS = (1980, 1, 1, 0, 0, 0)
 
 
 def packed(python: str) -> bytes:
-    """A ZIP archive to be unpacked where a page finds its modules: the same bytes for the same files.
+    """A ZIP archive of modules, to be unpacked in the page: the same bytes for the same files.
 
     Parameters
     ----------
-    python : version of the runtime's Python, such as "3.13"; if it is the version of the Python that
-        runs here, the modules are compiled already, which makes the page start sooner
+    python : version of the runtime's Python, such as "3.13"; if this Python has the same version,
+        the archive holds the modules compiled, too, which makes the page start sooner
     """
     compiles = python == f"{sys.version_info[0]}.{sys.version_info[1]}"
     content = io.BytesIO()

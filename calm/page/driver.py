@@ -1,8 +1,7 @@
-"""Textual's driver for a terminal in the page: text goes out, keys and sizes come in as messages."""
+"""Textual's driver for a terminal in a page: text goes out, keys and sizes come in."""
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -17,8 +16,7 @@ from textual.message import Message
 _BEGIN = "\x1b[?1049h\x1b[?25l\x1b[?1000h\x1b[?1003h\x1b[?1006h\x1b[?2004h"
 """Alternate screen, no cursor, mouse with all its movements, pastes in brackets."""
 _END = "\x1b[?2004l\x1b[?1006l\x1b[?1003l\x1b[?1000l\x1b[?25h\x1b[?1049l"
-_LONE_ESCAPE = 0.15
-"""Time after which an escape sign is a key, and not the beginning of a sequence [s]."""
+_ESCAPE = "\x1b"
 
 
 @dataclass
@@ -92,12 +90,10 @@ class PageDriver(Driver):
 
     def feed(self, text: str) -> None:
         """Take what keys and mouse send, as the events of Textual."""
+        if text == _ESCAPE:  # the page sends whole sequences: it is no beginning of one
+            self.process_message(events.Key("escape", text))
+            return
         for event in self._parser.feed(text):
-            self.process_message(event)
-        asyncio.get_running_loop().call_later(_LONE_ESCAPE, self._tick)
-
-    def _tick(self) -> None:
-        for event in self._parser.tick():
             self.process_message(event)
 
     def send_message(self, message: Message) -> None:

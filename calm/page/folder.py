@@ -122,7 +122,7 @@ def _runtime_files(runtime: Path) -> dict[str, Path]:
     missing = [name for name in wanted if name not in there]
     if missing:
         raise UsageError(
-            f"--runtime: {runtime} lacks {', '.join(missing)}; it has to hold a release of Pyodide, "
-            "and xterm.js and xterm.css of the npm package @xterm/xterm"
+            f"--runtime: {runtime} lacks {', '.join(missing)}; it has to hold a release of "
+            "Pyodide, and xterm.js and xterm.css of the npm package @xterm/xterm"
         )
     return {name: there[name] for name in wanted}

@@ -41,7 +41,7 @@ PASSES, STALLED = 200, 50
 half. A slack segment at the upper edge of a current would otherwise alternate between hanging plumb
 and trailing with the current.
 """
-NEAR_A_SWITCH = 1e-6
+SWITCH_TOLERANCE = 1e-6
 """Accuracy of the position at which a drag law switches, as a share of the segment."""
 OF_FRICTION, OF_STRUMMING = range(2)
 """Laws that switch, see `switch_at`."""
@@ -54,7 +54,7 @@ Passed = tuple[float, State, float, State, float]
 strain of the upper half, or the state above and 0 if it is not halved; the state below, and the
 strain of the lower half or of the whole part.
 """
-LITTLE_TURN = 1e-6
+SETTLED_ROTATION = 1e-6
 """Squared rotation of a segment [rad²] in the last of a few Newton steps that is accepted if full
 precision is not required.
 """
@@ -166,7 +166,7 @@ def pass_segment(
             c, doubt = 0.0, 1.0
             if near > 0.0 and size > 0.0:
                 c, doubt = few_steps_share(ax, ay, az, 0.5 * kn * area, size, u, v, w, 1)
-            if not doubt < LITTLE_TURN:
+            if not doubt < SETTLED_ROTATION:
                 c = drag_share(ax, ay, az, 0.5 * kn * area, u, v, w)
         else:
             c, factor = vibrating_share(vibration, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz)
@@ -463,7 +463,7 @@ def until_switch(
             low, at_low, at_high = length, here, 0.5 * at_high
         else:
             high, at_high, at_low = length, here, 0.5 * at_low
-        if here == 0.0 or high - low <= NEAR_A_SWITCH * part:
+        if here == 0.0 or high - low <= SWITCH_TOLERANCE * part:
             break
         length = low + (high - low) * at_low / (at_low - at_high)
     return high

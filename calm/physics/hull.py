@@ -211,7 +211,7 @@ class SurfaceFloat(NamedTuple):
     wind_cd: float
 
 
-NEVER_AFLOAT = SurfaceFloat(UNKNOWN_HULL, nan, 0.0, 0.0, 1.0, nan, 0.0, 0.0, nan, 1.0)
+UNKNOWN_FLOAT = SurfaceFloat(UNKNOWN_HULL, nan, 0.0, 0.0, 1.0, nan, 0.0, 0.0, nan, 1.0)
 """Placeholder for a float with unknown properties."""
 
 

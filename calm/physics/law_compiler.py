@@ -22,7 +22,7 @@ _Lower: Any = core.lowering.Lower
 _Lowering: Any = core.typed_passes.NativeLowering
 _Compiler: Any = core.compiler.CompilerBase
 
-NEEDLESS = {
+UNUSED_PASSES = {
     "WithLift", "InlineClosureLikes", "RewriteSemanticConstants", "DeadBranchPrune",
     "RewriteDynamicRaises", "MakeFunctionToJitFunction", "InlineInlinables", "FindLiterallyCalls",
     "LiteralUnroll", "LiteralPropagationSubPipelinePass", "InlineOverloads", "NopythonRewrites",
@@ -33,7 +33,7 @@ NEEDLESS = {
 COUNT, SIZE, DATA, SHAPE, STRIDES = range(2, 7)
 """Indices into numba's own representation of an array, after the members that manage its memory."""
 
-SELDOM = 100_000, 20, 100
+GC_THRESHOLDS = 100_000, 20, 100
 """Thresholds of garbage collection while laws are compiled: almost none of the millions of objects
 can be freed.
 """
@@ -156,7 +156,7 @@ class LawLowering(_Lowering):  # type: ignore[misc]
 
 _arrays = core.datamodel.manager.DataModelManager({_numba.types.Array: LawArray})
 core.registry.cpu_target.target_context.refresh()
-OURS: dict[str, Any] = {
+OWN_ATTRIBUTES: dict[str, Any] = {
     "data_model_manager": _arrays.chain(core.datamodel.default_manager),
     "mangler": short_name,
     "cached_internal_func": {},
@@ -169,12 +169,12 @@ class LawCompiler(_Compiler):  # type: ignore[misc]
     """Compiler class for laws."""
 
     def __init__(self, typing: Any, target: Any, *others: Any) -> None:
-        super().__init__(resolving_once(typing), target.subtarget(**OURS), *others)
+        super().__init__(resolving_once(typing), target.subtarget(**OWN_ATTRIBUTES), *others)
 
     def compile_extra(self, law: Any) -> Any:
         """Compile a law and its callees."""
         collected = gc.get_threshold()
-        gc.set_threshold(*SELDOM)
+        gc.set_threshold(*GC_THRESHOLDS)
         try:
             return super().compile_extra(law)
         finally:
@@ -186,7 +186,7 @@ class LawCompiler(_Compiler):  # type: ignore[misc]
         pipeline.passes = [
             (LawLowering if each is _Lowering else each, about)
             for each, about in pipeline.passes
-            if each.__name__ not in NEEDLESS
+            if each.__name__ not in UNUSED_PASSES
         ]
         pipeline.finalize()
         return [pipeline]

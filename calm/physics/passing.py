@@ -35,7 +35,7 @@ from calm.physics.line import (
     write_element,
     write_node,
 )
-from calm.physics.profile import SLIVER, Sea, interval_at
+from calm.physics.profile import LEAST_PART, Sea, interval_at
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
 from calm.physics.seabed import lay_line
 from calm.physics.strumming import with_beat
@@ -205,7 +205,7 @@ def pass_cable(
                 cable, knots, vibration, sea, state, how.angle_step, how.reach, share
             )
             cut = min(left, cut)
-            if left - cut < SLIVER * cut:
+            if left - cut < LEAST_PART * cut:
                 cut = left
         used += 1
         left, long, uncut = cut, 0.0, True
@@ -242,7 +242,7 @@ def pass_cable(
                 nodes, long = nodes + 1, long - way
             state, left, done, long = below, left - part, done + part, long + hung
             splits = left > 0.0 and hanging < 0.0
-            if splits and not how.given and part > SLIVER * cut:
+            if splits and not how.given and part > LEAST_PART * cut:
                 cut, left, splits = cut - left, 0.0, False
             if not splits or near == 0.0:
                 if how.recording:

@@ -9,7 +9,7 @@ from calm.physics.compiled import packed, within
 from calm.physics.line import Floats, Water, once_per_input
 from calm.physics.seawater import REFERENCE_DENSITY
 
-SLIVER = 0.01
+LEAST_PART = 0.01
 """Smallest part of a segment, as a share, at which a chosen segment may end."""
 
 
@@ -117,7 +117,8 @@ def distance_to_bend(
 
     The kink is at the next level, or before it at the depth of minimum flow, if the flow almost
     vanishes within a segment: |V| V has a kink there. The search begins at interval `i`. A level
-    within `SLIVER` of the length is skipped, unless a segment of that length has to be split there.
+    within `LEAST_PART` of the length is skipped, unless a segment of that length has to be split
+    there.
 
     Parameters
     ----------
@@ -130,7 +131,7 @@ def distance_to_bend(
     i = interval_at(sea.levels, depth, i)
     k = i + 1 if down else i
     gap = (sea.levels[k] - depth) / sinking
-    while gap <= SLIVER * length:
+    while gap <= LEAST_PART * length:
         off = abs(sea.levels[k] - depth)
         if counts_across(sea, k, min(off, deep - off), deep, share):
             break
@@ -141,7 +142,7 @@ def distance_to_bend(
     if square > 0.0:
         growth = row.u * row.du + row.v * row.dv + row.w * row.dw
         way = (row.origin - growth / square - depth) / sinking
-        if SLIVER * shorter < way < shorter:
+        if LEAST_PART * shorter < way < shorter:
             least = row.u * row.u + row.v * row.v + row.w * row.w - growth * growth / square
             if least < square * shorter * shorter * sinking * sinking:
                 return way

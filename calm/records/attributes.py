@@ -96,7 +96,8 @@ def moving_platform(dataset: xr.Dataset) -> str | None:
         return f"is of an ADCP on a ship (`source_program: {program}`), not of a mooring"
     for name, variable in dataset.variables.items():
         standard = str(variable.attrs.get("standard_name", ""))
-        if standard in _PLATFORM or _BOTTOM_TRACK.fullmatch(str(name)):
+        moves = standard in _PLATFORM or _BOTTOM_TRACK.fullmatch(str(name))
+        if moves and variable.dtype.kind in "fiu":
             speed = np.abs(np.asarray(variable[:100_000], np.float64))
             typical = float(np.median(speed[np.isfinite(speed)])) if np.isfinite(speed).any() else 0
             if typical > _MOVING:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import refused
+from calm.physics.line import Floats
 from calm.records import cf_files, velocity
 from calm.records.card import ReadCard, VariableSummary, said_of, texts_in
 from calm.records.current_terms import Terms
@@ -191,7 +192,7 @@ class CurrentDataset:
                     "them as bad"
                 )
         good = [
-            self._along(one, index, cf_files.known_values) * share_factor(one)
+            share_of(self._along(one, index, cf_files.known_values))
             for one in self._good
             if set(one.dims) <= set(self._parts[0][0].dims)
         ]
@@ -226,10 +227,9 @@ class CurrentDataset:
         return values.reshape(len(values), -1)
 
 
-def share_factor(variable: xr.DataArray) -> float:
-    """Return what turns a share of pings into a fraction: hundredths unless its unit is 1."""
-    fraction = str(variable.attrs.get("units", "")).strip() == "1"
-    return 1.0 if fraction else 0.01
+def share_of(good: Floats) -> Floats:
+    """Return shares of good pings as fractions; the greatest of percentages is above 1."""
+    return good / 100.0 if np.nanmax(good, initial=0.0) > 1.0 else good
 
 
 def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str, ...]:

@@ -291,7 +291,7 @@ def _card_of(
     with header.row.path.open("rb") as file:
         above = (line.decode(errors="replace").strip() for line in islice(file, header.row.number))
         comment = " ".join(line.lstrip("# ") for line in above if line.startswith("#"))
-    names = {heading(column)[0].lower(): column for column in header.columns}
+    names = {name.lower(): name for name, _ in map(heading, header.columns)}
     east = north = ", ".join(
         names[one] for one in ("u", "v", "speed", "toward", "from") if one in names
     )

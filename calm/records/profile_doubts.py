@@ -74,7 +74,7 @@ def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> I
             f"the current grows from {say('speed', float(speed[0]))} down to "
             f"{say('speed', float(speed[-1]))} at the seabed: are the depths heights above it?"
         )
-    yield from _too_strong(depth, speed, water_depth)
+    yield from strength_doubts(depth, speed, water_depth)
 
 
 def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[str]:
@@ -99,7 +99,15 @@ def _between(one: float, other: float) -> float:
     return float(abs((one - other + 180.0) % 360.0 - 180.0))
 
 
-def _too_strong(depth: Floats, speed: Floats, water_depth: float) -> Iterator[str]:
+def strength_doubts(depth: Floats, speed: Floats, water_depth: float) -> Iterator[str]:
+    """Yield a remark if currents are stronger than any that was measured at such depths.
+
+    Parameters
+    ----------
+    depth : (n,) of the levels [m]
+    speed : (n,) greatest at each [m/s]
+    water_depth : [m]; inf if unknown
+    """
     if not _SHELF < water_depth < inf:
         return
     deep = depth > _DEEP

@@ -17,14 +17,15 @@ from numpy.typing import NDArray
 from calm.physics.line import Floats
 from calm.quantities import say
 from calm.records.current_terms import time_text
+from calm.records.profile_doubts import strength_doubts
 from calm.units import KNOT
 
 Times = NDArray[np.datetime64]
 
 UNCOVERED, FEW = 0.1, 25.0
 """Share of the depth, and depth [m], that a profile may leave out at either end, or lie below."""
-WEAK, FAST = 0.03, 2.0
-"""Speeds [m/s] that no record has as its strongest, or as its median."""
+WEAK = 0.03
+"""Speed [m/s] that the strongest current of every record exceeds."""
 MANY = 50
 """Smallest sample for which a coincidence is ruled out."""
 SECTOR = 40.0
@@ -69,9 +70,12 @@ def current_doubts(found: CurrentValues) -> Iterator[str]:
     """Yield doubts about the values of a current."""
     known = np.isfinite(found.u) & np.isfinite(found.v)
     yield from level_doubts(found.depth, known, found.water_depth)
-    speed = np.hypot(found.u, found.v)[known]
-    yield from speed_doubts(speed, found.unit, found.factor)
-    yield from direction_doubts(found.u[known], found.v[known])
+    speed = np.where(known, np.hypot(found.u, found.v), 0.0)
+    yield from speed_doubts(speed[known], found.unit, found.factor)
+    levels = _levels(found.depth, known)
+    there = np.isfinite(levels) & known.any(axis=0)
+    yield from strength_doubts(levels[there], speed.max(axis=0)[there], found.water_depth)
+    yield from sector_doubts(found.u[known], found.v[known])
     for values, side in ((found.u[known], "east"), (found.v[known], "north")):
         yield from _recurring(values, side)
     if found.good is not None:
@@ -94,9 +98,7 @@ def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) ->
     known : (n, k) which have a value
     water_depth : [m]; inf where it is not known
     """
-    depth = np.broadcast_to(depth, known.shape)
-    there = known.any(axis=0)
-    levels = np.array([*map(_median, depth.T)])
+    there, levels = known.any(axis=0), _levels(depth, known)
     allowed = max(UNCOVERED * water_depth, FEW)
     deeper = there & (levels > water_depth + allowed)
     if deeper.any():
@@ -113,10 +115,16 @@ def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) ->
             f"{empty.sum()} of {levels.size} levels above the seabed have no value at any time: "
             f"{levels[empty].min():g} to {levels[empty].max():g} m"
         )
+    depth = np.broadcast_to(depth, known.shape)
     used = depth[known & np.isfinite(depth)]
     used = used[used >= 0.0]
     if used.size and (missing := left_out(used.min(), used.max(), water_depth)):
         yield missing
+
+
+def _levels(depth: Floats, known: NDArray[np.bool_]) -> Floats:
+    """Return the median depth (k,) of each level [m]; NaN if unknown."""
+    return np.array([*map(_median, np.broadcast_to(depth, known.shape).T)])
 
 
 def _median(values: Floats) -> float:
@@ -147,25 +155,22 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
 
 
 def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Iterator[str]:
-    """Yield that speeds (n,) [m/s] are too small or too large for their declared unit."""
-    if speed.size < _VARIED:
-        return
-    strongest, typical = float(speed.max()), float(np.median(speed))
-    if 0.0 < strongest < WEAK:
-        said = f"the strongest of {speed.size} currents is {strongest:.2g} m/s"
-    elif FAST < typical < inf:
-        said = f"half of {speed.size} currents are faster than {typical:.2g} m/s"
-    else:
+    """Yield that speeds (n,) [m/s] are too small for their declared unit."""
+    strongest = float(speed.max(initial=0.0))
+    if speed.size < _VARIED or not 0.0 < strongest < WEAK:
         return
     likely = [
         name for name, size in _UNITS.items()
         if 0.1 < strongest * size / factor < 3.0 and abs(size / factor - 1.0) > 0.1
     ]  # fmt: skip
     meant = f"; are they in {' or '.join(likely)}?" if likely else ""
-    yield f"{said} in the declared unit, {unit}{meant}"
+    yield (
+        f"the strongest of {speed.size} currents is {strongest:.2g} m/s in the declared unit, "
+        f"{unit}{meant}"
+    )
 
 
-def direction_doubts(u: Floats, v: Floats) -> Iterator[str]:
+def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
     """Yield that the directions of currents (n,) [m/s] lie in a narrow sector that begins north."""
     moving = (u != 0.0) | (v != 0.0)
     if moving.sum() < MANY:

@@ -20,16 +20,16 @@ MOST_ROUNDS = 6
 MOST_SEGMENTS = 20_000
 
 
-def finer(errors: Errors, span: float, asked: float, step: float, segments: int) -> float:
+def finer(errors: Errors, span: float, requested: float, step: float, segments: int) -> float:
     """Angle step of the next round [rad]; 0 if the shape is fine enough.
 
     Parameters
     ----------
     span : length to which errors of depth are relative [m]
-    asked, step : the angle step of the settings, and that of this round [rad]
+    requested, step : the angle step of the settings, and that of this round [rad]
     segments : number of segments in the fine shape
     """
-    target = degrees(asked)
+    target = degrees(requested)
     target *= target
     place, tension = DEPTH_TARGET * target, TENSION_TARGET * target
     excess = max(errors.depth / (place * span), errors.relative / tension)

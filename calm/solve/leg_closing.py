@@ -39,19 +39,19 @@ MOST_STEPS, HALVINGS = 60, 9
 NEAR, CLOSED = 1e-4, 1e-10
 """Residual of lengths and forces, as shares of the longest leg and of a typical force: before the
 segments are kept, and of a finished shape."""
-BEFORE_CHOICE = 1e-7
+CLOSED_FOR_SEGMENTS = 1e-7
 """As `CLOSED`, for the shape in which segments are chosen. It is small enough for the segments to
 depend on the net alone, not on the course of the search.
 """
 MOST_LEFT = 10.0
 """Residual, as a multiple of `enough`, that is accepted if no step reduces it further."""
-LEADS_ON = 0.25
+KEPT_SLOPES_REDUCTION = 0.25
 """Factor by which a step must reduce the sum of squares for the slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
 """Slope limit (per share) and largest number of steps for the secants of a single unknown."""
 SINGULAR = 1e-14
 """Pivot, in shares, below which an unknown keeps its value."""
-NO_HOLD = 1e-5
+NEGLIGIBLE_PULL = 1e-5
 """Largest horizontal pull at a touchdown, as a share of the weight of a leg, that cannot hold the
 net in place. It exceeds the drag of the weak current that is added to still water.
 """
@@ -66,35 +66,35 @@ DEPTH_ERROR, TENSION_ERROR = range(2)
 def newton_step(net: NetProblem, found: Sequence[float]) -> float:
     """Solve the linear equations of a Newton step, and return the size of the step, in shares.
 
-    The step is written to `net.way`. Gaussian elimination with partial pivoting is used; an unknown
-    without a pivot keeps its value.
+    The step is written to `net.update`. The method is Gaussian elimination with partial pivoting;
+    an unknown without a pivot keeps its value.
     """
-    size, paper, row = len(found), net.paper, 0
+    size, matrix, row = len(found), net.matrix, 0
     for r in range(size):
         for c in range(size):
-            paper[r][c] = net.slopes[r][c]
-        paper[r][size] = -found[r]
+            matrix[r][c] = net.slopes[r][c]
+        matrix[r][size] = -found[r]
     for k in range(size):
         pivot = row
         for r in range(row, size):
-            if abs(paper[r][k]) > abs(paper[pivot][k]):
+            if abs(matrix[r][k]) > abs(matrix[pivot][k]):
                 pivot = r
         net.order[k] = -1
-        if row == size or abs(paper[pivot][k]) < SINGULAR:
+        if row == size or abs(matrix[pivot][k]) < SINGULAR:
             continue
         for c in range(k, size + 1):
-            paper[row][c], paper[pivot][c] = paper[pivot][c], paper[row][c]
+            matrix[row][c], matrix[pivot][c] = matrix[pivot][c], matrix[row][c]
         for r in range(size):
-            share = 0.0 if r == row else paper[r][k] / paper[row][k]
+            share = 0.0 if r == row else matrix[r][k] / matrix[row][k]
             if share != 0.0:
                 for c in range(k, size + 1):
-                    paper[r][c] -= share * paper[row][c]
+                    matrix[r][c] -= share * matrix[row][c]
         net.order[k] = row
         row += 1
     for k in range(size):
         row = net.order[k]
-        net.way[k] = 0.0 if row < 0 else paper[row][size] / paper[row][k]
-    return sqrt(squares(net.way))
+        net.update[k] = 0.0 if row < 0 else matrix[row][size] / matrix[row][k]
+    return sqrt(squares(net.update))
 
 
 def squares(values: Sequence[float]) -> float:
@@ -178,7 +178,7 @@ def close_on(
         now = inf
         for _ in range(HALVINGS if fresh else 1):
             for k in range(size):
-                trial[k] = x[k] + share * net.way[k] * net.scale[k]
+                trial[k] = x[k] + share * net.update[k] * net.scale[k]
             failure = write_residual(net, trial, how, False)
             if failure == NO_ROOM:
                 return NEEDS_ROOM
@@ -194,13 +194,13 @@ def close_on(
             break
         if plain:
             copy_values(trial, x)
-            whole = share * share * squares(net.way)
+            whole = share * share * squares(net.update)
             for k in range(size):
                 off = (net.found[k] - (1.0 - share) * left[k]) * share / max(whole, 1e-300)
                 for m in range(size):
-                    net.slopes[k][m] += off * net.way[m]
+                    net.slopes[k][m] += off * net.update[m]
             copy_values(net.found, left)
-        fresh = not now < LEADS_ON * before
+        fresh = not now < KEPT_SLOPES_REDUCTION * before
         if fresh and (not plain or squares(left) > enough * enough):
             failure = write_residual(net, x, how, True)
             if failure != GOES_ON:
@@ -226,7 +226,7 @@ def drifts(net: NetProblem) -> bool:
         if leg.seabed == -inf:
             continue
         record, foot = net.lines.work.records[i][FINE], int(state[HUNG]) - 1
-        east, north, least = record[3][foot], record[4][foot], NO_HOLD * leg.weight
+        east, north, least = record[3][foot], record[4][foot], NEGLIGIBLE_PULL * leg.weight
         if state[STAGE] < 0.0 or east * east + north * north > least * least:
             return False
         anchored = True
@@ -259,15 +259,15 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
     # segments chosen near rough unknowns depend on these, so that they are chosen again in the
     # closed shape; a single unknown is known well enough at once
     if len(x) > 1 and net.lines.limits.near == 0.0:
-        ending = close_coarsely(net, sea, x, step, max(enough, BEFORE_CHOICE))
+        ending = close_coarsely(net, sea, x, step, max(enough, CLOSED_FOR_SEGMENTS))
         if ending != FOUND:
             return ending
-    asked = step
+    requested = step
     for _ in range(MOST_ROUNDS):
         ending = close_both(net, sea, x, step, enough)
         if ending != FOUND:
             return ending
-        step = finer(extrapolate_legs(net, x), net.span, asked, step, segments_of(net))
+        step = finer(extrapolate_legs(net, x), net.span, requested, step, segments_of(net))
         if step == 0.0:
             break
     return FOUND
@@ -351,21 +351,21 @@ class NetTask(NamedTuple):
 MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
-def do_task(asked: NetTask, _: float) -> float:
+def do_task(job: NetTask, _: float) -> float:
     """Perform a task and return its outcome; for DRIFTS, 1 if the net drifts, else 0."""
-    net, x, how = asked.net, asked.x, asked.how
-    if asked.task == DRIFTS:
+    net, x, how = job.net, job.x, job.how
+    if job.task == DRIFTS:
         return 1.0 if drifts(net) else 0.0
-    if asked.task == SETTLE:
-        return float(settle(net, how.sea, x, how.step, asked.enough))
-    if asked.task == CLOSE:
-        return float(close_net(net, x, how, asked.enough, asked.known))
-    failure = write_residual(net, x, how, asked.task == SLOPES)
-    if asked.task == MARCH and failure == GOES_ON:
+    if job.task == SETTLE:
+        return float(settle(net, how.sea, x, how.step, job.enough))
+    if job.task == CLOSE:
+        return float(close_net(net, x, how, job.enough, job.known))
+    failure = write_residual(net, x, how, job.task == SLOPES)
+    if job.task == MARCH and failure == GOES_ON:
         record_shapes(net, x, how)
     return float(failure)
 
 
-def do_by_address(ask: Callable[[NetTask, float], float], asked: NetTask) -> float:
+def do_by_address(ask: Callable[[NetTask, float], float], job: NetTask) -> float:
     """Call `do_task` by the address of its compiled form."""
-    return ask(asked, 0.0)
+    return ask(job, 0.0)

@@ -38,7 +38,7 @@ from calm.solve.leg_numbers import (
 )
 from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, Unknown
 
-JUMP = 1e-6
+SLOPE_STEP = 1e-6
 """Share by which an unknown is moved for the slopes."""
 LEAST_PULL = 1e-3
 """Pull of a leg, as a share of its weight, below which that is the scale of its forces."""
@@ -226,26 +226,26 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
         net.slopes[at + 2][start + 2] -= net.scale[start + 2] / net.rows[at + 2]
         for k in range(2):  # the position of its upper end changes the miss, but not the march
             before = x[start + k]
-            add_passed(net, i, passed, -1.0 / JUMP, start + k)
-            x[start + k] = before + JUMP * net.scale[start + k]
+            add_passed(net, i, passed, -1.0 / SLOPE_STEP, start + k)
+            x[start + k] = before + SLOPE_STEP * net.scale[start + k]
             write_anchor_miss(net, i, x, how.loose)
-            add_passed(net, i, passed, 1.0 / JUMP, start + k)
+            add_passed(net, i, passed, 1.0 / SLOPE_STEP, start + k)
             x[start + k] = before
             write_anchor_miss(net, i, x, how.loose)
     moved = Marching(how.sea, how.step, how.cuts, True, how.exact, OTHER, how.loose)
     free = leg.own + (1 if leg.kind == PULLED and leg.start >= 0 else 0)
     for m in range(free):
         k = at + m if m < leg.own else start + 2
-        add_passed(net, i, passed, -1.0 / JUMP, k)
+        add_passed(net, i, passed, -1.0 / SLOPE_STEP, k)
     for m in range(free):
         k = at + m if m < leg.own else start + 2
         before = x[k]
-        x[k] = before + JUMP * net.scale[k]
+        x[k] = before + SLOPE_STEP * net.scale[k]
         failure = march_leg(net, i, x, moved)
         x[k] = before
         if failure != GOES_ON:
             return failure
-        add_passed(net, i, passed, 1.0 / JUMP, k)
+        add_passed(net, i, passed, 1.0 / SLOPE_STEP, k)
     if leg.kind == PULLED and leg.start >= 0:
         for k in range(3):
             net.slopes[start + k][at + k] -= net.scale[at + k] / net.rows[start + k]

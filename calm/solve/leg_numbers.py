@@ -103,8 +103,8 @@ class NetProblem(NamedTuple):
     passed : (·, `OUT`) results of each march
     first, last : nodes at the ends of each piece
     found, kept : residual as shares of `rows`: of the last march, and of the unknowns kept
-    slopes, way : the Jacobian of `found` by shares of `scale`, and the Newton step
-    trial, paper, order : work arrays for the step
+    slopes, update : the Jacobian of `found` by shares of `scale`, and the Newton step
+    trial, matrix, order : work arrays for the step
     coarse, better : the unknowns on coarse segments, and extrapolated
     scale : scales of the unknowns; every leg has its own scale of forces
     errors : errors of depths [m] and tensions [N]
@@ -125,9 +125,9 @@ class NetProblem(NamedTuple):
     found: MutableSequence[float]
     kept: MutableSequence[float]
     slopes: Sequence[MutableSequence[float]]
-    way: MutableSequence[float]
+    update: MutableSequence[float]
     trial: MutableSequence[float]
-    paper: Sequence[MutableSequence[float]]
+    matrix: Sequence[MutableSequence[float]]
     order: MutableSequence[int]
     coarse: MutableSequence[float]
     better: MutableSequence[float]

@@ -33,7 +33,7 @@ LINEAR = 4e-7
 """Largest product of the misses of two shapes, in spans squared, for linear interpolation."""
 FAR = 3e-4
 """Largest miss on halved cuts, as a share of the span, for this interpolation."""
-FAR_BELOW = 0.01
+COARSE_REJECTION_DEPTH = 0.01
 """Depth below the seabed, as a share of the water depth, at which a line is already rejected on
 coarse cuts.
 """
@@ -135,7 +135,7 @@ def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: 
     if not hangs or closed.ending != FOUND:
         return closed
     lowest, above = lowest_node(problem, problem.work.records[record], closed.nodes)
-    if above < -FAR_BELOW * problem.limits.depth:
+    if above < -COARSE_REJECTION_DEPTH * problem.limits.depth:
         piece = int(problem.work.records[record][6][max(lowest, 1)])
         return Closed(BELOW_SEABED, -above, piece, closed.root, 0, 0, False, 0.0, 0)
     return closed

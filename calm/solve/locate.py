@@ -44,7 +44,7 @@ NEAR = (0.02, 0.2)
 """Positions of additional samples, as shares of the first step of this scan. A line whose top is in
 a weak current may miss the anchor there, and reach the anchor in slightly stronger current.
 """
-DIP = 8
+DIP_SAMPLES = 8
 """Number of depths tried to see whether the miss changes sign between three samples."""
 GOLDEN = 0.381966
 ROUNDING = 1e-12
@@ -203,7 +203,7 @@ def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: S
     if not 0.0 < sign * here[1] < min(sign * before[1], sign * after[1]):
         return here
     low, best, high = before, here, after
-    for _ in range(DIP):
+    for _ in range(DIP_SAMPLES):
         left = best[0] - low[0] > high[0] - best[0]
         x = best[0] - GOLDEN * (best[0] - low[0] if left else best[0] - high[0])
         tried = (x, coarse_miss(search, unknown, x))
@@ -317,10 +317,10 @@ def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
             root = coarse_root(search, unknown, following, low, share, high)
             if isnan(root.miss) or len(problem.surfacing) == 1:
                 return root
-            stands = height_at(search, root, 1)
-            if isnan(stands):
+            height = height_at(search, root, 1)
+            if isnan(height):
                 return Root(True, unknown, nan, nan, nan)
-            return root if stands <= problem.limits.allowed else none
+            return root if height <= problem.limits.allowed else none
         share, high = following, low
     return none
 
@@ -349,16 +349,16 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
         if isnan(unloaded):
             return stopped(problem, none)
         if unloaded > 0.0:
-            other, stands = none, 0.0
+            other, height = none, 0.0
             if k == 0 and turns_back(problem.sea):
                 root, other = roots_afloat(search, unknown)
             else:
                 root = coarse_root(search, unknown, 1.0, deep, 0.0, unloaded)
             if not isnan(root.miss) and k + 1 < count:
-                stands = height_at(search, root, k + 1)
-            if isnan(root.miss) or isnan(stands):
+                height = height_at(search, root, k + 1)
+            if isnan(root.miss) or isnan(height):
                 return stopped(problem, none)
-            if k + 1 == count or stands <= limits.allowed:
+            if k + 1 == count or height <= limits.allowed:
                 return CoarseRoots(FOUND, 0.0, root, other)
         if k + 1 == count:
             break

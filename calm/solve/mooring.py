@@ -45,7 +45,7 @@ from calm.solve.solution import (
     standing_lift,
 )
 from calm.solve.starts import fill_starts
-from calm.solve.two_speeds import Solver, runs_compiled
+from calm.solve.two_speeds import CompiledPart, runs_compiled
 
 MOST_DEPTHS = 500
 """Largest length of a line, in water depths: segments are at most a hundredth of the depth."""
@@ -53,7 +53,7 @@ MORE_ROOM = 8
 """Factor by which the work arrays grow if a line needs more segments."""
 
 
-BREATH = 1e-3
+SLACK_LINE_CURRENT = 1e-3
 """Speed of a current that gives a slack line a direction but has no other effect [m/s]."""
 
 
@@ -62,8 +62,8 @@ def stirred(water: Water) -> Water | None:
 
     A slack line in a still layer of a current hangs in a vertical fold, as in the weakest current.
     """
-    still = np.hypot(water.u, water.v) < BREATH
-    return replace(water, u=np.where(still, BREATH, water.u)) if still.any() else None
+    still = np.hypot(water.u, water.v) < SLACK_LINE_CURRENT
+    return replace(water, u=np.where(still, SLACK_LINE_CURRENT, water.u)) if still.any() else None
 
 
 def solve_mooring(line: Line, water: Water, settings: Settings | None = None) -> Solution:
@@ -106,10 +106,10 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
 
 def find_compiled(search: Search, referee: Referee) -> FoundShape:
     """Run `find_shape` compiled."""
-    asked = AskedSearch(search, referee)
-    find = by_address(find_asked, asked)
-    outcome(find_now, True, find, asked)
-    return as_told(list(search.problem.work.found))
+    task = SearchTask(search, referee)
+    find = by_address(run_search, task)
+    outcome(call_search, True, find, task)
+    return read_found(list(search.problem.work.found))
 
 
 def search_of(problem: LineProblem, compiled: bool) -> Search:
@@ -142,28 +142,28 @@ def refuse_endless(line: Line, water: Water) -> None:
         )
 
 
-class AskedSearch(NamedTuple):
-    """Arguments of `find_asked`."""
+class SearchTask(NamedTuple):
+    """Arguments of `run_search`."""
 
     search: Search
     referee: Referee
 
 
-def find_asked(asked: AskedSearch, first: float) -> float:
+def run_search(task: SearchTask, first: float) -> float:
     """Run a search, write the result to the work arrays of the problem, and return the outcome.
 
     If `first` is not 0, the starts of a batch are computed instead, before its first profile.
     """
     if first > 0.0:
-        return float(fill_starts(asked.search))
-    found = find_shape(asked.search, asked.referee)
-    tell(found, asked.search.problem.work.found)
+        return float(fill_starts(task.search))
+    found = find_shape(task.search, task.referee)
+    write_found(found, task.search.problem.work.found)
     return float(found.closed.ending)
 
 
-def find_now(find: Callable[[AskedSearch, float], float], asked: AskedSearch) -> float:
+def call_search(find: Callable[[SearchTask, float], float], task: SearchTask) -> float:
     """Call a search by its address."""
-    return find(asked, 0.0)
+    return find(task, 0.0)
 
 
 ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
@@ -174,43 +174,45 @@ CLOSURE, MOMENT, SHARE_IN_USE, LIES, FIRST_OTHER = range(22, 27)
 """
 
 
-def tell(found: FoundShape, told: MutableSequence[float]) -> None:
+def write_found(found: FoundShape, values: MutableSequence[float]) -> None:
     """Write a found shape to the result array."""
     closed, errors = found.closed, found.errors
     root = closed.root
     unknown = root.unknown
-    told[ENDING], told[VALUE], told[PIECE] = closed.ending, closed.value, closed.piece
-    told[GOAL], told[SOUGHT] = unknown.goal, unknown.sought
-    told[RIDES], told[LANDS], told[STAGES] = unknown.rides, unknown.lands, unknown.stages
-    told[UNKNOWN_VALUE], told[MISS], told[SLOPE] = root.x, root.miss, root.slope
-    told[NODES], told[HANGING] = closed.nodes, closed.hanging
-    told[LANDED], told[GROUNDED] = closed.landed, closed.grounded
-    told[SEGMENTS] = closed.segments
-    told[FIRST_ERROR], told[FIRST_ERROR + 1] = errors.depth, errors.tension
-    told[FIRST_ERROR + 2] = errors.relative
-    told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
-    told[SHARE_IN_USE], told[LIES] = found.share, found.grounded
-    told[CLOSURE], told[MOMENT] = found.closure, found.moment
+    values[ENDING], values[VALUE], values[PIECE] = closed.ending, closed.value, closed.piece
+    values[GOAL], values[SOUGHT] = unknown.goal, unknown.sought
+    values[RIDES], values[LANDS], values[STAGES] = unknown.rides, unknown.lands, unknown.stages
+    values[UNKNOWN_VALUE], values[MISS], values[SLOPE] = root.x, root.miss, root.slope
+    values[NODES], values[HANGING] = closed.nodes, closed.hanging
+    values[LANDED], values[GROUNDED] = closed.landed, closed.grounded
+    values[SEGMENTS] = closed.segments
+    values[FIRST_ERROR], values[FIRST_ERROR + 1] = errors.depth, errors.tension
+    values[FIRST_ERROR + 2] = errors.relative
+    values[FIRST_ERROR + 3], values[FIRST_ERROR + 4] = errors.lift, errors.pull
+    values[SHARE_IN_USE], values[LIES] = found.share, found.grounded
+    values[CLOSURE], values[MOMENT] = found.closure, found.moment
     other = found.other
-    told[FIRST_OTHER], told[FIRST_OTHER + 1] = other.depth, other.grounded_length
-    told[FIRST_OTHER + 2], told[FIRST_OTHER + 3] = other.used_buoyancy, other.anchor_vertical
-    told[FIRST_OTHER + 4] = other.anchor_horizontal
+    values[FIRST_OTHER], values[FIRST_OTHER + 1] = other.depth, other.grounded_length
+    values[FIRST_OTHER + 2], values[FIRST_OTHER + 3] = other.used_buoyancy, other.anchor_vertical
+    values[FIRST_OTHER + 4] = other.anchor_horizontal
 
 
-def as_told(told: Sequence[float]) -> FoundShape:
+def read_found(values: Sequence[float]) -> FoundShape:
     """Return the found shape from the result array."""
-    whole = [int(told[i]) for i in range(len(told)) if i in WHOLE]
+    whole = [int(values[i]) for i in range(len(values)) if i in WHOLE]
     ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = whole
-    unknown = Unknown(told[GOAL], sought, bool(rides), bool(lands), stages)
-    root = Root(True, unknown, told[UNKNOWN_VALUE], told[MISS], told[SLOPE])
-    value = float(told[VALUE])
+    unknown = Unknown(values[GOAL], sought, bool(rides), bool(lands), stages)
+    root = Root(True, unknown, values[UNKNOWN_VALUE], values[MISS], values[SLOPE])
+    value = float(values[VALUE])
     closed = Closed(
-        ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]), segments
+        ending, value, piece, root, nodes, hanging, bool(landed), float(values[GROUNDED]), segments
     )
-    errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
-    other = OtherEquilibrium(*(float(figure) for figure in told[FIRST_OTHER : FIRST_OTHER + 5]))
-    share, lies = float(told[SHARE_IN_USE]), float(told[LIES])
-    return FoundShape(closed, errors, share, lies, float(told[CLOSURE]), float(told[MOMENT]), other)
+    errors = Errors(*(float(error) for error in values[FIRST_ERROR : FIRST_ERROR + 5]))
+    other = OtherEquilibrium(*(float(figure) for figure in values[FIRST_OTHER : FIRST_OTHER + 5]))
+    share, lies = float(values[SHARE_IN_USE]), float(values[LIES])
+    return FoundShape(
+        closed, errors, share, lies, float(values[CLOSURE]), float(values[MOMENT]), other
+    )
 
 
 WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
@@ -237,7 +239,7 @@ class Nearby:
         self.solution = solve_mooring(line, water, settings)
         self._water, self._settings = water, settings
         self._room = 2 * len(self.solution.cut) + 64
-        self._compiled = compiled = runs_compiled(settings, line, Solver.NEARBY)
+        self._compiled = compiled = runs_compiled(settings, line, CompiledPart.NEARBY)
         problem = problem_of(line, water, settings, compiled=compiled, room=self._room)
         search = search_of(problem, compiled)
         closed: Closed = outcome(close_coarsely, compiled, search, self.solution.landed)

@@ -22,7 +22,7 @@ from calm.solve.finish import refuse_unbalanced
 from calm.solve.leg_closing import NetTask, copy_values, do_by_address, do_task
 from calm.solve.leg_layout import LaidLeg, NetLeg, lay_net, leg_found, refuse_misplaced, unsettled
 from calm.solve.leg_numbers import Marching
-from calm.solve.mooring import BREATH, stirred
+from calm.solve.mooring import SLACK_LINE_CURRENT, stirred
 from calm.solve.net_start import NetStart, start_of
 from calm.solve.problem import CHOSEN, FINE, ROOM
 from calm.solve.solution import (
@@ -31,7 +31,7 @@ from calm.solve.solution import (
     Solution,
     Status,
 )
-from calm.solve.two_speeds import Solver, count_lines, runs_compiled
+from calm.solve.two_speeds import CompiledPart, count_lines, runs_compiled
 
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
@@ -81,7 +81,7 @@ class NetSearch:
         self, legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
         room: int = ROOM, rough: bool = False,
     ) -> None:  # fmt: skip
-        self.compiled, self.settings = runs_compiled(settings, solver=Solver.LEGS), settings
+        self.compiled, self.settings = runs_compiled(settings, solver=CompiledPart.LEGS), settings
         self.laid = [LaidLeg.of(leg, water, settings, rough) for leg in legs]
         self.nodes, self.room = nodes, room
         self.net = lay_net(self.laid, nodes, self.compiled, room)
@@ -116,12 +116,12 @@ class NetSearch:
     def do(self, task: int, x: Floats, how: Marching, enough: float = 0.0) -> tuple[int, Floats]:
         """Run a task of `NetTask`, and return its outcome and the resulting unknowns."""
         own: Any = x.copy() if self.compiled else x.tolist()
-        asked = NetTask(task, self.net, own, how, enough, False)
+        job = NetTask(task, self.net, own, how, enough, False)
         if self.compiled:
-            ask = by_address(do_task, asked)
-            ending = outcome(do_by_address, True, ask, asked)
+            ask = by_address(do_task, job)
+            ending = outcome(do_by_address, True, ask, job)
         else:
-            ending = do_task(asked, 0.0)
+            ending = do_task(job, 0.0)
         closing = task in (leg_closing.CLOSE, leg_closing.SETTLE)
         if ending == (leg_closing.NEEDS_ROOM if closing else NO_ROOM):
             raise LacksRoom
@@ -174,7 +174,7 @@ class NetSearch:
         """
         net, legs, better = self.net, [], np.array(self.net.better)
         water = self.water
-        slow = float(np.hypot(water.u, water.v).max(initial=0.0)) <= BREATH
+        slow = float(np.hypot(water.u, water.v).max(initial=0.0)) <= SLACK_LINE_CURRENT
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=True)
         if slow and self.do(leg_closing.DRIFTS, x, how)[0]:
             raise Status.SLACK.because(
@@ -229,7 +229,7 @@ def solve_net(
         No equilibrium was found, or the one found fails a check.
     """
     settings = settings or Settings()
-    count_lines(4.0 * len(legs), Solver.LEGS)
+    count_lines(4.0 * len(legs), CompiledPart.LEGS)
 
     def solved(net: NetSearch) -> NetSolution:
         found = net.solution(settled_from(net, near))

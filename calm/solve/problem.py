@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from calm.physics.compiled import record_type
-from calm.physics.hull import NEVER_AFLOAT, HullRow, SurfaceFloat
+from calm.physics.hull import UNKNOWN_FLOAT, HullRow, SurfaceFloat
 from calm.physics.line import COLUMNS, Bed, Floats, Line, Water
 from calm.physics.passing import LEFT
 from calm.physics.profile import Interval, Sea, profile_of
@@ -49,7 +49,7 @@ shares of the water depth, and the tolerance of the buoyancy share.
 In the order allowed miss, buoyancy share, distance.
 """
 
-TOLD = 32
+FOUND_SIZE = 32
 """Size of the array for the results of a search."""
 
 COARSE, FINE, KEPT, OTHER = range(4)
@@ -144,7 +144,7 @@ class SearchArrays(NamedTuple):
     samples : sampled unknowns and misses
     even : intervals of a uniform current
     elements : (3, n) values for every element of a shape
-    found : see `calm.solve.mooring.tell`
+    found : see `calm.solve.mooring.write_found`
     """
 
     left: MutableSequence[float]
@@ -291,7 +291,7 @@ def problem_of(
         refused=moving,
         refused_at_rest=at_rest,
     )
-    afloat = NEVER_AFLOAT if floating is None else floating.as_numbers
+    afloat = UNKNOWN_FLOAT if floating is None else floating.as_numbers
     hull = () if floating is None or floating.hull is None else floating.hull.rows
     flexible: Any = line.flexible.astype(np.intp)
     if compiled:
@@ -327,7 +327,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
             samples=zeros((2, MOST_SAMPLES)),
             even=zeros(intervals, record_type(Interval)),
             elements=zeros((3, nodes)),
-            found=zeros(TOLD),
+            found=zeros(FOUND_SIZE),
         )
 
     def rows(count: int, length: int) -> list[list[float]]:
@@ -342,7 +342,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
         samples=rows(2, MOST_SAMPLES),
         even=[Interval(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)] * intervals,
         elements=rows(3, nodes),
-        found=[0.0] * TOLD,
+        found=[0.0] * FOUND_SIZE,
     )
 
 

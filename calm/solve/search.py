@@ -61,13 +61,13 @@ UNSEEN = 1e-9
 so does not appear in their difference: rounding, the buoyancy share, and nodes that should be at a
 level but are slightly off.
 """
-BARELY_LANDED = 4.0
+SHORT_LANDED_LENGTH = 4.0
 """Length on the seabed, in anchor heights, up to which a line is solved as hanging from the top of
 its anchor if it can also hang there; beyond this length, only if that equilibrium is higher.
 """
-DISTINCT = 1e-3
+LEAST_SHARE_DIFFERENCE = 1e-3
 """Smallest difference of the used buoyancy shares between two equilibria of a surface float."""
-PERHAPS_LANDED = 20.0
+CHECKED_LANDED_LENGTH = 20.0
 """Length on the seabed, in anchor heights, up to which a hanging equilibrium is also sought; the
 other shape is then reported.
 """
@@ -192,7 +192,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
     apart = 2.0 * (found.errors.depth + second.errors.depth)
     same = (
         other.depth - first.depth <= apart
-        and abs(other.used_buoyancy - first.used_buoyancy) < DISTINCT
+        and abs(other.used_buoyancy - first.used_buoyancy) < LEAST_SHARE_DIFFERENCE
     )
     return found if second.closed.ending != FOUND or same else beside(found, other)
 
@@ -233,7 +233,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
     closed = landed.closed
     if not closed.landed:
         return refused(NOT_LYING, 0.0, -1, root)
-    if closed.grounded > PERHAPS_LANDED * limits.anchor_height:
+    if closed.grounded > CHECKED_LANDED_LENGTH * limits.anchor_height:
         return landed
     keep(problem, KEPT, FINE, landed)
     lying = other_of(problem, landed)
@@ -242,7 +242,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
         return hanging
     clear_of_it = other_of(problem, hanging) if hanging.closed.ending == FOUND else NO_OTHER
     if hanging.closed.ending == FOUND:
-        barely = closed.grounded <= BARELY_LANDED * limits.anchor_height
+        barely = closed.grounded <= SHORT_LANDED_LENGTH * limits.anchor_height
         higher = lying.depth - hanging.errors.depth - landed.errors.depth
         if barely or clear_of_it.depth < higher:
             return beside(hanging, lying)

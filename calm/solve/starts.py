@@ -14,17 +14,17 @@ from calm.solve.locate import growth_below, in_even_current, locate, turns_back
 from calm.solve.problem import BELOW, FASTEST, STARTS, LineProblem, Search
 from calm.solve.solution import FOUND
 
-NOWHERE_NEAR = 0.97
+IMMERSION_SHARE = 0.97
 """Share of its buoyancy in use above which a float may also be immersed."""
 DROPS = 3
 """Number of iterations for the current that acts on a line after its knockdown."""
-LEANS = 6
+LEAN_ROW = 6
 """Row with the knockdowns according to `lean_of`."""
 LOOKED_AT, SURE = 6, 0.3
 """Number of depths at which a line is tested for falling further, and the smallest share of the
 remaining fall.
 """
-GROWS = 0.25
+LEAST_CURRENT_GROWTH = 0.25
 """Growth of the current over the largest fall of a line above which this test is made."""
 
 
@@ -47,7 +47,7 @@ def fill_starts(search: Search) -> int:
             fall = coarse_miss(evenly, unknown, upright)
             starts[3 * way + 2][k] = limits.depth if isnan(fall) else max(fall, limits.allowed)
             starts[3 * way][k] = starts[3 * way + 1][k] = nan
-            starts[LEANS][k] = lean_of(
+            starts[LEAN_ROW][k] = lean_of(
                 problem.course, evenly.problem.sea, upright, limits.depth, upright > 0.0
             )
             if limits.lift <= 0.0 and not lands:
@@ -84,7 +84,7 @@ def start_of(search: Search, lands: bool) -> Root:
             before, fell, x = x, below - x, min(x - (below - x) * (x - before) / change, below)
     if x >= 0.0:
         return Root(upright > 0.0, unknown, x, 0.0, slope)
-    if x > NOWHERE_NEAR - 1.0:
+    if x > IMMERSION_SHARE - 1.0:
         return nowhere
     return Root(True, with_sought(unknown, 0, unknown.rides), 1.0 + x, 0.0, slope)
 
@@ -97,12 +97,15 @@ def is_highest(problem: LineProblem, root: Root) -> bool:
     """
     limits, starts = problem.limits, problem.starts
     if root.unknown.sought != BELOW:
-        return root.x < NOWHERE_NEAR and not turns_back(problem.sea)
+        return root.x < IMMERSION_SHARE and not turns_back(problem.sea)
     row = 3 if root.unknown.lands else 0
     upright = max(-limits.standing - root.unknown.goal, 0.0)
     at = min(greatest_speed(problem.sea) / FASTEST, 1.0) * (STARTS - 1)
     k = min(int(at), STARTS - 2)
-    if growth_below(problem.sea, upright) * between(starts[row + 2], k, at - k) <= GROWS:
+    if (
+        growth_below(problem.sea, upright) * between(starts[row + 2], k, at - k)
+        <= LEAST_CURRENT_GROWTH
+    ):
         return root.x > 0.0
     fell, there = root.x - upright, expected(problem, row, upright, root.x)[0] - upright
     if not fell > 0.0:
@@ -126,9 +129,9 @@ def expected(problem: LineProblem, row: int, upright: float, top: float) -> tupl
     """
     starts = problem.starts
     lean = lean_of(problem.course, problem.sea, top, problem.limits.depth, upright > 0.0)
-    at = sqrt(sqrt(lean / starts[LEANS][STARTS - 1])) * (STARTS - 1)
+    at = sqrt(sqrt(lean / starts[LEAN_ROW][STARTS - 1])) * (STARTS - 1)
     k = min(int(min(at, STARTS)), STARTS - 2)
-    share = min((lean - starts[LEANS][k]) / (starts[LEANS][k + 1] - starts[LEANS][k]), 1.0)
+    share = min((lean - starts[LEAN_ROW][k]) / (starts[LEAN_ROW][k + 1] - starts[LEAN_ROW][k]), 1.0)
     return between(starts[row], k, share), between(starts[row + 1], k, share)
 
 

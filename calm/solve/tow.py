@@ -29,13 +29,13 @@ from calm.solve.solution import (
     Solution,
     Status,
 )
-from calm.solve.two_speeds import Solver, count_lines
+from calm.solve.two_speeds import CompiledPart, count_lines
 
 SURFACE_BAND = 1e-7
 """Thickness of the band from water to air, as a share of the line out."""
 SCAN = 16
 """Number of depths tried if the flow varies with depth: the resolution of separate equilibria."""
-FARTHER = 1.05
+OVERSHOOT = 1.05
 """Distance beyond the expected root that is tried in a uniform current, in misses. Since levels cut
 a line, the march is not quite the same at every depth.
 """
@@ -43,7 +43,7 @@ ROUGHLY = 5e-3
 """Miss at which a rough root is one linear step away, as a share of the line paid out."""
 SAME = 1e-6
 """Relative tolerance of the frequency of a line that strums."""
-NEARLY_OUT = 2e-3
+LEAVING_DEPTH = 2e-3
 """Depth at which a line that does not close is assumed to be leaving the water, as a share of the
 line paid out.
 """
@@ -101,7 +101,7 @@ def solve_tow(
     if not line.length.any():
         raise Status.NO_EQUILIBRIUM.because("The towed line has no length.", advice=PAY_OUT)
     _refuse_limp(line)
-    count_lines(1.0, Solver.LEGS)
+    count_lines(1.0, CompiledPart.LEGS)
     water = _relative(line, water, towing)
     u, v, w = map(float, water.current_at(np.zeros(())))
     ship = LegEnd(place=(0.0, 0.0, towing.height), past=(u, v, w))
@@ -225,7 +225,7 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
             break
         if isnan(high) and upper == shallowest and not towing.in_air:
             # a line that drifts at the surface is alternately in the water and in the air
-            upper = NEARLY_OUT * span
+            upper = LEAVING_DEPTH * span
             high = rough.miss(None, upper)
             if high <= 0.0:
                 raise Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW)
@@ -257,7 +257,7 @@ def _upwards(water: Water, depth: float, low: float, span: float, shallowest: fl
     if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
         steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()
         return steps
-    return [max(depth + FARTHER * low - NARROW_JUMP * span, shallowest)]
+    return [max(depth + OVERSHOOT * low - NARROW_JUMP * span, shallowest)]
 
 
 def _root(rough: _Marches, upper: float, high: float, depth: float, low: float) -> float:
@@ -277,7 +277,7 @@ def _refuse_stopped(rough: _Marches, miss: float) -> None:
 
 def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEquilibrium:
     """Diagnose why a tow does not close near a rough root; `last` is the depth tried last [m]."""
-    net, nearly_out = rough.net, NEARLY_OUT * rough.span
+    net, nearly_out = rough.net, LEAVING_DEPTH * rough.span
     stopped, lacking = net.net.lines.work.left[0][FAILURE], _lacking(net)
     failure = Status.NOT_CONVERGED.because("No closed shape was found near the approximate shape.")
     if stopped != GOES_ON:

@@ -227,7 +227,6 @@ def _found(
     """
     from calm.checks.finding import governing
     from calm.report.check_tables import grouped, named, named_components
-    from calm.report.open_items import percent_text
 
     governs = {(one.rule, one.place, one.state): one for one in (*findings, *tighter)}
     told_of = dict.fromkeys(governs[one.rule, one.place, one.state] for one in findings)
@@ -245,22 +244,30 @@ def _found(
     for own in grouped((each for each in unknown if each.missing is None), _title):
         text = f"not known of {named_components(own)}"
         yield Saying(text, _title(own[0]), State.UNKNOWN, places=_places(own))
-    other = {_title(each) for each in findings if _graver(each) or each.state is State.UNKNOWN}
-    passed = dict.fromkeys(_title(each) for each in findings if each.state is State.PASS)
-    every = [*findings, *tighter]
-    kept = [
-        (each, governing(one for one in every if _title(one) == each))
-        for each in passed
-        if each not in other
-    ]
-    kept.sort(key=lambda pair: -(pair[1].utilisation or 0.0))
-    told = [
-        title if one.utilisation is None else f"{title} {percent_text(one.utilisation)} %"
-        for title, one in kept
-    ]
-    if kept:
-        heading = "Pass so far" if pending else "Pass"
-        yield Saying(", ".join(told), heading, State.PASS, pending=pending)
+    met = (State.PASS, State.NOT_JUDGED)
+    other = {_title(each) for each in findings if each.state not in met}
+    for state, heading in (
+        (State.ACCEPTED, "Accepted"),
+        (State.ESTIMATED, "Estimated"),
+        (State.PASS, "Pass so far" if pending else "Pass"),
+    ):
+        those = [one for one in (*findings, *tighter) if one.state is state]
+        passes = state is State.PASS
+        rules = [
+            each for each in grouped(those, _title) if not passes or _title(each[0]) not in other
+        ]
+        if rules:
+            leads = sorted(map(governing, rules), key=lambda one: -(one.utilisation or 0.0))
+            text = ", ".join(map(_used, leads))
+            yield Saying(text, heading, state, pending=pending and passes)
+
+
+def _used(finding: Finding) -> str:
+    """The title of a rule, and how much its finding uses of the limit."""
+    from calm.report.open_items import percent_text
+
+    used = finding.utilisation
+    return _title(finding) if used is None else f"{_title(finding)} {percent_text(used)} %"
 
 
 def why(view: View, row: Place) -> list[Saying]:

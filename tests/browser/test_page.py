@@ -104,7 +104,7 @@ class Visit:
         return waiting.value.suggested_filename, Path(waiting.value.path()).read_bytes()
 
     def answer_ms(self, press):
-        """Time until the terminal is written to after something is done, and then for 300 ms not."""
+        """Time from some keys to the last change of the terminal that follows them."""
         return self.page.evaluate(
             """async (keys) => {
                 const { terminal, send } = globalThis.calm;
@@ -198,6 +198,7 @@ def test_mouse_and_help(visit):
     visit.page.click("#actions >> text=Water")
     visit.page.wait_for_function("document.getElementById('told').textContent.includes('Esc')")
     visit.page.keyboard.press("Escape")
+    visit.shows("ADCP float +302")  # the line, behind the help until now
     visit.page.click("#actions >> text=Water")
     visit.shows("The water of")
     visit.picture("page-water")

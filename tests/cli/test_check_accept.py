@@ -184,7 +184,7 @@ def test_an_accept_of_a_day_to_come_does_not_count_yet(calm, accepting, date, co
 def test_a_reason_is_said_in_words(calm, accepting, reason):
     done = calm("check", accepting(f'{{rule: strength, component: top float, reason: "{reason}"}}'))
     assert done.code == 2
-    assert f"`reason: {reason}` gives no reason; say it in words" in done.err
+    assert f"`reason: {reason}` contains no words; give a reason" in done.err
 
 
 @pytest.mark.parametrize(

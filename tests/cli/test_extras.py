@@ -106,6 +106,7 @@ def designs(folder, write_mooring):
             sheet.write_row(number, 0, row)
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("designs")
 def test_every_design_command_runs_without_the_extras():
     commands = [each.strip() for each in DESIGN.replace("\n", "|").split("|") if each.strip()]
@@ -127,6 +128,7 @@ def test_a_command_that_needs_an_extra_says_so_in_one_line():
         assert last.endswith(f": pip install 'calm-mooring[{extra}]'"), (command, told)
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("designs")
 def test_check_and_deck_run_without_scipy():
     """With a launch, a streamed line and a surface float in waves."""

@@ -187,7 +187,7 @@ def test_the_pitch_of_a_float_that_gives_what_it_takes(calm, buoy):
     text, state, missing = pitch("hull: cylinder")
     assert state["pitch_std"] is None
     assert missing == "it requires `hull`, `centre_of_mass` and `radius_of_gyration`"
-    assert "The pitch of the float is not computed: it takes its `hull`" in " ".join(text.split())
+    assert "The pitch of the float is not computed: it requires `hull`" in " ".join(text.split())
     text, state, missing = pitch("centre_of_mass: 0.3 m, radius_of_gyration: 0.6 m")
     assert missing is None
     assert f"The float pitches by {state['pitch_std']:.1f}°" in text
@@ -233,7 +233,7 @@ def test_a_sea_breaks_in_shallow_water(calm, buoy, tmp_path):
     (tmp_path / "buoy.yaml").write_text(text.replace("length: 95 m", "length: 20 m"))
     shown = calm("waves", path, "--hs", "6 m", "--tp", "12 s")
     assert shown.code == 2
-    assert "breaks in 9 m of water, the largest significant height is 5.4 m" in shown.err
+    assert "breaks in 9 m of water; the largest significant height is 5.4 m" in shown.err
 
 
 def in_its_file(buoy, waves, **more):

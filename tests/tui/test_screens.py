@@ -446,7 +446,7 @@ def test_a_tow_is_built_from_nothing(drive, folder):
 def test_settings_of_the_file_are_entered_in_their_forms(drive, small):
     async def story(driver):
         await driver.press("comma")
-        assert "solver: how the line is solved" in driver.screen
+        assert "solver: numerical settings and drag laws" in driver.screen
         await driver.press(str(settings().index("checks") + 1))
         await driver.type("1.8")
         driver.app.screen.query_one(GridCells).focus()

@@ -12,7 +12,7 @@ from calm.drop import drop_plan, plan
 from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Ship, fall, settle, towed
 from calm.drop.fall_record import rest_difference
-from calm.drop.launch import IN_SHORT, launch_of
+from calm.drop.launch import CHECK_FINENESS, launch_of
 from calm.drop.motion import ChainState, FallingAnchor
 from calm.errors import UsageError
 from calm.shipped import shipped_folder
@@ -198,7 +198,7 @@ components:
 def test_the_design_check_and_the_plan_tell_of_one_fall(name):
     """A line that lands before it is plumb, and one whose float is at the surface."""
     mooring = calm.load(shipped_folder("lines") / f"{name}.yaml")
-    launch, told = launch_of(mooring.leg), drop_plan(mooring, fineness=IN_SHORT)
+    launch, told = launch_of(mooring.leg), drop_plan(mooring, fineness=CHECK_FINENESS)
     assert told.touchdown_speed == pytest.approx(launch.fall_speed, rel=1e-12)
     pulls = [pull.tension for pull in told.pulls]
     given = np.maximum(launch.tension_top, launch.tension_bottom)

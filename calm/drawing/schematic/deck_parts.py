@@ -21,10 +21,10 @@ Cells = Callable[[Sequence[DeckItem], tuple[str, str]], tuple[str, ...]]
 def parts_of_deck(
     deck: Deck, listed: Sequence[DeckItem], *, surface: bool
 ) -> tuple[ShownPart, ...]:
-    """The parts listed, down a line or a leg, whose top is at the `surface` or below it.
+    """Return the listed parts of a line or leg, whose top is at the `surface` or submerged.
 
-    Beside each stand cut length or place on the wire, stretched length, depth, planned depth if any
-    part has one, height, tension and net buoyancy.
+    The values of each part are cut length or position on the wire, stretched length, depth, planned
+    depth if any part has one, height, tension and net buoyancy.
     """
     weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
     cells = partial(_figures, weights=weights, planned=has_plans(deck))
@@ -75,12 +75,12 @@ def parts_of(
 
 
 def has_plans(deck: Deck) -> bool:
-    """Whether any part of a deck has a planned depth."""
+    """Whether at least one part of a deck has a planned depth."""
     return any(one.planned_depth is not None for one in deck.parts)
 
 
 def _own_labels(parts: Sequence[DeckItem]) -> dict[int, str]:
-    """Of each part, by its identity: its label where a person gave it, else nothing."""
+    """User-defined labels of parts by their identity, empty for default labels."""
     labels = own_labels([one.label for one in parts])
     return {
         id(one): "" if label == one.part.use else one.label
@@ -135,8 +135,8 @@ def _figures(
     *,
     planned: bool,
 ) -> tuple[str, ...]:
-    """Lengths, depth, planned depth and height of the first, the greatest tension, and the net
-    buoyancy of all.
+    """Lengths, depth, planned depth and height of the first item, maximum tension, and total net
+    buoyancy.
     """
     plan = items[0].planned_depth
     tension = max((one.tension for one in items if one.tension is not None), default=None)
@@ -158,7 +158,7 @@ def _said(name: str, value: float | None) -> str:
 
 
 def _junction(parts: Sequence[DeckItem], own: Mapping[int, str], cells: Cells) -> ShownPart:
-    words = []  # connectors as people write them, with their own labels and serial numbers
+    words = []  # connectors in their usual notation, with their own labels and serial numbers
     for one in parts:
         hardware, label = one_line(one.hardware), one_line(own[id(one)])
         text = f"{label} ({hardware})" if label else hardware

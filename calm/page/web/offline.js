@@ -1,7 +1,13 @@
 // Keeps what the page has loaded, so that it works without a network.
 const CACHE = `calm-${new URL(self.location.href).searchParams.get("v")}`;
 
-self.addEventListener("install", () => self.skipWaiting());
+// loaded before anything could be kept
+const FIRST = ["./", "index.html", "page.css", "page.js", "page.json"];
+
+self.addEventListener("install", (event) => {
+  self.skipWaiting();
+  event.waitUntil(caches.open(CACHE).then((cache) => cache.addAll(FIRST)));
+});
 self.addEventListener("activate", (event) => event.waitUntil((async () => {
   const old = (await caches.keys()).filter((name) => name.startsWith("calm-") && name !== CACHE);
   await Promise.all(old.map((name) => caches.delete(name)));

@@ -5,8 +5,8 @@ const BEGIN = `
 import asyncio.tasks
 if not hasattr(asyncio.tasks, "_set_task_name"):
     asyncio.tasks._set_task_name = lambda task, name: task.set_name(name) if name else None
-from calm.page.builder import Page
-Page
+from calm.page.builder import WebPage
+WebPage
 `;
 const early = [];
 let builder = null;
@@ -62,7 +62,7 @@ async function start({ settings, columns, rows }) {
   python.FS.mkdirTree(FOLDER);
   python.FS.mount(python.FS.filesystems.IDBFS, {}, FOLDER);
   await synchronised(true);
-  setInterval(() => { if (changed) { changed = false; synchronised(false); } }, 3000);
+  keepFiles();
 
   progress("Starting CALM …", 0.75);
   const toPage = (kind, text, content) => {
@@ -76,6 +76,13 @@ async function start({ settings, columns, rows }) {
   progress("Opening the line …", 0.95);
   early.splice(0).forEach(receive);
   await builder.run();
+}
+
+function keepFiles() {
+  setTimeout(async () => {
+    if (changed) { changed = false; await synchronised(false); }
+    keepFiles();
+  }, 3000);
 }
 
 // IndexedDB of this browser; without it files last as long as the page

@@ -98,7 +98,7 @@ def test_the_first_worker_is_waited_for(tmp_path, started):
         mooring, MadeRecord(100), tmp_path / "r.nc", block=16, scheduler=address, tell=tell
     )
     assert counts["converged"] == 99
-    assert told == [f"the scheduler at {address} has no worker yet: waiting for the first"]
+    assert told == [f"the scheduler at {address} has no workers yet; waiting for the first worker"]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills a process as POSIX has it")

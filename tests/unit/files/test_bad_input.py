@@ -104,7 +104,7 @@ ONE_MISTAKE = {
     ),
     "nothing but an anchor": (
         GOOD[: GOOD.index("  - {use: ball")] + ANCHORED,
-        (10, 5, "nothing stands above the anchor"),
+        (10, 5, "there is no piece above the anchor"),
     ),
     "two fits": (
         changed("480 m", "fit, top_depth: 90 m").replace(

@@ -6,10 +6,10 @@ import pytest
 from calm.records.value_tests import (
     CurrentValues,
     current_doubts,
-    direction_doubts,
     exchanged_pair,
     impossible_values,
     level_doubts,
+    sector_doubts,
     series_doubts,
     speed_doubts,
 )
@@ -89,7 +89,6 @@ def test_levels_against_the_water():
 @pytest.mark.parametrize(("speeds", "unit", "factor", "likely"), [
     (np.linspace(0.0, 0.01, 99), "cm/s", 0.01, "; are they in m/s or kn?"),
     (np.linspace(0.0, 0.8, 99), "m/s", 1.0, None),
-    (np.linspace(0.0, 80.0, 99), "m/s", 1.0, "; are they in cm/s?"),
     (np.linspace(0.0, 0.0001, 99), "m/s", 1.0, "in the declared unit, m/s"),
 ])  # fmt: skip
 def test_speeds_against_their_unit(speeds, unit, factor, likely):
@@ -98,10 +97,18 @@ def test_speeds_against_their_unit(speeds, unit, factor, likely):
     assert all(one.endswith(str(likely)) for one in said)
 
 
+def test_currents_stronger_than_any_at_their_depth():
+    deep = np.array([100.0, 1500.0, 3000.0])
+    assert [one for one in doubts(depth=deep, water_depth=3100.0) if "reaches" in one] == []
+    (said,) = (one for one in doubts(6.0 * tide(12.4), depth=deep, water_depth=3100.0)
+               if "reaches" in one)  # fmt: skip
+    assert said.startswith("the current reaches 1.") and "below 1000 m" in said
+
+
 @pytest.mark.parametrize(("turn", "told"), [(1.0, 0), (0.1, 1), (np.pi / 180.0, 1)])
 def test_directions_in_another_unit(turn, told):
     towards = np.radians(turn * np.arange(0.0, 360.0, 5.0))
-    assert len([*direction_doubts(np.sin(towards), np.cos(towards))]) == told
+    assert len([*sector_doubts(np.sin(towards), np.cos(towards))]) == told
 
 
 def test_shares_of_good_pings_and_times():

@@ -164,7 +164,12 @@ def build_tow_result(**changes):
         solver=Record(strumming=BourgetMarichalKeys()), legs=(),
         tow=Record(speed=1.0289, toward=90.0, height=3.0),
     )  # fmt: skip
-    water = Record(level=np.array([0.0, 100.0]), u=np.array([0.5, 0.0]), v=np.array([0.0, 0.0]))
+    water = Record(
+        depth=300.0,
+        level=np.array([0.0, 100.0]),
+        u=np.array([0.5, 0.0]),
+        v=np.array([0.0, 0.0]),
+    )
     along = np.linspace(1.0, 0.0, 12)
     shape = Record(depth=-3.0 + 124.5 * along, x=-140.5 * along, y=10.0 * along * (1.0 - along))
     fields = dict(
