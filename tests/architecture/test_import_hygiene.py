@@ -93,7 +93,7 @@ RANGES = """latitude[deg],longitude[deg],range[m]
     "arguments",
     [
         ["check", "lines/s1000.yaml", "--allow-unknown", "--report", "{to}/check"],
-        ["run", "lines/s1000.yaml", "--plot", "{to}/line.png", "--pdf", "{to}/line.pdf"],
+        ["run", "lines/s1000.yaml", "-o", "{to}/line.png", "-o", "{to}/line.pdf"],
         ["deck", "lines/fit-top-depth.yaml", "-o", "{to}/deck"],
         ["locate", "{to}/ranges.csv", "--depth", "2000 m", "--plot", "{to}/ranges.pdf"],
     ],
