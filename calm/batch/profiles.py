@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import prod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -186,13 +186,15 @@ def solve_profiles(
     NoEquilibrium
         A piece has a fitted length, and no length fits.
     """
+    batch = Batch(mooring)
     if is_record(u):
         if any(each is not None for each in (v, depth, w)):
             raise TypeError("a record holds the whole current; give no v, depth or w beside it")
-        depth, u, v, w = _recorded(mooring, u)
+        levels, east, north, up = _recorded(mooring, u)
+        return batch.solve(east, north, levels, up, workers=workers)
     if v is None or depth is None:
         raise TypeError("u needs v and depth, unless it is a path, a dataset or a table")
-    return Batch(mooring).solve(u, v, depth, w, workers=workers)
+    return batch.solve(cast("ArrayLike", u), v, depth, w, workers=workers)
 
 
 def _recorded(mooring: Design, given: Any) -> Levels:
