@@ -1,0 +1,441 @@
+"""Currents that were measured: one smoother for currents, line, sensors and tide.
+
+At each time the unknowns are the current vector at knots in depth, the share by which the knockdown of
+each stretch of the line is wrong, and the tide; for the whole record factors on the drag, the datum and
+an offset of each sensor, which seldom step. All are normal, and fade with time or stay. Readings of
+meters and sensors have Student's errors, by weights; how large those of meters are for each quality
+flag, and the error of the line, come from the record by expectation and maximisation (Dempster, Laird
+and Rubin 1977). Steps of Gauss and Newton over the whole record: depths and slopes are of the march.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.case import Design
+from calm.motion import common_unknowns, line_response
+from calm.motion.line_response import Forward
+from calm.motion.measurements import FREE, MooringMeasurements
+from calm.motion.smoother import StateSpace, smoothed
+from calm.physics.line import Floats
+
+TURNS, ENOUGH = 16, 0.02
+"""Steps of Gauss and Newton at most; fewer where none moves a depth by more than this [m]."""
+SLOPE_STEP = 0.05
+"""Of a current [m/s] and of the logarithm of a factor, by which slopes are found."""
+STALE = 0.03
+"""How far a current may be from that at which its slopes were found [m/s]."""
+LONGEST = 0.5
+"""Of a current, what one step changes at most [m/s]."""
+
+MOST_LEVELS, KNOTS, APART = 8, 12, 2.0
+"""Levels that are knots themselves, with the depths half-way between; of more, so many are chosen.
+Levels closer than this are one knot [m]."""
+ABOVE, BELOW = 5.0, 20.0
+"""How far the line must reach beyond the outermost levels for a knot there [m]."""
+
+METER = 0.02, 0.10
+"""Error of a current meter [m/s], and as a share of its speed; times the factor of its flag."""
+FLAGGED: Mapping[int, float] = {0: 1.0, 1: 1.0, 2: 1.5, 3: 2.0, 4: 4.0, 8: 3.0}
+"""That factor, where the record does not say it."""
+FLAG_RANGE, FEWEST = (0.3, 15.0), 20
+"""Least and greatest such factor, and readings from which the record says it."""
+STUDENT = 4.0
+"""Degrees of freedom of the errors of a reading."""
+ALIKE_HOURS = 2.0
+"""Over which the error of a meter is the same [h]."""
+LEAST_SPREAD = 0.02
+"""Of a current about its mean, at least [m/s]."""
+CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
+"""Time [h] and depth [m] over which a current is correlated, where the record does not say."""
+
+STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
+"""Stretches whose knockdown is wrong each by its own share, the part of the line over which these are
+alike, and the share of its own knockdown that a point is wrong by besides."""
+SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
+"""Such a share beforehand, its limits, and how long it lasts [h]."""
+TIDE_HOURS = 6.0
+"""How long tide and air pressure last [h]."""
+BEGIN, STEP = 1.0, 0.02
+"""Usual size of datum and offsets at the beginning [m], and of what they change by in an hour [m]; of
+both, Student's law of one degree of freedom also knows values many times as large."""
+FURTHEST = 0.7
+"""Logarithm of a factor, at most."""
+
+
+@dataclass(frozen=True)
+class Knots:
+    """The depths at which the current is unknown, and how levels are read off there.
+
+    Attributes
+    ----------
+    depth : (K,) at rest, rising [m]
+    level : (k, K) weights of the knots in the current of a level
+    hung : the levels that are knots, and the knots they are
+    """
+
+    depth: Floats
+    level: Floats
+    hung: tuple[NDArray[np.int64], NDArray[np.int64]]
+    seabed: float
+
+    def at(self, levels: Floats) -> Floats:
+        """Return (n, K) depths of the knots where the levels are (n, k); others follow these."""
+        level, knot = self.hung
+        place = np.append(self.depth[knot], self.seabed)
+        off = np.pad(levels[:, level] - self.depth[knot], ((0, 0), (0, 1)))
+        after = np.clip(np.searchsorted(place, self.depth), 1, len(place) - 1)
+        share = (self.depth - place[after - 1]) / np.maximum(place[after] - place[after - 1], 1e-9)
+        share = np.clip(share, 0.0, 1.0)
+        there = self.depth + (1.0 - share) * off[:, after - 1] + share * off[:, after]
+        apart = 1e-3 * np.arange(len(self.depth))
+        rising: Floats = np.maximum.accumulate(np.maximum(there, 0.1) + apart, axis=1)
+        return rising
+
+
+def knots_of(place: Floats, top: float, seabed: float) -> Knots:
+    """Return the knots of levels.
+
+    Parameters
+    ----------
+    place : (k,) depths of the levels at rest, in any order [m]
+    top, seabed : depths of the top of the line and of the seabed [m]
+    """
+    order = np.argsort(place, kind="stable")
+    chosen: list[int] = []
+    for i in order.tolist():
+        if not chosen or place[i] - place[chosen[-1]] > APART:
+            chosen.append(i)
+    if len(chosen) > MOST_LEVELS:
+        few = np.unique(np.linspace(0, len(chosen) - 1, KNOTS).round().astype(np.int64))
+        chosen = [chosen[i] for i in few.tolist()]
+    own = place[chosen]
+    ends = [max(top - ABOVE, 1.0)] * bool(own[0] - top > 0.0)
+    ends += [0.5 * (own[-1] + seabed)] * bool(seabed - own[-1] > BELOW)
+    depth = np.unique(np.concatenate([own, ends]))
+    weights = np.stack([np.interp(place, depth, one) for one in np.eye(len(depth))], axis=1)
+    return Knots(depth, weights, (np.array(chosen), np.searchsorted(depth, own)), seabed)
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Where each unknown is in the state.
+
+    Attributes
+    ----------
+    current, share, tide, factor, datum, offset : slices of the q columns
+    """
+
+    current: slice
+    share: slice
+    tide: slice
+    factor: slice
+    datum: slice
+    offset: slice
+
+    @classmethod
+    def made(cls, *counts: int) -> Columns:
+        """Return the slices of so many columns each."""
+        ends = np.cumsum([0, *counts]).tolist()
+        return cls(*(slice(*pair) for pair in zip(ends[:-1], ends[1:], strict=True)))
+
+    @property
+    def count(self) -> int:
+        """Return how many there are."""
+        return int(self.offset.stop)
+
+    @property
+    def stays(self) -> slice:
+        """Return datum and offsets, which step."""
+        return slice(self.datum.start, self.offset.stop)
+
+
+@dataclass(frozen=True)
+class Scales:
+    """How large the errors are, as far as the record has said.
+
+    Attributes
+    ----------
+    flag : factor on the errors of a meter by its flag
+    share : of the knockdown of each stretch by which the line is wrong
+    hours, reach : over which a current is correlated [h, m]
+    """
+
+    flag: Mapping[int, float]
+    share: float = SHARE
+    hours: float = CURRENT_HOURS
+    reach: float = CURRENT_REACH
+
+
+class CurrentSmoother:
+    """A record with measured currents, estimated as a whole."""
+
+    def __init__(self, mooring: Design, measured: MooringMeasurements, names: Sequence[str]) -> None:
+        self.mooring, self.measured, self.names = mooring, measured, tuple(names)
+        self.still = Forward(mooring, {}).still
+        self.seabed = float(mooring.water.depth)
+        one = measured
+        place = np.array([
+            self.still[point] if point != FREE else np.nanmean(one.level_depth[:, k])
+            for k, point in enumerate(one.level_point.tolist())
+        ])
+        self.hours = (one.time - one.time[:1]) / np.timedelta64(1, "h")
+        self.knots = knots_of(place, float(self.still.min()), self.seabed)
+        count, sensors = len(self.knots.depth), len(one.label)
+        self.columns = Columns.made(2 * count, STRETCHES, 1, len(self.names), 1, sensors)
+        flow = np.stack([one.u, one.v])
+        self.mean = np.concatenate([self._along(place, np.nanmean(each, axis=0)) for each in flow])
+        spread = np.sqrt(0.5 * np.nanvar(flow, axis=1).sum(axis=0))
+        self.spread = np.maximum(self._along(place, spread), LEAST_SPREAD)
+        flags = np.unique(one.flag[np.isfinite(one.u)])
+        self.scales = Scales({f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()})
+        self.levels = np.where(np.isfinite(one.level_depth), one.level_depth, place)
+        self.knot_depth = self.knots.at(self.levels)
+        self.state = np.zeros((len(one.time), self.columns.count))
+        self.state[:, self.columns.current] = self._measured_state(place)
+        self.meter_weight = np.ones(one.u.shape)
+        self.sensor_weight = np.ones(one.depth.shape)
+        usual = [common_unknowns.DATUM * self.seabed, *[common_unknowns.OFFSET] * sensors]
+        self.begin = np.square(usual)
+        self.first = self.begin.copy()
+        step = np.diff(self.hours, prepend=self.hours[:1])
+        self.usual = STEP**2 * step[:, None] * np.ones(1 + sensors)
+        self.stepped = self.usual.copy()
+        self.bend = np.zeros((len(one.time), len(self.still)))
+        self._slopes_at = np.full((len(one.time), 2 * count), np.inf)
+        self._slopes_factor = np.full(len(self.names), np.inf)
+        self.slope = np.zeros((len(one.time), len(self.still), 2 * count + len(self.names)))
+
+    def _along(self, place: Floats, value: Floats) -> Floats:
+        order = np.argsort(place, kind="stable")
+        order = order[np.isfinite(value[order])]
+        return np.interp(self.knots.depth, place[order], value[order])
+
+    def _measured_state(self, place: Floats) -> Floats:
+        """Return (n, 2 K) what was measured less its mean, between levels linear in depth."""
+        one, depth = self.measured, np.tile(place, (len(self.measured.time), 1))
+        known = np.isfinite(one.u) & np.isfinite(one.v)
+        parts = []
+        for i, each in enumerate((one.u, one.v)):
+            whole = line_response.filled(depth, each, known)
+            mine = self.mean[i * len(self.knots.depth) : (i + 1) * len(self.knots.depth)]
+            order = np.argsort(place, kind="stable")
+            rows = [np.interp(self.knots.depth, place[order], row[order]) for row in whole]
+            parts.append(np.nan_to_num(np.array(rows) - mine))
+        return np.hstack(parts)
+
+    # --- the line
+
+    def currents(self, state: Floats) -> tuple[Floats, Floats]:
+        """Return (n, K) u and v at the knots."""
+        count = len(self.knots.depth)
+        whole = self.mean + state
+        return whole[:, :count], whole[:, count:]
+
+    def depths(self, state: Floats, factor: Floats, times: NDArray[np.int64] | slice) -> Floats:
+        """Return (n, p) depths of the points at currents (n, 2 K) and logarithms of factors (f,)."""
+        forward = self.forward(factor)
+        return forward.depths(self.knot_depth[times], *self.currents(state))
+
+    def forward(self, factor: Floats) -> Forward:
+        """Return the mooring with factors of these logarithms."""
+        return Forward(self.mooring, dict(zip(self.names, np.exp(factor).tolist(), strict=True)))
+
+    def linear(self) -> Floats:
+        """Return (n, p) depths at the state, and renew the slopes where it has moved far."""
+        now, factor = self.state[:, self.columns.current], self.state[0, self.columns.factor]
+        there = self.depths(now, factor, slice(None))
+        far = np.abs(now - self._slopes_at).max(axis=1) > STALE
+        far |= (np.abs(factor - self._slopes_factor) > SLOPE_STEP).any()
+        times = np.flatnonzero(far)
+        if len(times):
+            columns = []
+            for ahead in SLOPE_STEP * np.eye(now.shape[1]):
+                columns.append(self.depths(now[times] + ahead, factor, times))
+            for ahead in SLOPE_STEP * np.eye(len(factor)):
+                columns.append(self.depths(now[times], factor + ahead, times))
+            base = there[times][:, :, None]
+            self.slope[times] = np.nan_to_num((np.stack(columns, axis=2) - base) / SLOPE_STEP)
+            self._slopes_at[times], self._slopes_factor = now[times], factor.copy()
+        return there
+
+    @cached_property
+    def _stretches(self) -> tuple[Floats, NDArray[np.int64], Floats]:
+        """Depths at rest between the stretches, from the seabed up; the stretch of each point; how
+        alike their shares are."""
+        edges = np.linspace(self.still.max(), self.still.min(), STRETCHES + 1)
+        own = np.clip(np.searchsorted(-edges, -self.still, "right") - 1, 0, STRETCHES - 1)
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        span = max(SPAN * float(np.ptp(self.still)), 1.0)
+        return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
+
+    def by_line(self, there: Floats) -> Floats:
+        """Return (n, p, z) change of the depths with the shares that the stretches are wrong by."""
+        edges, own, _ = self._stretches
+        order = np.argsort(self.still, kind="stable")
+        down = np.maximum(np.nan_to_num(there - self.still), 0.0)
+        place = self.still[order]
+        after = np.clip(np.searchsorted(place, edges), 1, len(place) - 1)
+        share = np.clip((edges - place[after - 1]) / np.maximum(place[after] - place[after - 1], 1e-9), 0, 1)
+        sorted_down = down[:, order]
+        at_edge = (1.0 - share) * sorted_down[:, after - 1] + share * sorted_down[:, after]
+        part = np.diff(at_edge, axis=1)
+        number = np.arange(STRETCHES)
+        result = part[:, None, :] * (number < own[:, None])
+        mine = down - at_edge[:, own] + LOCAL * down
+        result[:, np.arange(len(own)), own] = mine
+        return result
+
+    # --- the law
+
+    def law(self, there: Floats, sensors: bool = True) -> tuple[StateSpace, Floats]:
+        """Return the linear law about the state, and (n, p, q) slopes of all points."""
+        one, at, scales = self.measured, self.columns, self.scales
+        n, count = len(one.time), len(self.knots.depth)
+        steady = np.zeros((at.count, at.count))
+        apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
+        alike = np.exp(-apart / scales.reach) * np.outer(self.spread, self.spread)
+        steady[at.current, at.current] = np.kron(np.eye(2), alike)
+        steady[at.share, at.share] = self._stretches[2]
+        tide = common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
+        steady[at.tide, at.tide] = tide**2
+        first = steady.copy()
+        first[at.factor, at.factor] = np.diag(
+            [common_unknowns.FACTORS[name][1] ** 2 for name in self.names]
+        )
+        first[at.stays, at.stays] = np.diag(self.first)
+        fade = np.ones((n, at.count))
+        step = np.diff(self.hours, prepend=self.hours[:1])[:, None]
+        fade[:, at.current] = np.exp(-step / scales.hours)
+        fade[:, at.share] = np.exp(-step / LINE_HOURS)
+        fade[:, at.tide] = np.exp(-step / TIDE_HOURS)
+        stepped = np.zeros((n, at.count))
+        stepped[:, at.stays] = self.stepped
+        slope = np.zeros((n, len(self.still), at.count))
+        slope[:, :, at.current] = self.slope[:, :, : 2 * count]
+        slope[:, :, at.factor] = self.slope[:, :, 2 * count :]
+        slope[:, :, at.share] = scales.share * self.by_line(there)
+        slope[:, :, at.tide] = slope[:, :, at.datum] = 1.0
+        weights = np.zeros((1, 2 * len(self.knots.level), at.count))
+        weights[0, :, at.current] = np.kron(np.eye(2), self.knots.level)
+        flow = np.hstack([one.u, one.v]) - weights[0, :, at.current] @ self.mean
+        noise = np.tile(self.alike * self.meter_noise / self.meter_weight, (1, 2))
+        if not sensors:
+            return StateSpace(fade, steady, stepped, first, (weights,), flow, noise), slope
+        seen = slope[:, one.point].copy()
+        seen[:, :, at.offset] = np.eye(len(one.label))
+        moving = np.r_[at.current, at.factor]
+        base = (there + self.bend)[:, one.point] - np.einsum("nsq,nq->ns", seen[:, :, moving], self.state[:, moving])
+        read = one.depth - base - (0.0 if one.tide is None else one.tide[:, None])
+        error = common_unknowns.NOISE**2 / self.sensor_weight
+        whole = StateSpace(
+            fade, steady, stepped, first, (weights, seen), np.hstack([flow, read]), np.hstack([noise, error])
+        )
+        return whole, slope
+
+    @cached_property
+    def alike(self) -> float:
+        """Return how many readings of a meter in a row have the same error."""
+        step = float(np.median(np.diff(self.hours))) if len(self.hours) > 1 else ALIKE_HOURS
+        return max(ALIKE_HOURS / max(step, 1e-3), 1.0)
+
+    @property
+    def meter_noise(self) -> Floats:
+        """Return (n, k) variances of the errors of each component of the currents [m²/s²]."""
+        one = self.measured
+        table = np.array([self.scales.flag.get(f, FLAGGED[4]) for f in range(256)])
+        speed = np.nan_to_num(np.hypot(one.u, one.v))
+        noise: Floats = (METER[0] ** 2 + (METER[1] * speed) ** 2) * table[one.flag.astype(np.uint8)] ** 2
+        return noise
+
+    # --- turns
+
+    def solve(self) -> None:
+        """Take steps until the depths stay."""
+        before = np.full((len(self.measured.time), len(self.still)), np.inf)
+        for turn in range(TURNS):
+            there = self.linear()
+            if turn == 0:
+                off = np.nan_to_num(np.nanmedian(self.measured.depth - there[:, self.measured.point], axis=0))
+                usual = float(np.median(off)) if len(off) else 0.0
+                self.first = self._heavy(np.concatenate([[usual], off - usual]) ** 2)
+            law, slope = self.law(there)
+            self._turn(law, slope, there, learns=turn >= 2, steps=turn >= 1)
+            if np.nanmax(np.abs(self.depth - before)) < ENOUGH:
+                break
+            before = self.depth
+
+    def _heavy(self, square: Floats) -> Floats:
+        """Return variances of the beginning by Student's law, where such squares are expected."""
+        return np.maximum(self.begin, 0.5 * (self.begin + square))
+
+    def _turn(self, law: StateSpace, slope: Floats, there: Floats, *, learns: bool, steps: bool) -> None:
+        one, at, count = self.measured, self.columns, len(self.measured.time)
+        now = np.empty_like(self.state)
+        variance, curved = np.empty_like(there), np.empty_like(there)
+        wide = np.empty((count, law.read.shape[1]))
+        stay = np.zeros_like(self.stepped)
+        alike = np.linalg.inv(self._stretches[2])
+        share = np.zeros(count)
+        for each in smoothed(law):
+            t, spread = each.time, each.covariance
+            now[t] = each.mean
+            seen = law.slopes(t)
+            wide[t] = np.einsum("mq,mq->m", seen @ spread, seen)
+            variance[t] = np.einsum("pq,pq->p", slope[t] @ spread, slope[t])
+            flow = slope[t][:, at.current]
+            curved[t] = np.einsum("pq,pq->p", flow @ spread[at.current, at.current], flow)
+            if t + 1 < count:
+                stay[t + 1] = each.moved[at.stays]
+            z = each.mean[at.share]
+            share[t] = z @ alike @ z + np.sum(alike * spread[at.share, at.share])
+            if t == 0:
+                begun = each.mean[at.stays] ** 2 + spread.diagonal()[at.stays]
+                self.factor_covariance = spread[at.factor, at.factor]
+        left = law.read - np.einsum("nmq,nq->nm", np.stack([law.slopes(t) for t in range(count)]), now)
+        wide[:, : 2 * one.u.shape[1]] /= self.alike
+        square = left**2 + wide
+        levels = one.u.shape[1]
+        noise = self.meter_noise
+        e2 = square[:, :levels] + square[:, levels : 2 * levels]
+        self.meter_weight = np.nan_to_num((STUDENT + 2.0) / (STUDENT + e2 / noise), nan=1.0)
+        own = square[:, 2 * levels :] / common_unknowns.NOISE**2
+        self.sensor_weight = np.nan_to_num((STUDENT + 1.0) / (STUDENT + own), nan=1.0)
+        if learns:
+            ratio = self.meter_weight * e2 / noise / 2.0
+            flag = dict(self.scales.flag)
+            for f in flag:
+                mine = (one.flag == f) & np.isfinite(ratio)
+                if mine.sum() >= FEWEST:
+                    flag[f] = float(np.clip(flag[f] * ratio[mine].mean(), *FLAG_RANGE))
+            grown = self.scales.share * (share.mean() / STRETCHES) ** 2
+            self.scales = replace(self.scales, flag=flag, share=float(np.clip(grown, *SHARES)))
+        if steps:
+            self.first = self._heavy(begun)
+            self.stepped = 0.5 * (self.usual + np.maximum(stay, 0.0))
+            self.stepped[0] = 0.0
+        moving = self.state[:, at.current]
+        now[:, at.current] = moving + np.clip(now[:, at.current] - moving, -LONGEST, LONGEST)
+        now[:, at.factor] = np.clip(now[:, at.factor], -FURTHEST, FURTHEST)
+        self.state = now
+        tide = 0.0 if one.tide is None else one.tide
+        surface = now[:, at.tide.start] + now[:, at.datum.start] + tide
+        there = self.depths(now[:, at.current], now[0, at.factor], slice(None))
+        self.levels = self._hung(there)
+        self.knot_depth = self.knots.at(self.levels)
+        down = np.maximum(there - self.still, 1.0)
+        self.bend = np.minimum(0.5 * curved / down, down)
+        self.depth = there + self.bend + surface[:, None] + np.einsum("npz,nz->np", slope[:, :, at.share], now[:, at.share])
+        self.deviation = np.sqrt(np.maximum(variance, 0.0))
+
+    def _hung(self, there: Floats) -> Floats:
+        levels = self.levels.copy()
+        for k, point in enumerate(self.measured.level_point.tolist()):
+            if point != FREE:
+                levels[:, k] = np.where(np.isfinite(there[:, point]), there[:, point], levels[:, k])
+        return levels
