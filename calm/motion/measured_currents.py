@@ -19,12 +19,14 @@ from numpy.typing import NDArray
 
 from calm.case import Design
 from calm.motion import common_unknowns, line_response
-from calm.motion.line_response import Forward
+from calm.motion.common_unknowns import Common, LinearLaw
+from calm.motion.currents_law import ReadCurrents
+from calm.motion.line_response import Forward, LineResponse
 from calm.motion.measurements import FREE, MooringMeasurements
 from calm.motion.smoother import StateSpace, smoothed
 from calm.physics.line import Floats
 
-TURNS, ENOUGH = 16, 0.02
+TURNS, ENOUGH = 20, 0.05
 """Steps of Gauss and Newton at most; fewer where none moves a depth by more than this [m]."""
 SLOPE_STEP = 0.05
 """Of a current [m/s] and of the logarithm of a factor, by which slopes are found."""
@@ -47,7 +49,7 @@ FLAG_RANGE, FEWEST = (0.3, 15.0), 20
 """Least and greatest such factor, and readings from which the record says it."""
 STUDENT = 4.0
 """Degrees of freedom of the errors of a reading."""
-ALIKE_HOURS = 2.0
+ALIKE_HOURS = 1.0
 """Over which the error of a meter is the same [h]."""
 LEAST_SPREAD = 0.02
 """Of a current about its mean, at least [m/s]."""
@@ -61,9 +63,11 @@ SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
 """Such a share beforehand, its limits, and how long it lasts [h]."""
 TIDE_HOURS = 6.0
 """How long tide and air pressure last [h]."""
-BEGIN, STEP = 1.0, 0.02
-"""Usual size of datum and offsets at the beginning [m], and of what they change by in an hour [m]; of
-both, Student's law of one degree of freedom also knows values many times as large."""
+STEP = 0.02
+"""Usual size of what datum and offsets change by in an hour [m]; of this, and of what they begin with,
+Student's law of one degree of freedom also knows values many times as large."""
+LONGER = 30.0
+"""Times a step of the error of the line is lengthened, at most."""
 FURTHEST = 0.7
 """Logarithm of a factor, at most."""
 
@@ -175,15 +179,19 @@ class Scales:
 class CurrentSmoother:
     """A record with measured currents, estimated as a whole."""
 
-    def __init__(self, mooring: Design, measured: MooringMeasurements, names: Sequence[str]) -> None:
+    def __init__(
+        self, mooring: Design, measured: MooringMeasurements, names: Sequence[str]
+    ) -> None:
         self.mooring, self.measured, self.names = mooring, measured, tuple(names)
         self.still = Forward(mooring, {}).still
         self.seabed = float(mooring.water.depth)
         one = measured
-        place = np.array([
-            self.still[point] if point != FREE else np.nanmean(one.level_depth[:, k])
-            for k, point in enumerate(one.level_point.tolist())
-        ])
+        self.places = place = np.array(
+            [
+                self.still[point] if point != FREE else np.nanmean(one.level_depth[:, k])
+                for k, point in enumerate(one.level_point.tolist())
+            ]
+        )
         self.hours = (one.time - one.time[:1]) / np.timedelta64(1, "h")
         self.knots = knots_of(place, float(self.still.min()), self.seabed)
         count, sensors = len(self.knots.depth), len(one.label)
@@ -203,6 +211,7 @@ class CurrentSmoother:
         usual = [common_unknowns.DATUM * self.seabed, *[common_unknowns.OFFSET] * sensors]
         self.begin = np.square(usual)
         self.first = self.begin.copy()
+        self._last, self._longer = 0.0, 4.0
         step = np.diff(self.hours, prepend=self.hours[:1])
         self.usual = STEP**2 * step[:, None] * np.ones(1 + sensors)
         self.stepped = self.usual.copy()
@@ -254,15 +263,18 @@ class CurrentSmoother:
         far |= (np.abs(factor - self._slopes_factor) > SLOPE_STEP).any()
         times = np.flatnonzero(far)
         if len(times):
-            columns = []
-            for ahead in SLOPE_STEP * np.eye(now.shape[1]):
-                columns.append(self.depths(now[times] + ahead, factor, times))
-            for ahead in SLOPE_STEP * np.eye(len(factor)):
-                columns.append(self.depths(now[times], factor + ahead, times))
-            base = there[times][:, :, None]
-            self.slope[times] = np.nan_to_num((np.stack(columns, axis=2) - base) / SLOPE_STEP)
+            self.slope[times] = self._slopes(there[times], now[times], factor, times)
             self._slopes_at[times], self._slopes_factor = now[times], factor.copy()
         return there
+
+    def _slopes(
+        self, there: Floats, state: Floats, factor: Floats, times: NDArray[np.int64]
+    ) -> Floats:
+        """Return (n, p, 2 K + f) slopes of the depths with currents and logarithms of factors."""
+        steps = SLOPE_STEP * np.eye(state.shape[1]), SLOPE_STEP * np.eye(len(factor))
+        columns = [self.depths(state + ahead, factor, times) for ahead in steps[0]]
+        columns += [self.depths(state, factor + ahead, times) for ahead in steps[1]]
+        return np.nan_to_num((np.stack(columns, axis=2) - there[:, :, None]) / SLOPE_STEP)
 
     @cached_property
     def _stretches(self) -> tuple[Floats, NDArray[np.int64], Floats]:
@@ -281,7 +293,9 @@ class CurrentSmoother:
         down = np.maximum(np.nan_to_num(there - self.still), 0.0)
         place = self.still[order]
         after = np.clip(np.searchsorted(place, edges), 1, len(place) - 1)
-        share = np.clip((edges - place[after - 1]) / np.maximum(place[after] - place[after - 1], 1e-9), 0, 1)
+        share = np.clip(
+            (edges - place[after - 1]) / np.maximum(place[after] - place[after - 1], 1e-9), 0, 1
+        )
         sorted_down = down[:, order]
         at_edge = (1.0 - share) * sorted_down[:, after - 1] + share * sorted_down[:, after]
         part = np.diff(at_edge, axis=1)
@@ -330,11 +344,19 @@ class CurrentSmoother:
         seen = slope[:, one.point].copy()
         seen[:, :, at.offset] = np.eye(len(one.label))
         moving = np.r_[at.current, at.factor]
-        base = (there + self.bend)[:, one.point] - np.einsum("nsq,nq->ns", seen[:, :, moving], self.state[:, moving])
-        read = one.depth - base - (0.0 if one.tide is None else one.tide[:, None])
+        base = (there + self.bend)[:, one.point] - np.einsum(
+            "nsq,nq->ns", seen[:, :, moving], self.state[:, moving]
+        )
+        read = one.depth - base - one.surface[:, None]
         error = common_unknowns.NOISE**2 / self.sensor_weight
         whole = StateSpace(
-            fade, steady, stepped, first, (weights, seen), np.hstack([flow, read]), np.hstack([noise, error])
+            fade,
+            steady,
+            stepped,
+            first,
+            (weights, seen),
+            np.hstack([flow, read]),
+            np.hstack([noise, error]),
         )
         return whole, slope
 
@@ -350,7 +372,9 @@ class CurrentSmoother:
         one = self.measured
         table = np.array([self.scales.flag.get(f, FLAGGED[4]) for f in range(256)])
         speed = np.nan_to_num(np.hypot(one.u, one.v))
-        noise: Floats = (METER[0] ** 2 + (METER[1] * speed) ** 2) * table[one.flag.astype(np.uint8)] ** 2
+        noise: Floats = (METER[0] ** 2 + (METER[1] * speed) ** 2) * table[
+            one.flag.astype(np.uint8)
+        ] ** 2
         return noise
 
     # --- turns
@@ -361,7 +385,9 @@ class CurrentSmoother:
         for turn in range(TURNS):
             there = self.linear()
             if turn == 0:
-                off = np.nan_to_num(np.nanmedian(self.measured.depth - there[:, self.measured.point], axis=0))
+                off = np.nan_to_num(
+                    np.nanmedian(self.measured.depth - there[:, self.measured.point], axis=0)
+                )
                 usual = float(np.median(off)) if len(off) else 0.0
                 self.first = self._heavy(np.concatenate([[usual], off - usual]) ** 2)
             law, slope = self.law(there)
@@ -370,11 +396,25 @@ class CurrentSmoother:
                 break
             before = self.depth
 
+    def _grown(self, step: float) -> float:
+        """Return the share of the line's error after a step of its logarithm.
+
+        Those of expectation and maximisation are short where the pressures say little of it: they
+        are lengthened while they lead the same way.
+        """
+        same = step * self._last > 0.0
+        self._longer = min(1.5 * self._longer, LONGER) if same else max(self._longer / 3.0, 1.0)
+        self._last = step
+        whole = float(np.clip(self._longer * step, -0.4, 0.4))
+        return float(np.clip(self.scales.share * np.exp(whole), *SHARES))
+
     def _heavy(self, square: Floats) -> Floats:
         """Return variances of the beginning by Student's law, where such squares are expected."""
         return np.maximum(self.begin, 0.5 * (self.begin + square))
 
-    def _turn(self, law: StateSpace, slope: Floats, there: Floats, *, learns: bool, steps: bool) -> None:
+    def _turn(
+        self, law: StateSpace, slope: Floats, there: Floats, *, learns: bool, steps: bool
+    ) -> None:
         one, at, count = self.measured, self.columns, len(self.measured.time)
         now = np.empty_like(self.state)
         variance, curved = np.empty_like(there), np.empty_like(there)
@@ -396,25 +436,29 @@ class CurrentSmoother:
             share[t] = z @ alike @ z + np.sum(alike * spread[at.share, at.share])
             if t == 0:
                 begun = each.mean[at.stays] ** 2 + spread.diagonal()[at.stays]
-                self.factor_covariance = spread[at.factor, at.factor]
-        left = law.read - np.einsum("nmq,nq->nm", np.stack([law.slopes(t) for t in range(count)]), now)
+                whole = slice(at.factor.start, at.count)
+                self.common_covariance = spread[whole, whole]
+        left = law.read - np.einsum(
+            "nmq,nq->nm", np.stack([law.slopes(t) for t in range(count)]), now
+        )
         wide[:, : 2 * one.u.shape[1]] /= self.alike
         square = left**2 + wide
         levels = one.u.shape[1]
         noise = self.meter_noise
-        e2 = square[:, :levels] + square[:, levels : 2 * levels]
-        self.meter_weight = np.nan_to_num((STUDENT + 2.0) / (STUDENT + e2 / noise), nan=1.0)
+        self.off = square[:, :levels] + square[:, levels : 2 * levels]
+        ratio = self.off / noise
+        self.meter_weight = np.nan_to_num((STUDENT + 2.0) / (STUDENT + ratio), nan=1.0)
         own = square[:, 2 * levels :] / common_unknowns.NOISE**2
         self.sensor_weight = np.nan_to_num((STUDENT + 1.0) / (STUDENT + own), nan=1.0)
         if learns:
-            ratio = self.meter_weight * e2 / noise / 2.0
+            ratio = 0.5 * self.meter_weight * ratio
             flag = dict(self.scales.flag)
             for f in flag:
                 mine = (one.flag == f) & np.isfinite(ratio)
                 if mine.sum() >= FEWEST:
                     flag[f] = float(np.clip(flag[f] * ratio[mine].mean(), *FLAG_RANGE))
-            grown = self.scales.share * (share.mean() / STRETCHES) ** 2
-            self.scales = replace(self.scales, flag=flag, share=float(np.clip(grown, *SHARES)))
+            grown = self._grown(float(0.5 * np.log(share.mean() / STRETCHES)))
+            self.scales = replace(self.scales, flag=flag, share=grown)
         if steps:
             self.first = self._heavy(begun)
             self.stepped = 0.5 * (self.usual + np.maximum(stay, 0.0))
@@ -423,14 +467,17 @@ class CurrentSmoother:
         now[:, at.current] = moving + np.clip(now[:, at.current] - moving, -LONGEST, LONGEST)
         now[:, at.factor] = np.clip(now[:, at.factor], -FURTHEST, FURTHEST)
         self.state = now
-        tide = 0.0 if one.tide is None else one.tide
-        surface = now[:, at.tide.start] + now[:, at.datum.start] + tide
         there = self.depths(now[:, at.current], now[0, at.factor], slice(None))
         self.levels = self._hung(there)
         self.knot_depth = self.knots.at(self.levels)
         down = np.maximum(there - self.still, 1.0)
         self.bend = np.minimum(0.5 * curved / down, down)
-        self.depth = there + self.bend + surface[:, None] + np.einsum("npz,nz->np", slope[:, :, at.share], now[:, at.share])
+        self.depth = (
+            there
+            + self.bend
+            + self.surface[:, None]
+            + np.einsum("npz,nz->np", slope[:, :, at.share], now[:, at.share])
+        )
         self.deviation = np.sqrt(np.maximum(variance, 0.0))
 
     def _hung(self, there: Floats) -> Floats:
@@ -439,3 +486,107 @@ class CurrentSmoother:
             if point != FREE:
                 levels[:, k] = np.where(np.isfinite(there[:, point]), there[:, point], levels[:, k])
         return levels
+
+    # --- what is found
+
+    def common(self) -> Common:
+        """Return what is common to the record, datum and offsets as they are in the median."""
+        at = self.columns
+        stay = np.median(self.state[:, at.stays], axis=0)
+        factors = np.exp(self.state[0, at.factor]).tolist()
+        named = dict(zip(self.names, factors, strict=True))
+        return Common(named, float(stay[0]), stay[1:], self.common_covariance, self.scales.share)
+
+    @cached_property
+    def best(self) -> Forward:
+        """Return the mooring with the estimated factors."""
+        return self.forward(self.state[0, self.columns.factor])
+
+    def way(self, times: slice) -> ReadCurrents:
+        """Return the currents that are estimated, at the knots."""
+        u, v = self.currents(self.state[times, self.columns.current])
+        return ReadCurrents(self.knot_depth[times], u, v, np.zeros((len(u), 0, 0)))
+
+    @property
+    def offset(self) -> Floats:
+        """Return (n, s) offset of each sensor at each time [m]."""
+        return self.state[:, self.columns.offset]
+
+    @property
+    def surface(self) -> Floats:
+        """Return (n,) what is added to the depths of the line: datum, tide and steps [m]."""
+        at = self.columns
+        return self.state[:, at.datum.start] + self.state[:, at.tide.start] + self.measured.surface
+
+    @property
+    def current_factor(self) -> Floats:
+        """Return (n,) the currents that are estimated as a share of those measured."""
+        one = self.measured
+        u, v = (
+            each @ self.knots.level.T for each in self.currents(self.state[:, self.columns.current])
+        )
+        along, own = u * one.u + v * one.v, one.u**2 + one.v**2
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray(np.nansum(along, axis=1) / np.nansum(own, axis=1), np.float64)
+
+    @property
+    def doubt(self) -> Floats:
+        """Return (n, k) probability that what a level reads has nothing to do with its current.
+
+        By the odds of both beforehand, and by normal laws: of the error of a meter, and of this and
+        the current.
+        """
+        one, noise = self.measured, self.meter_noise
+        spread = np.square(self.knots.level @ self.spread)
+        false = common_unknowns.FALSE
+        odds = np.array([false.get(f, false[4]) for f in range(256)])[one.flag.astype(np.uint8)]
+        wide = noise + spread
+        log = np.log(odds / (1.0 - odds)) + np.log(noise / wide)
+        log += 0.5 * self.off * (1.0 / noise - 1.0 / wide)
+        return np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0))))
+
+    def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, LineResponse]:
+        """Return what the pressures of some times say beside the meters alone.
+
+        The law is about the currents as the meters have them, smoothed; and those at the knots, with
+        the times of the record that they are at.
+        """
+        one, at, count = self.measured, self.columns, len(times)
+        law, _ = self.law(self.depth, sensors=False)
+        flow = slice(0, at.current.stop)
+        now, spread = np.empty((count, flow.stop)), np.empty((count, flow.stop, flow.stop))
+        row = {int(t): i for i, t in enumerate(times)}
+        for each in smoothed(law):
+            if each.time in row:
+                now[row[each.time]] = each.mean[flow]
+                spread[row[each.time]] = each.covariance[flow, flow]
+        factor, part = self.state[0, at.factor], one.at(times)
+        there = self.depths(now, factor, times)
+        slope = self._slopes(there, now, factor, times)[:, one.point]
+        current, factors = slope[:, :, flow], slope[:, :, flow.stop :]
+        good = np.isfinite(there).all(axis=1)
+        by_currents = current @ spread @ current.transpose(0, 2, 1)
+        down = np.maximum(there - self.still, 1.0)[:, one.point]
+        bend = np.minimum(0.5 * np.einsum("nss->ns", by_currents) / down, down)
+        known = np.isfinite(part.depth)
+        bent = self.by_line(there)[:, one.point]
+        expected = by_currents + self.scales.share**2 * bent @ self._stretches[2] @ bent.transpose(
+            0, 2, 1
+        )
+        sea = common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
+        noise = np.where(known, common_unknowns.NOISE**2, line_response.UNMEASURED**2)
+        expected += sea**2 + noise[:, :, None] * np.eye(len(one.label))
+        fixed = common_unknowns.fixed_slopes(factors)
+        value = np.concatenate([factor, np.median(self.state[:, at.stays], axis=0)])
+        raw = part.depth - there[:, one.point] - bend - part.surface[:, None] + factors @ factor
+        raw = np.where(known, raw, 0.0)
+        left = np.where(known, raw - fixed @ value, 0.0)
+        span = one.time[[0, -1]]
+        share = (part.time - span[0]) / max(span[1] - span[0], np.timedelta64(1, "ns"))
+        fall = common_unknowns.fall(there, self.still, one.point)
+        arrays = (part.time, share, known, raw, left, expected, fixed, fall)
+        found = LinearLaw(*(each[good] for each in arrays))
+        way = ReadCurrents(self.knot_depth[times], *self.currents(now), np.zeros((count, 0, 0)))
+        near = np.abs(self.knots.depth[:, None] - self.places).argmin(axis=1)
+        forwards = line_response.forwards_of(self.mooring, self.common())
+        return found, way, LineResponse(part, *forwards, group=one.group[near])

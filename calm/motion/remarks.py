@@ -39,7 +39,7 @@ class Fault:
     Attributes
     ----------
     label : of the sensor; `ALL` where it is all of them alike
-    kind : `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
+    kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
     value, low, high : with the ends of its interval of 95 %: how late its times are [h]; factor on
         its depths; how much too deep it reads, what that grows to, or how far down the line it has
         moved [m]; 0 of what is exchanged; of `OF_LINE` a factor on what the file or the meter says
@@ -94,7 +94,9 @@ class Fault:
         if self.kind == "gain":
             return time, depth / self.value
         share: Floats = np.ones(1)
-        if self.kind != "offset":
+        if self.kind == "moved":
+            share = (time >= self.since) * 1.0
+        elif self.kind != "offset":
             share = np.clip((time - self.since) / (self.until - self.since), 0.0, 1.0)
         return time, depth - self.value * share
 
@@ -125,6 +127,9 @@ class Fault:
             f"{'longer' if self.value > 1.0 else 'shorter'} than in the file",
             "drag": f"its drag is {share} of that assumed",
             "fouling": f"its drag changes to {share} of itself by the end: fouling",
+            "moved": f"the whole mooring is {abs(self.value):.1f} m {band} "
+            f"{'deeper' if self.value > 0.0 else 'shallower'} from {when} on: it moved, and the "
+            "seabed there is at another depth",
             "clock": f"{clock} {abs(self.value):.2f} h {way} {band}"
             + f", or those of the currents {'early' if self.value > 0.0 else 'late'}"
             * (self.label == ALL),

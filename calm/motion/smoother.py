@@ -84,7 +84,9 @@ class Smoothed:
     moved: Floats
 
 
-def _filter(law: StateSpace, start: int, stop: int, mean: Floats, spread: Floats) -> Iterator[_Filtered]:
+def _filter(
+    law: StateSpace, start: int, stop: int, mean: Floats, spread: Floats
+) -> Iterator[_Filtered]:
     """Yield the times from `start`, at which mean and covariance are those predicted."""
     for time in range(start, stop):
         if time > start:
@@ -128,7 +130,9 @@ def smoothed(law: StateSpace) -> Iterator[Smoothed]:
             if time + 1 < count:
                 added = law.added(time + 1)
                 across = added @ hold
-                moved = (added @ pull) ** 2 + added.diagonal() - np.einsum("ij,ij->i", across, added)
+                moved = (
+                    (added @ pull) ** 2 + added.diagonal() - np.einsum("ij,ij->i", across, added)
+                )
                 fade = law.fade[time + 1]
                 pull, hold = fade * pull, fade[:, None] * hold * fade
             # (1 - gain seen)' of what comes later, and what this time says itself
