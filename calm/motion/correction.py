@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from calm.batch.blocks import SolvedBlock
 from calm.batch.dataset import laid_out, layout_of
 from calm.batch.profiles import Profiles, processors
+from calm.batch.statuses import STATUSES
 from calm.case import Design
 from calm.dataset.discovery import coverage, with_flags, written
 from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers, packed
@@ -238,7 +239,9 @@ class Task:
             knockdown=down[:, clamps:] + 0.0 * likely.knockdown,
             top_depth=likely.top_depth + shift[:, clamps],
         )
-        known = np.where(likely.status == 0, 1.0, np.nan)
+        if smoother is not None:
+            profiles = without_current(profiles, smoother.lost[times], one.false)
+        known = np.where(profiles.status == 0, 1.0, np.nan)
         deviation = deviation * known[:, None]
         columns = {
             "clamp_depth_sd": deviation[:, :clamps],
@@ -264,6 +267,21 @@ class Task:
     @cached_property
     def _alone(self) -> Forward:
         return Forward(self.mooring, {})
+
+
+def without_current(
+    profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
+) -> Profiles:
+    """Return profiles without the times (n,) that are far from any current, false ones apart."""
+    status = np.where(lost, STATUSES.index("no-current"), profiles.status)
+    if false is not None:
+        status = np.where(lost & false, STATUSES.index("implausible-current"), status)
+    columns = {
+        name: np.where(lost.reshape(-1, *[1] * (each.ndim - 1)), np.nan, each)
+        for name, each in vars(profiles).items()
+        if isinstance(each, np.ndarray) and each.dtype.kind == "f" and len(each) == len(lost)
+    }
+    return profiles.with_columns(**columns, status=status.astype(np.int8))
 
 
 def plain(forward: Forward, one: MooringMeasurements) -> Floats:

@@ -22,12 +22,13 @@ from calm.motion import common_unknowns, line_response
 from calm.motion.common_unknowns import Common, LinearLaw
 from calm.motion.currents_law import ReadCurrents
 from calm.motion.line_response import Forward, LineResponse
-from calm.motion.measurements import FREE, MooringMeasurements
+from calm.motion.measurements import FREE, MooringMeasurements, chosen_times
 from calm.motion.smoother import StateSpace, smoothed
 from calm.physics.line import Floats
 
-TURNS, ENOUGH = 20, 0.05
-"""Steps of Gauss and Newton at most; fewer where none moves a depth by more than this [m]."""
+TURNS, ENOUGH, PLACED = 20, 0.05, (1, 3, 5, 8, 11)
+"""Steps of Gauss and Newton at most; fewer where none moves a depth by more than this [m]; and those
+after which the factors take one."""
 SLOPE_STEP = 0.05
 """Of a current [m/s] and of the logarithm of a factor, by which slopes are found."""
 STALE = 0.03
@@ -212,6 +213,9 @@ class CurrentSmoother:
         self.begin = np.square(usual)
         self.first = self.begin.copy()
         self._last, self._longer = 0.0, 4.0
+        self.factor = np.zeros(len(self.names))
+        known = [common_unknowns.FACTORS[name][1] ** 2 for name in self.names]
+        self.common_covariance = np.diag([*known, *self.begin])
         step = np.diff(self.hours, prepend=self.hours[:1])
         self.usual = STEP**2 * step[:, None] * np.ones(1 + sensors)
         self.stepped = self.usual.copy()
@@ -257,7 +261,7 @@ class CurrentSmoother:
 
     def linear(self) -> Floats:
         """Return (n, p) depths at the state, and renew the slopes where it has moved far."""
-        now, factor = self.state[:, self.columns.current], self.state[0, self.columns.factor]
+        now, factor = self.state[:, self.columns.current], self.factor
         there = self.depths(now, factor, slice(None))
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > SLOPE_STEP).any()
@@ -319,9 +323,7 @@ class CurrentSmoother:
         tide = common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
         steady[at.tide, at.tide] = tide**2
         first = steady.copy()
-        first[at.factor, at.factor] = np.diag(
-            [common_unknowns.FACTORS[name][1] ** 2 for name in self.names]
-        )
+        first[at.factor, at.factor] = self.common_covariance[: len(self.names), : len(self.names)]
         first[at.stays, at.stays] = np.diag(self.first)
         fade = np.ones((n, at.count))
         step = np.diff(self.hours, prepend=self.hours[:1])[:, None]
@@ -343,10 +345,8 @@ class CurrentSmoother:
             return StateSpace(fade, steady, stepped, first, (weights,), flow, noise), slope
         seen = slope[:, one.point].copy()
         seen[:, :, at.offset] = np.eye(len(one.label))
-        moving = np.r_[at.current, at.factor]
-        base = (there + self.bend)[:, one.point] - np.einsum(
-            "nsq,nq->ns", seen[:, :, moving], self.state[:, moving]
-        )
+        base = (there + self.bend)[:, one.point]
+        base -= np.einsum("nsq,nq->ns", seen[:, :, at.current], self.state[:, at.current])
         read = one.depth - base - one.surface[:, None]
         error = common_unknowns.NOISE**2 / self.sensor_weight
         whole = StateSpace(
@@ -392,9 +392,35 @@ class CurrentSmoother:
                 self.first = self._heavy(np.concatenate([[usual], off - usual]) ** 2)
             law, slope = self.law(there)
             self._turn(law, slope, there, learns=turn >= 2, steps=turn >= 1)
-            if np.nanmax(np.abs(self.depth - before)) < ENOUGH:
+            if turn in PLACED:
+                self._place()
+            elif turn > max(PLACED) and np.nanmax(np.abs(self.depth - before)) < ENOUGH:
                 break
             before = self.depth
+
+    def _place(self) -> None:
+        """Take a step of Gauss and Newton of the factors, with datum and offsets, beside the meters.
+
+        Not beside currents that the pressures have a part in: these would shrink, and the drag grow.
+        Times whose errors repeat count as fewer, and steps of datum and offsets are taken off.
+        """
+        times = chosen_times(self.measured)
+        if not self.names or not len(times):
+            return
+        law, *_ = self.by_meters(times)
+        stay = self.state[:, self.columns.stays]
+        gone = stay - np.median(stay, axis=0)
+        of_sensors = (gone[:, :1] + gone[:, 1:])[np.searchsorted(self.measured.time, law.time)]
+        raw = np.where(law.known, law.raw - of_sensors, 0.0)
+        left = np.where(law.known, law.left - of_sensors, 0.0)
+        law = replace(law, raw=raw, left=left)
+        known = [common_unknowns.FACTORS[name][1] ** 2 for name in self.names]
+        before = np.diag(1.0 / np.array([*known, *self.first]))
+        pulls = law.pulls(law.fixed, raw)
+        alike = common_unknowns.repeated(law.pulls(law.fixed, left)[:, 0])
+        self.common_covariance = np.linalg.inv(law.normal(law.fixed) / alike + before)
+        value = self.common_covariance @ (pulls.sum(axis=0) / alike)
+        self.factor = np.clip(value[: len(self.names)], -FURTHEST, FURTHEST)
 
     def _grown(self, step: float) -> float:
         """Return the share of the line's error after a step of its logarithm.
@@ -436,8 +462,6 @@ class CurrentSmoother:
             share[t] = z @ alike @ z + np.sum(alike * spread[at.share, at.share])
             if t == 0:
                 begun = each.mean[at.stays] ** 2 + spread.diagonal()[at.stays]
-                whole = slice(at.factor.start, at.count)
-                self.common_covariance = spread[whole, whole]
         left = law.read - np.einsum(
             "nmq,nq->nm", np.stack([law.slopes(t) for t in range(count)]), now
         )
@@ -465,18 +489,18 @@ class CurrentSmoother:
             self.stepped[0] = 0.0
         moving = self.state[:, at.current]
         now[:, at.current] = moving + np.clip(now[:, at.current] - moving, -LONGEST, LONGEST)
-        now[:, at.factor] = np.clip(now[:, at.factor], -FURTHEST, FURTHEST)
         self.state = now
-        there = self.depths(now[:, at.current], now[0, at.factor], slice(None))
+        there = self.depths(now[:, at.current], self.factor, slice(None))
         self.levels = self._hung(there)
         self.knot_depth = self.knots.at(self.levels)
         down = np.maximum(there - self.still, 1.0)
         self.bend = np.minimum(0.5 * curved / down, down)
+        beside = np.r_[at.share, at.factor]
         self.depth = (
             there
             + self.bend
             + self.surface[:, None]
-            + np.einsum("npz,nz->np", slope[:, :, at.share], now[:, at.share])
+            + np.einsum("npz,nz->np", slope[:, :, beside], now[:, beside])
         )
         self.deviation = np.sqrt(np.maximum(variance, 0.0))
 
@@ -493,14 +517,14 @@ class CurrentSmoother:
         """Return what is common to the record, datum and offsets as they are in the median."""
         at = self.columns
         stay = np.median(self.state[:, at.stays], axis=0)
-        factors = np.exp(self.state[0, at.factor]).tolist()
+        factors = np.exp(self.factor).tolist()
         named = dict(zip(self.names, factors, strict=True))
         return Common(named, float(stay[0]), stay[1:], self.common_covariance, self.scales.share)
 
     @cached_property
     def best(self) -> Forward:
         """Return the mooring with the estimated factors."""
-        return self.forward(self.state[0, self.columns.factor])
+        return self.forward(self.factor)
 
     def way(self, times: slice) -> ReadCurrents:
         """Return the currents that are estimated, at the knots."""
@@ -517,6 +541,16 @@ class CurrentSmoother:
         """Return (n,) what is added to the depths of the line: datum, tide and steps [m]."""
         at = self.columns
         return self.state[:, at.datum.start] + self.state[:, at.tide.start] + self.measured.surface
+
+    @cached_property
+    def lost(self) -> NDArray[np.bool_]:
+        """Return (n,) which times are too far from any current to say anything of it."""
+        there = (np.isfinite(self.measured.u) & np.isfinite(self.measured.v)).any(axis=1)
+        known = self.hours[there]
+        after = np.clip(np.searchsorted(known, self.hours), 0, len(known) - 1)
+        before = np.maximum(after - 1, 0)
+        near = np.minimum(np.abs(known[after] - self.hours), np.abs(known[before] - self.hours))
+        return np.asarray(near > self.scales.hours)
 
     @property
     def current_factor(self) -> Floats:
@@ -560,7 +594,7 @@ class CurrentSmoother:
             if each.time in row:
                 now[row[each.time]] = each.mean[flow]
                 spread[row[each.time]] = each.covariance[flow, flow]
-        factor, part = self.state[0, at.factor], one.at(times)
+        factor, part = self.factor, one.at(times)
         there = self.depths(now, factor, times)
         slope = self._slopes(there, now, factor, times)[:, one.point]
         current, factors = slope[:, :, flow], slope[:, :, flow.stop :]

@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 
 import calm
-from calm.motion.correction import Task
 from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import Forward
 from calm.motion.remarks import CURRENTS, LINE
-from calm.motion.whole_record import estimate_common
+from calm.motion.study import prepare
 from tests.validation import test_motion_twins as twins
 
 pytestmark = pytest.mark.thorough
@@ -73,7 +72,7 @@ def found(mooring, monkeypatch, forward=Forward, change=lambda measured: measure
     monkeypatch.setattr(twins, "Forward", forward)
     measured = change(twins.twin(mooring, seed, twins.THREE)[0])
     monkeypatch.undo()
-    return diagnosed(Task(mooring, measured, estimate_common(mooring, measured, twins.NAMES)))
+    return diagnosed(prepare(mooring, measured, twins.NAMES, ()))
 
 
 def test_of_a_line_that_is_as_the_file_says_nothing_is_said(mooring, monkeypatch):

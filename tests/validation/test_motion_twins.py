@@ -11,11 +11,10 @@ import pytest
 
 import calm
 from calm.motion import common_unknowns
-from calm.motion.correction import Task
 from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import Forward, labels_of, points
 from calm.motion.measurements import MooringMeasurements
-from calm.motion.whole_record import estimate_common
+from calm.motion.study import prepare
 
 FIELD = Path(__file__).parents[2] / "docs" / "field" / "dune2"
 LEVELS = ("Aquadopp 626", "Aquadopp 426", "Aquadopp 226", "Aquadopp 26")
@@ -24,6 +23,8 @@ THREE = ("Aquadopp 626", "Aquadopp 226", "Aquadopp 26")
 BETWEEN = ("solo 575", "Aquadopp 426", "Aquadopp 226")
 NAMES = ("cable_drag", "rigid_drag")
 TIMES = 80
+WHOLE, SHEAR, OWN, STEADY, FALSE = 0.05, 0.05, 0.05, 0.01, 0.01
+"""Errors of the currents: of all alike, growing down the line, of each, [m/s], and how many are false."""
 
 
 @pytest.fixture(scope="module")
@@ -61,12 +62,12 @@ def twin(mooring, seed, used=USED, slip=None):
         depth = points(forward.solve(level, u, v))
         level = depth[:, at]
     place = np.linspace(-1.0, 1.0, len(LEVELS))
-    error = common_unknowns.CURRENT * random.standard_normal((TIMES, 1))
-    error = error + common_unknowns.SHEAR * place * random.standard_normal((TIMES, 1))
-    error = error + common_unknowns.LEVEL[1] * random.standard_normal(u.shape)
+    error = WHOLE * random.standard_normal((TIMES, 1))
+    error = error + SHEAR * place * random.standard_normal((TIMES, 1))
+    error = error + OWN * random.standard_normal(u.shape)
     speed = np.maximum(np.hypot(u, v), 0.02)
-    error += common_unknowns.STEADY / speed * random.standard_normal(u.shape)
-    turned = random.random(u.shape) < common_unknowns.FALSE[1]  # a tilted meter's direction
+    error += STEADY / speed * random.standard_normal(u.shape)
+    turned = random.random(u.shape) < FALSE  # a tilted meter's direction
     angle = turned * random.uniform(0.5, np.pi, u.shape)
     flow = (u + 1j * v) * np.exp(-error + 1j * angle)
     sensor = np.array([labels.index(label) for label in used])
@@ -101,10 +102,10 @@ def twin(mooring, seed, used=USED, slip=None):
 def recovered(mooring, seed, used=USED, slip=None):
     """Of one twin: errors of the factors in deviations; which depths are in their bands; doubts."""
     measured, logs, depth = twin(mooring, seed, used, slip)
-    common = estimate_common(mooring, measured, NAMES)
+    task = prepare(mooring, measured, NAMES, ())
+    common = task.common
     deviation = np.sqrt(np.diag(common.covariance))[: len(NAMES)]
     missed = (np.log(list(common.factors.values())) - logs) / deviation
-    task = Task(mooring, measured, common)
     profiles, more = task.columns(0, TIMES)
     labels = labels_of(mooring)
     hidden = [labels.index(label) for label in BETWEEN if label not in used]
@@ -178,7 +179,7 @@ def test_200_twins_lie_within_their_intervals(mooring):
 @pytest.mark.thorough
 def test_what_a_block_holds_changes_nothing(mooring):
     measured, _, _ = twin(mooring, 5)
-    task = Task(mooring, measured, estimate_common(mooring, measured.at(slice(0, 40)), NAMES))
+    task = prepare(mooring, measured, NAMES, ())
     whole, more = task.columns(0, 40)
     part, less = task.columns(20, 30)
     np.testing.assert_allclose(part.clamp_depth, whole.clamp_depth[20:30], rtol=0.0, atol=1e-9)
