@@ -135,12 +135,26 @@ class ReleaseKeys(definition.Model):
         return (self.codes,) if isinstance(self.codes, str) else self.codes or ()
 
 
+class ClockCheck(definition.Model):
+    """The clock of an instrument against the true time, after recovery."""
+
+    checked: Moment = described("when it was compared", "2028-03-02T10:40")
+    late: Annotated[float, definition.QuantityField("time")] = described(
+        "how far it was behind; negative if it was ahead", "12 s"
+    )
+
+
 class DeployedItem(definition.Model):
     """A piece or a clamp as it went over the side; a cable was cut to `length` [m]."""
 
     label: Text = described("of the piece or clamp in results", "wire-jacketed-8")
     serial: Text | None = optional("serial number; for a count, a list with one for each", 12345)
     length: definition.PositiveLength = optional("what a cable was cut to", "480 m")
+    clock: ClockCheck | None = optional(
+        "of an instrument: how far its clock was behind when it was checked; the error is taken to "
+        "grow evenly from the deployment on",
+        {"checked": "2028-03-02T10:40", "late": "12 s"},
+    )
     remark: Text | None = optional("anything worth knowing", "one terminal remade")
 
 

@@ -1,7 +1,7 @@
 """Unknowns common to a whole record: factors on the line, the datum, and offsets of its sensors.
 
-And the law by which faults of sensors are weighed: which a slip, a drift or a step of all sensors is,
-and from when on, by the linear law of many times.
+And the law by which faults of sensors are weighed: slips, drifts and steps of all sensors alike,
+by what many times say of them.
 """
 
 from __future__ import annotations
@@ -286,12 +286,13 @@ class Gains:
 
     def steps(self, column: Floats, wide: float) -> Floats:
         """Return (n,) logarithms of a column that begins at each time, of a deviation `wide`."""
-        return self._gain(*(_from_there_on(part) for part in self._parts(column)), wide)
+        own, cross, alone = (_from_there_on(part) for part in self._parts(column))
+        return self._gain(own, cross, alone, wide)
 
     def whole(self, column: Floats, wide: float) -> float:
         """Return the logarithm of a column throughout."""
-        parts = (part.sum(axis=0, keepdims=True) for part in self._parts(column))
-        return float(self._gain(*parts, wide)[0])
+        own, cross, alone = (part.sum(axis=0, keepdims=True) for part in self._parts(column))
+        return float(self._gain(own, cross, alone, wide)[0])
 
 
 def _from_there_on(values: Floats) -> Floats:

@@ -42,9 +42,9 @@ GAIN, GAINS, ALL_GAINS = 0.02, 0.01, 0.001
 EXCHANGED = 0.01
 """Probability that two labels are exchanged."""
 LEAST = {
-    "moved": 3.0, "clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5, "exchanged": 0.0,
-    "currents": 0.1, "speed": 0.15, "slows": 0.2, "buoyancy": 0.06, "length": 0.004, "drag": 0.3,
-    "fouling": 0.2,
+    "moved": 3.0, "clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5,
+    "exchanged": 0.0, "currents": 0.1, "speed": 0.15, "slows": 0.2, "buoyancy": 0.06,
+    "length": 0.004, "drag": 0.3, "fouling": 0.2,
 }  # fmt: skip
 """What is named, at least: m; h (and as many steps of the record), 1, m, m, m; then logarithms."""
 RIVALS = 3
@@ -312,7 +312,11 @@ class Diagnosis:
                     until = since + common_unknowns.RAMPS[code] * span
                 fault = Fault(label, kind, since=since, until=until)
                 yield Suspect(fault, column, wide, chance, none)
-        start = common_unknowns.common_step(rest, np.zeros(len(self.spread)), self.spread)
+        start = (
+            NEVER
+            if self.alone
+            else common_unknowns.common_step(rest, np.zeros(len(self.spread)), self.spread)
+        )
         if start != NEVER and len(self.label) > 1 and (ALL, "moved") not in had:
             step = np.where(np.arange(len(law.time)) >= start, 1.0, 0.0)[:, None] + none
             fault = Fault(ALL, "moved", since=law.time[start])

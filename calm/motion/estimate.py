@@ -118,7 +118,8 @@ def _excuse(
     with np.errstate(invalid="ignore"):
         as_line = (there - expected) ** 2 / wide + np.log(wide)
         as_read = ((one.depth[:, sensor] - expected) / deviation) ** 2 + 2.0 * np.log(deviation)
-    return np.nan_to_num(np.minimum(0.5 * (as_read - as_line), 0.0))
+    excuse: Floats = np.nan_to_num(np.minimum(0.5 * (as_read - as_line), 0.0))
+    return excuse
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from calm.case import Design
 from calm.files.pieces import clamps_down
 from calm.motion.common_unknowns import Common
 from calm.motion.currents_law import Linear, ReadCurrents
-from calm.motion.measurements import FREE, MooringMeasurements
+from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats, Integers, Line
 
 STEP = 0.05

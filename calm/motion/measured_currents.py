@@ -1,11 +1,12 @@
 """Currents that were measured: one smoother for currents, line, sensors and tide.
 
-At each time the unknowns are the current vector at knots in depth, the share by which the knockdown of
-each stretch of the line is wrong, and the tide; for the whole record factors on the drag, the datum and
-an offset of each sensor, which seldom step. All are normal, and fade with time or stay. Readings of
-meters and sensors have Student's errors, by weights; how large those of meters are for each quality
-flag, and the error of the line, come from the record by expectation and maximisation (Dempster, Laird
-and Rubin 1977). Steps of Gauss and Newton over the whole record: depths and slopes are of the march.
+At each time the unknowns are the current vector at knots in depth, the share by which the knockdown
+of each stretch of the line is wrong, and the tide. For the whole record they are factors on the
+drag, the datum and an offset of each sensor, which seldom step. All are normal, and fade with time
+or stay. Errors of meters and sensors follow Student's law, by weights. How large those of meters
+are for each quality flag, and the error of the line, come from the record by expectation and
+maximisation (Dempster, Laird and Rubin 1977). Steps of Gauss and Newton over the whole record take
+depths and slopes from the march.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +29,8 @@ from calm.motion.smoother import StateSpace, smoothed
 from calm.physics.line import Floats
 
 TURNS, ENOUGH, PLACED = 20, 0.05, (1, 3, 5, 8, 11)
-"""Steps of Gauss and Newton at most; fewer where none moves a depth by more than this [m]; and those
-after which the factors take one."""
+"""Steps of Gauss and Newton at most; fewer where none moves a depth by more than this [m]; and
+those after which the factors take one."""
 SLOPE_STEP = 0.05
 """Of a current [m/s] and of the logarithm of a factor, by which slopes are found."""
 STALE = 0.03
@@ -58,15 +60,15 @@ CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
 """Time [h] and depth [m] over which a current is correlated, where the record does not say."""
 
 STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
-"""Stretches whose knockdown is wrong each by its own share, the part of the line over which these are
-alike, and the share of its own knockdown that a point is wrong by besides."""
+"""Stretches whose knockdown is wrong each by its own share, the part of the line over which these
+are alike, and the share of its own knockdown that a point is wrong by besides."""
 SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
 """Such a share beforehand, its limits, and how long it lasts [h]."""
 TIDE_HOURS = 6.0
 """How long tide and air pressure last [h]."""
 STEP = 0.02
-"""Usual size of what datum and offsets change by in an hour [m]; of this, and of what they begin with,
-Student's law of one degree of freedom also knows values many times as large."""
+"""Usual size of what datum and offsets change by in an hour [m]; of this, and of what they begin
+with, Student's law of one degree of freedom also knows values many times as large."""
 LONGER = 30.0
 """Times a step of the error of the line is lengthened, at most."""
 FURTHEST = 0.7
@@ -147,7 +149,7 @@ class Columns:
     def made(cls, *counts: int) -> Columns:
         """Return the slices of so many columns each."""
         ends = np.cumsum([0, *counts]).tolist()
-        return cls(*(slice(*pair) for pair in zip(ends[:-1], ends[1:], strict=True)))
+        return cls(*(slice(*pair) for pair in pairwise(ends)))
 
     @property
     def count(self) -> int:
@@ -251,7 +253,7 @@ class CurrentSmoother:
         return whole[:, :count], whole[:, count:]
 
     def depths(self, state: Floats, factor: Floats, times: NDArray[np.int64] | slice) -> Floats:
-        """Return (n, p) depths of the points at currents (n, 2 K) and logarithms of factors (f,)."""
+        """Return (n, p) depths of the points at currents (n, 2 K), logarithms of factors (f,)."""
         forward = self.forward(factor)
         return forward.depths(self.knot_depth[times], *self.currents(state))
 
@@ -398,19 +400,24 @@ class CurrentSmoother:
                 break
             before = self.depth
 
-    def _place(self) -> None:
-        """Take a step of Gauss and Newton of the factors, with datum and offsets, beside the meters.
+    @property
+    def _steps(self) -> Floats:
+        """Return (n, s) how far datum and offsets are from their medians at each time [m]."""
+        stay = self.state[:, self.columns.stays]
+        gone = stay - np.median(stay, axis=0)
+        return np.asarray(gone[:, :1] + gone[:, 1:])
 
-        Not beside currents that the pressures have a part in: these would shrink, and the drag grow.
+    def _place(self) -> None:
+        """Take a step of Gauss and Newton of the factors, datum and offsets, beside the meters.
+
+        Beside currents that the pressures have a part in, these would shrink and the drag grow.
         Times whose errors repeat count as fewer, and steps of datum and offsets are taken off.
         """
         times = chosen_times(self.measured)
         if not self.names or not len(times):
             return
         law, *_ = self.by_meters(times)
-        stay = self.state[:, self.columns.stays]
-        gone = stay - np.median(stay, axis=0)
-        of_sensors = (gone[:, :1] + gone[:, 1:])[np.searchsorted(self.measured.time, law.time)]
+        of_sensors = self._steps[np.searchsorted(self.measured.time, law.time)]
         raw = np.where(law.known, law.raw - of_sensors, 0.0)
         left = np.where(law.known, law.left - of_sensors, 0.0)
         law = replace(law, raw=raw, left=left)
@@ -577,13 +584,14 @@ class CurrentSmoother:
         wide = noise + spread
         log = np.log(odds / (1.0 - odds)) + np.log(noise / wide)
         log += 0.5 * self.off * (1.0 / noise - 1.0 / wide)
-        return np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0))))
+        doubt: Floats = np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0))))
+        return doubt
 
     def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, LineResponse]:
         """Return what the pressures of some times say beside the meters alone.
 
-        The law is about the currents as the meters have them, smoothed; and those at the knots, with
-        the times of the record that they are at.
+        The law is about the currents as the meters have them, smoothed; besides, these at the
+        knots, and the times.
         """
         one, at, count = self.measured, self.columns, len(times)
         law, _ = self.law(self.depth, sensors=False)
@@ -618,8 +626,10 @@ class CurrentSmoother:
         span = one.time[[0, -1]]
         share = (part.time - span[0]) / max(span[1] - span[0], np.timedelta64(1, "ns"))
         fall = common_unknowns.fall(there, self.still, one.point)
-        arrays = (part.time, share, known, raw, left, expected, fixed, fall)
-        found = LinearLaw(*(each[good] for each in arrays))
+        found = LinearLaw(
+            part.time[good], share[good], known[good], raw[good], left[good], expected[good],
+            fixed[good], fall[good],
+        )  # fmt: skip
         way = ReadCurrents(self.knot_depth[times], *self.currents(now), np.zeros((count, 0, 0)))
         near = np.abs(self.knots.depth[:, None] - self.places).argmin(axis=1)
         forwards = line_response.forwards_of(self.mooring, self.common())

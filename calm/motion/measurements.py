@@ -66,7 +66,7 @@ class MooringMeasurements:
 
     @property
     def surface(self) -> Floats:
-        """Return (n,) what is added to all depths: the tide, and how far the mooring has sunk [m]."""
+        """Return (n,) what is added to all depths: the tide, and how far all has sunk [m]."""
         none = np.zeros(len(self.time))
         return none + (0.0 if self.tide is None else self.tide) + self.moved
 

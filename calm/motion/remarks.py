@@ -24,6 +24,8 @@ LIKELY = 20.0
 """Odds from which something is said to be wrong."""
 FAR_OFFSET = 2.5
 """Offset of all sensors that is named, in deviations of what is expected."""
+FAR_DATUM = 10.0
+"""The same, at most [m]."""
 FAR_LENGTH = 5.0
 """The same of a length where currents are not known: these take up much of it."""
 FAR_FACTOR = 3.0
@@ -95,7 +97,7 @@ class Fault:
             return time, depth / self.value
         share: Floats = np.ones(1)
         if self.kind == "moved":
-            share = (time >= self.since) * 1.0
+            share = np.where(time >= self.since, 1.0, 0.0)
         elif self.kind != "offset":
             share = np.clip((time - self.since) / (self.until - self.since), 0.0, 1.0)
         return time, depth - self.value * share
@@ -192,7 +194,7 @@ def alone_remarks(common: Common) -> list[str]:
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
     """Return a sentence where all sensors are off alike, by much of the depth of the seabed [m]."""
-    if abs(common.datum) <= FAR_OFFSET * common_unknowns.DATUM * seabed:
+    if abs(common.datum) <= min(FAR_OFFSET * common_unknowns.DATUM * seabed, FAR_DATUM):
         return []
     return [
         f"all sensors: {common.datum:+.1f} m off alike: the depth of the water, a length, or the "

@@ -1,10 +1,10 @@
 """Kalman filter and fixed-interval smoother, forward and backward once over a whole record.
 
-The state goes on as x(t+1) = f x(t) + e with a diagonal f; readings are y = H x + noise, independent of
-each other. The backward recursion is that of Durbin and Koopman (2012, Time Series Analysis by State
-Space Methods, section 4.4): it needs no inverse of a covariance of the state. The filter is kept at
-the beginning of blocks of times and repeated within each, so that memory does not grow with the
-square of the state at every time.
+The state goes on as x(t+1) = f x(t) + e with a diagonal f; readings are y = H x + noise, whose
+errors are independent. The backward recursion is that of Durbin and Koopman (2012, Time Series
+Analysis by State Space Methods, section 4.4): it needs no inverse of a covariance of the state. The
+filter is kept at the beginning of blocks of times and repeated within each, so that memory does not
+grow with the square of the state at every time.
 """
 
 from __future__ import annotations

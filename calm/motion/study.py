@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,6 +102,34 @@ class MotionEstimate:
         """Return the dataset that ``calm motion`` writes, with labels and units."""
         return self.dataset.copy()
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the depths of the sensors over time, with their 95 % bands, and return the axes.
+
+        Measured depths are dots. Needs matplotlib.
+
+        Parameters
+        ----------
+        ax : axes of matplotlib; new ones if not given
+        """
+        if ax is None:
+            from matplotlib.figure import Figure
+
+            ax = Figure(figsize=(9.0, 5.0)).add_subplot()
+        used, time = self.task.measured, self.task.measured.time
+        for j, label in enumerate(used.label):
+            depth, spread = depths_at(self.dataset, int(used.point[j]))
+            (line,) = ax.plot(time, depth, label=label, linewidth=1.0)
+            colour = line.get_color()
+            ax.fill_between(
+                time, depth - BAND * spread, depth + BAND * spread, color=colour, alpha=0.25
+            )
+            ax.plot(time, used.depth[:, j], ".", color=colour, markersize=2.0)
+        ax.set_ylabel("depth [m]")
+        if not ax.yaxis_inverted():
+            ax.invert_yaxis()
+        ax.legend(fontsize="small")
+        return ax
+
     def __repr__(self) -> str:
         """Return the times, the factors and the agreement, in ten lines at most."""
         time = self.task.measured.time
@@ -156,12 +184,6 @@ def prepare(
         smoother = CurrentSmoother(mooring, used, names)
         smoother.solve()
         return Task(mooring, used, smoother.common(), smoother)
-    if len(used.label) < 2:
-        raise UsageError(
-            "without --currents at least two sensors with a pressure are needed, and one is left: "
-            "one pressure says how strong the current is, not where; give --currents, or hide "
-            "fewer"
-        )
     used = with_knots(used, mooring)
     return Task(mooring, used, learn_currents(mooring, used, names, tell, prior))
 

@@ -17,11 +17,12 @@ import numpy as np
 from calm.case import Design
 from calm.files.pieces import clamps_down
 from calm.motion import line_response
+from calm.motion.common_unknowns import NOISE, NORMAL
 from calm.motion.correction import Task
 from calm.motion.currents_law import Linear, ReadCurrents
 from calm.motion.line_response import FACTORS, STEP, Forward, LineResponse
 from calm.motion.measurements import MooringMeasurements, level_names
-from calm.motion.remarks import BAND, CURRENTS, LINE, Fault
+from calm.motion.remarks import ALL, BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
 
 CAUSES: Mapping[str, tuple[float, float]] = {
@@ -237,3 +238,41 @@ def torn(measured: MooringMeasurements, distance: Floats) -> tuple[MooringMeasur
         if wrong[at, j]
     ]
     return replace(measured, depth=np.where(wrong, np.nan, depth)), notes
+
+
+EITHER_SIDE, CLEAR, LEAST_STEP = 4, 8.0, 3.0
+"""Times on either side of a step; how many times its usual change that of the lowest sensor is, at
+least; and the least step [m]."""
+
+
+def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
+    """Return the step by which all sensors are deeper or shallower alike from one time on.
+
+    Where no current was measured: strong currents would explain it. They take the lowest sensor
+    down by little, and less than the highest; a mooring that moves takes all down alike.
+
+    Parameters
+    ----------
+    still : (p,) depths of the points in still water [m]
+    """
+    whole = np.flatnonzero(np.isfinite(measured.depth).all(axis=1))
+    order = np.argsort(still[measured.point], kind="stable")
+    depth = measured.depth[whole][:, order]
+    count, sensors = depth.shape
+    if count < 4 * EITHER_SIDE or sensors < 2:
+        return None
+    sums = np.cumsum(np.pad(depth, ((1, 0), (0, 0))), axis=0)
+    means = (sums[EITHER_SIDE:] - sums[:-EITHER_SIDE]) / EITHER_SIDE
+    change = means[EITHER_SIDE:] - means[:-EITHER_SIDE]
+    usual = NORMAL * np.median(np.abs(change), axis=0) + NOISE
+    at = int(np.abs(change[:, -1]).argmax())
+    size = float(change[at, -1])
+    lasting = np.median(depth[at + EITHER_SIDE :, -1]) - np.median(depth[: at + EITHER_SIDE, -1])
+    alike = np.abs(change[at] - size) <= 3.0 * usual
+    if abs(size) < max(CLEAR * usual[-1], LEAST_STEP) or not alike.all():
+        return None
+    if abs(lasting - size) > 0.5 * abs(size):
+        return None
+    since = measured.time[whole[at + EITHER_SIDE]]
+    deviation = float(usual[-1] / np.sqrt(EITHER_SIDE))
+    return replace(Fault(ALL, "moved", since=since).sized(size, deviation), odds=np.inf)

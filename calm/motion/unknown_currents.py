@@ -66,6 +66,9 @@ USUAL, WITHIN = 0.07, 0.7
 SEABED = 0.0005
 """Of the depth of the water, as a share of it: where pressures alone place a line, a wrong length
 stands for what is wrong by more."""
+LEAST_PART, HIGH, HIGH_KNOWN = 5.0, 3.0, 0.1
+"""Percentile of its depths that counts as the least of a sensor; how far that is above its place in
+still water before the place is doubted [m]; and how well that is known, as a share of it."""
 AGAIN = 3
 """Steps from a fit that is kept to that of another time."""
 
@@ -169,9 +172,9 @@ def learn_currents(
         places = dict(zip(labels, still.tolist(), strict=True))
         mean, covariance = shaped_law(part, prior, places)
     worth = SHAPED if prior else PRIOR
-    begun = common_beforehand(
-        dict.fromkeys(names, 1.0), SEABED * mooring.water.depth, len(part.label)
-    )
+    high = raised(mooring, part)
+    datum = max(SEABED * float(mooring.water.depth), HIGH_KNOWN * abs(high))
+    begun = common_beforehand(dict.fromkeys(names, 1.0), datum, len(part.label), high)
     begun = replace(begun, worst=USUAL)
     common, logs = begun, np.zeros((len(part.time), KNOTS))
     at = None
@@ -185,6 +188,12 @@ def learn_currents(
         moments = LineResponse(part, *line_response.forwards_of(mooring, common))
         fit = _Fit(moments, replace(common, covariance=nothing), SpeedLaw(mean, covariance))
         at = fit.linear(logs) if at is None else fit.moved(at, logs)
+        if not np.isfinite(at.depth).any():
+            names_of = ", ".join(part.label)
+            raise UsageError(
+                f"--pressures: the line has no equilibrium that fits {names_of}: check their "
+                "labels, the lengths of the line and the depth of the water"
+            )
         found = fit.posterior(at)
         tried = logs + reach[:, None] * np.clip(found.logs - logs, -LONGEST, LONGEST)
         ahead = fit.linear(tried)
@@ -208,6 +217,21 @@ def learn_currents(
         covariance = (spread + worth * before) / (len(mine) + worth)
         mean, logs = mean + centre, logs - centre
     return replace(common, law=SpeedLaw(mean, covariance, _with_mean(fit, at)))
+
+
+def raised(mooring: Design, measured: MooringMeasurements) -> float:
+    """Return by how much all sensors are shallower than the line in still water, at most 0 [m].
+
+    No current lifts a line: where the shallowest readings of a sensor are above its place, the
+    depth of the water, a length or the place is another than in the file.
+    """
+    still = Forward(mooring, {}).still
+    depth = measured.depth - measured.moved[:, None]
+    least = [np.nanpercentile(one, LEAST_PART) for one in depth.T if np.isfinite(one).any()]
+    used = [j for j, one in enumerate(depth.T) if np.isfinite(one).any()]
+    off = np.array(least) - still[measured.point[used]]
+    high = float(off.min(initial=0.0))
+    return high if high < -HIGH else 0.0
 
 
 @dataclass(frozen=True)

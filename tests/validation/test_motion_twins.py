@@ -24,7 +24,7 @@ BETWEEN = ("solo 575", "Aquadopp 426", "Aquadopp 226")
 NAMES = ("cable_drag", "rigid_drag")
 TIMES = 80
 WHOLE, SHEAR, OWN, STEADY, FALSE = 0.05, 0.05, 0.05, 0.01, 0.01
-"""Errors of the currents: of all alike, growing down the line, of each, [m/s], and how many are false."""
+"""Errors of the currents: of all, growing down the line, of each, [m/s]; how many are false."""
 
 
 @pytest.fixture(scope="module")
