@@ -94,7 +94,7 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     if not len(times):
         return None, []
     if task.smoother is not None:
-        law, way, moments = task.smoother.by_meters(times)
+        law, way, moments = task.smoother.by_meters(times, task.smoother.factor)
         at = moments.linear(way, np.zeros((len(times), moments.groups)))
         return law, list(line_suspects(task, moments, way, at))
     common, part = task.common, task.measured.at(times)

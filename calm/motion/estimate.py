@@ -53,7 +53,7 @@ def estimated(
     """
     one, still = moments.measured, moments.forward.still
     first, at = known.found, known.at
-    own = line_response.own_errors(at.depth, still)
+    own = line_response.own_errors(at.depth, still, True)
     logs = [np.where(np.isfinite(first.evidence), 0.0, -np.inf)]
     found, when = [first], [np.arange(len(one.time))]
     inverse = np.linalg.inv(first.expected)
@@ -190,7 +190,7 @@ def posterior(
     if spike >= 0:
         noise[:, spike] = np.maximum(noise[:, spike], common_unknowns.SPIKE**2)
     if own is None:
-        own = line_response.own_errors(at.depth, still)
+        own = line_response.own_errors(at.depth, still, common.inferred)
     own = common.worst**2 * own
     bent = own[:, :, one.point]
     spread_of = slope @ state

@@ -160,16 +160,24 @@ SPAN, LOCAL = 0.25, 0.3
 for itself, as floats and clamps bend the line there."""
 
 
-def own_errors(depth: Floats, still: Floats) -> Floats:
+def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
     """Return (n, p, p) covariance of the errors of the line at its points, of a share of 1 [m²].
 
-    The knockdown of each stretch is wrong by such a share, a point by all that is below it, so that
+    While the law of the currents is learnt, a point is wrong by a share of its own knockdown, alike
+    over a quarter of the line. Beside a law that is learnt, which takes up what is so, the
+    knockdown of each stretch is wrong by such a share, a point by all that is below it, so that
     between two sensors the error is smooth, and by a lesser share of its own knockdown.
 
     Parameters
     ----------
     depth, still : (n, p), (p,) of the points, and in still water [m]; of NaN they are 0
+    learnt : whether the law of the currents is
     """
+    if not learnt:
+        own = np.maximum(np.nan_to_num(depth - still), 0.0)
+        span = max(SPAN * float(np.ptp(still)), 1.0)
+        errors = own[:, :, None] * np.exp(-np.abs(still[:, None] - still) / span) * own[:, None, :]
+        return errors
     order = np.argsort(-still, kind="stable")
     back, place = np.argsort(order, kind="stable"), still[order]
     down = np.maximum(np.nan_to_num(depth - still), 0.0)[:, order]

@@ -69,6 +69,8 @@ TIDE_HOURS = 6.0
 STEP = 0.02
 """Usual size of what datum and offsets change by in an hour [m]; of this, and of what they begin
 with, Student's law of one degree of freedom also knows values many times as large."""
+SETTLED = 6
+"""Turns before the error of the line is learnt: it would take up steps of sensors."""
 LONGER = 30.0
 """Times a step of the error of the line is lengthened, at most."""
 FURTHEST = 0.7
@@ -391,9 +393,9 @@ class CurrentSmoother:
                     np.nanmedian(self.measured.depth - there[:, self.measured.point], axis=0)
                 )
                 usual = float(np.median(off)) if len(off) else 0.0
-                self.first = self._heavy(np.concatenate([[usual], off - usual]) ** 2)
+                self.first = self._heavy(np.append(usual**2, np.zeros(len(off))))
             law, slope = self.law(there)
-            self._turn(law, slope, there, learns=turn >= 2, steps=turn >= 1)
+            self._turn(law, slope, there, turn)
             if turn in PLACED:
                 self._place()
             elif turn > max(PLACED) and np.nanmax(np.abs(self.depth - before)) < ENOUGH:
@@ -416,7 +418,7 @@ class CurrentSmoother:
         times = chosen_times(self.measured)
         if not self.names or not len(times):
             return
-        law, *_ = self.by_meters(times)
+        law, *_ = self.by_meters(times, self.factor)
         of_sensors = self._steps[np.searchsorted(self.measured.time, law.time)]
         raw = np.where(law.known, law.raw - of_sensors, 0.0)
         left = np.where(law.known, law.left - of_sensors, 0.0)
@@ -445,9 +447,7 @@ class CurrentSmoother:
         """Return variances of the beginning by Student's law, where such squares are expected."""
         return np.maximum(self.begin, 0.5 * (self.begin + square))
 
-    def _turn(
-        self, law: StateSpace, slope: Floats, there: Floats, *, learns: bool, steps: bool
-    ) -> None:
+    def _turn(self, law: StateSpace, slope: Floats, there: Floats, turn: int) -> None:
         one, at, count = self.measured, self.columns, len(self.measured.time)
         now = np.empty_like(self.state)
         variance, curved = np.empty_like(there), np.empty_like(there)
@@ -481,16 +481,18 @@ class CurrentSmoother:
         self.meter_weight = np.nan_to_num((STUDENT + 2.0) / (STUDENT + ratio), nan=1.0)
         own = square[:, 2 * levels :] / common_unknowns.NOISE**2
         self.sensor_weight = np.nan_to_num((STUDENT + 1.0) / (STUDENT + own), nan=1.0)
-        if learns:
+        if turn >= 2:
             ratio = 0.5 * self.meter_weight * ratio
             flag = dict(self.scales.flag)
             for f in flag:
                 mine = (one.flag == f) & np.isfinite(ratio)
                 if mine.sum() >= FEWEST:
                     flag[f] = float(np.clip(flag[f] * ratio[mine].mean(), *FLAG_RANGE))
+            self.scales = replace(self.scales, flag=flag)
+        if turn >= SETTLED:
             grown = self._grown(float(0.5 * np.log(share.mean() / STRETCHES)))
-            self.scales = replace(self.scales, flag=flag, share=grown)
-        if steps:
+            self.scales = replace(self.scales, share=grown)
+        if turn >= 1:
             self.first = self._heavy(begun)
             self.stepped = 0.5 * (self.usual + np.maximum(stay, 0.0))
             self.stepped[0] = 0.0
@@ -587,11 +589,13 @@ class CurrentSmoother:
         doubt: Floats = np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0))))
         return doubt
 
-    def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, LineResponse]:
+    def by_meters(
+        self, times: NDArray[np.int64], factor: Floats
+    ) -> tuple[LinearLaw, ReadCurrents, LineResponse]:
         """Return what the pressures of some times say beside the meters alone.
 
         The law is about the currents as the meters have them, smoothed; besides, these at the
-        knots, and the times.
+        knots, and the times. `factor` are the logarithms of the factors (f,) on the line.
         """
         one, at, count = self.measured, self.columns, len(times)
         law, _ = self.law(self.depth, sensors=False)
@@ -602,7 +606,7 @@ class CurrentSmoother:
             if each.time in row:
                 now[row[each.time]] = each.mean[flow]
                 spread[row[each.time]] = each.covariance[flow, flow]
-        factor, part = self.factor, one.at(times)
+        part = one.at(times)
         there = self.depths(now, factor, times)
         slope = self._slopes(there, now, factor, times)[:, one.point]
         current, factors = slope[:, :, flow], slope[:, :, flow.stop :]
@@ -632,5 +636,7 @@ class CurrentSmoother:
         )  # fmt: skip
         way = ReadCurrents(self.knot_depth[times], *self.currents(now), np.zeros((count, 0, 0)))
         near = np.abs(self.knots.depth[:, None] - self.places).argmin(axis=1)
-        forwards = line_response.forwards_of(self.mooring, self.common())
+        common = self.common()
+        named = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
+        forwards = line_response.forwards_of(self.mooring, replace(common, factors=named))
         return found, way, LineResponse(part, *forwards, group=one.group[near])

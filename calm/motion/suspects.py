@@ -66,7 +66,7 @@ class Suspect:
 
         A parabola through nothing, with the slope there, and through the size throughout.
         """
-        if self.ahead is None or self.share is None:
+        if self.ahead is None or self.share is None or not size:
             return self
         slope = np.divide(
             self.column, self.share, out=np.zeros_like(self.column), where=self.share > 0.0
@@ -85,7 +85,7 @@ def line_suspects(
     moments : at some of the times
     way, at : the currents there, and the line in them
     """
-    common, one = task.common, moments.measured
+    one, factors = moments.measured, task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
     span = task.measured.time[[0, -1]]
     share = ((one.time[good] - span[0]) / max(span[1] - span[0], np.timedelta64(1, "ns")))[:, None]
@@ -103,8 +103,8 @@ def line_suspects(
         return Suspect(fault, column, wide, log, none, ahead, part)
 
     def dragged(size: float) -> Floats:
-        factors = {n: v * np.exp(size * n.endswith("drag")) for n, v in common.factors.items()}
-        there = moments.depths(way, at.logs, Forward(task.mooring, factors))
+        grown = {n: v * np.exp(size * n.endswith("drag")) for n, v in factors.items()}
+        there = moments.depths(way, at.logs, Forward(task.mooring, grown))
         return np.nan_to_num(seen(there - at.depth))
 
     def misread(level: int) -> Callable[[float], Floats]:
@@ -113,11 +113,11 @@ def line_suspects(
             seen(moments.depths(way, at.logs - size * mine) - at.depth)
         )
 
-    names = list(common.factors)
+    names = list(factors)
     columns = {name: seen(at.common[:, :, i]) for i, name in enumerate(names)}
     for name in FACTORS:
         if name not in columns:
-            forward = Forward(task.mooring, {**common.factors, name: float(np.exp(STEP))})
+            forward = Forward(task.mooring, {**factors, name: float(np.exp(STEP))})
             ahead = moments.depths(way, at.logs, forward)
             columns[name] = np.nan_to_num(seen((ahead - at.depth) / STEP))
     yield suspect(LINE, "length", columns["length"])

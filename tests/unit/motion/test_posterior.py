@@ -40,7 +40,7 @@ def test_the_posterior_is_that_of_all_unknowns_written_out(tide):
     found = posterior(one, at, SPREAD[None], common, STILL)
     # unknowns: two logarithms, sea, factor, datum, two offsets, three errors of the line
     sea = common_unknowns.TIDE if tide is None else common_unknowns.RESIDUAL_TIDE
-    bent = 0.07**2 * own_errors(THERE[None], STILL)[0]
+    bent = 0.07**2 * own_errors(THERE[None], STILL, False)[0]
     covariance = np.zeros((10, 10))
     covariance[:2, :2], covariance[2, 2] = SPREAD, sea**2
     covariance[3:7, 3:7], covariance[7:, 7:] = common.covariance, bent
@@ -132,5 +132,5 @@ def test_errors_of_the_line_where_currents_are_inferred():
     alike = np.exp(-np.abs(middle[:, None] - middle) / (0.25 * np.ptp(STILL)))
     expected = np.triu(np.ones((3, 3))) @ (np.outer(part, part) * alike) @ np.tri(3)
     expected += 0.3**2 * np.outer(down, down) * alike
-    found = own_errors(THERE[None], STILL)[0]
+    found = own_errors(THERE[None], STILL, True)[0]
     assert 0.07**2 * found == pytest.approx(expected)
