@@ -79,12 +79,12 @@ def test_of_a_line_that_is_as_the_file_says_nothing_is_said(mooring, monkeypatch
     assert all(not found(mooring, monkeypatch, seed=seed) for seed in (0, 1, 2))
 
 
-def test_currents_that_read_low_are_named_before_missing_floats(
-    mooring, monkeypatch
-):
+def test_currents_that_read_low_are_named_before_missing_floats(mooring, monkeypatch):
     """Knockdown is proportional to drag and the square of the current, so these two are one."""
     (low,) = found(mooring, monkeypatch, change=misread(0.7))
-    assert (low.label, low.kind) in {(CURRENTS, "currents"), (LINE, "drag")}    assert low.value < 0.7 or low.kind == "drag"  # linear in its size, so too far: 0.58 for 0.7
+    assert (low.label, low.kind) in {(CURRENTS, "currents"), (LINE, "drag")}
+    # the depths are linear in its size, which is so too far: 0.58
+    assert low.value < 0.7 or low.kind == "drag"
 
 
 def test_missing_floats_are_the_likeliest_where_they_are_missing(mooring, monkeypatch):
