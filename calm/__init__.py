@@ -1,11 +1,11 @@
-"""CALM designs oceanographic moorings: shape, tensions and anchor load in static equilibrium.
+"""Design oceanographic moorings: shape, tensions and anchor load in static equilibrium.
 
 >>> import calm
 >>> result = calm.load("lines/s1000.yaml").solve()
 >>> round(result.top.knockdown, 1)
 32.2
 
-The names below are loaded when first used, so that `import calm` costs next to nothing.
+The public names are imported on first use, so that `import calm` is fast.
 """
 
 from __future__ import annotations
@@ -62,7 +62,10 @@ def __getattr__(name: str) -> object:
 
 
 def _give_results_their_forms() -> None:
-    """Tell results how a notebook shows them, how they are plotted and become a dataset."""
+    """Connect results to the functions that show them in a notebook, plot them and make datasets.
+
+    These functions are in packages that `calm.case` must not import.
+    """
     from calm.case import Result
 
     def html(result: Result) -> str:

@@ -1,16 +1,17 @@
-"""Every exception CALM raises on purpose, and the words of their messages.
+"""The exceptions that CALM raises intentionally, and common parts of their messages.
 
 ::
 
     CalmError
-    ├── InputError      a file is wrong: all its problems, each with its place     (exit code 2)
-    ├── UsageError      a command or a call is wrong                               (exit code 2)
-    └── NoEquilibrium   the line has no shape that may be shown: why, and what to do (exit code 3)
+    ├── InputError      a file has mistakes, each reported with its place          (exit code 2)
+    ├── UsageError      a command or a call is not valid                           (exit code 2)
+    └── NoEquilibrium   the mooring has no equilibrium: the reason, and advice     (exit code 3)
 """
 
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
@@ -23,15 +24,15 @@ T = TypeVar("T")
 
 
 class CalmError(Exception):
-    """Mark an error that is meant for people."""
+    """Base class of CALM's errors, whose messages are written for users."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """Describe one mistake in one place of a file.
+    """A mistake at one place of a file.
 
-    `line` and `column` count from 1; 0 means the file as a whole. `lacks` shows, where nothing is
-    wrong but something is still missing, what that is: ``no length on wire 2``.
+    `line` and `column` count from 1; 0 means the file as a whole. `lacks` describes an incomplete
+    file, if nothing is wrong but something is missing: ``no length on wire 2``.
     """
 
     path: str
@@ -46,7 +47,7 @@ class Problem:
 
 
 class InputError(CalmError):
-    """Say that a file cannot be used as it stands; `problems` holds every mistake found in it."""
+    """A file cannot be used; `problems` are all mistakes found in it."""
 
     def __init__(self, problems: Sequence[Problem]) -> None:
         self.problems = tuple(problems)
@@ -54,26 +55,28 @@ class InputError(CalmError):
 
 
 def refused(path: object, *messages: str, line: int = 0, column: int = 1) -> InputError:
-    """Return why a file cannot be used, each message in one line; `line` 0 is the whole file."""
+    """Return the error for a file that cannot be used, one problem for each message; `line` 0 means
+    the whole file.
+    """
     place = str(path), line, column if line else 0
     return InputError([Problem(*place, one_line(message)) for message in messages])
 
 
 class UsageError(CalmError):
-    """Say that a command line or a call asks for something that does not exist."""
+    """A command line or a call is not valid."""
 
 
 class NoEquilibrium(CalmError):
-    """Say that the mooring has no equilibrium that may be shown.
+    """The mooring has no equilibrium that can be reported.
 
     Parameters
     ----------
     status : str
         One of the statuses of the result format, e.g. ``"no-equilibrium"``, ``"slack"``.
     message, advice : str
-        What is wrong, with its figures, and what to change.
+        What is wrong, with figures; and what the user can change.
     piece : int, optional
-        Index of the piece it happens at, which stands in the message as ``{piece}``.
+        Index of the piece concerned, which replaces ``{piece}`` in the message.
     """
 
     def __init__(self, status: str, message: str, advice: str, piece: int | None = None) -> None:
@@ -85,24 +88,57 @@ class NoEquilibrium(CalmError):
         super().__init__(f"{status}: {self.message} {advice}")
 
     def naming(self, piece: str) -> NoEquilibrium:
-        """Return the same exception, with the piece called by a name."""
+        """Return the same exception with a name for the piece."""
         return NoEquilibrium(self.status, self.wording.format(piece=piece), self.advice)
 
     def to_dict(self) -> dict[str, str]:
-        """Return `status`, `message` and `advice`, as they stand in JSON in place of a result."""
+        """Return `status`, `message` and `advice`, which replace a result in JSON."""
         return {"status": self.status, "message": self.message, "advice": self.advice}
 
 
 def or_why_not(solve: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | NoEquilibrium:
-    """Return what is solved, or why there is no equilibrium."""
+    """Return the result of a call, or the NoEquilibrium that it raises."""
     try:
         return solve(*given, **named)
     except NoEquilibrium as failure:
         return failure
 
 
+EXTRAS: dict[str, tuple[str, ...]] = {
+    "records": ("numba", "xarray", "pandas", "h5netcdf", "h5py", "cf_xarray", "cftime"),
+    "cluster": ("distributed", "dask", "zarr"),
+    "plot": ("matplotlib",),
+}
+"""Libraries that a default installation lacks, by the extra of the package that brings them."""
+
+
+def how_to_install(missing: ModuleNotFoundError) -> str | None:
+    """One line that names a missing library and the command that installs it.
+
+    None if the missing module is one of CALM's own, or has no name: a fault of the program.
+    """
+    library = (missing.name or "").partition(".")[0]
+    if library in ("", "calm"):
+        return None
+    for extra, libraries in EXTRAS.items():
+        if library in libraries:
+            return f"this needs {library}: pip install 'calm-mooring[{extra}]'"
+    return f"this needs {library}, which is not installed: pip install {library}"
+
+
+def unexpected(error: Exception) -> str:
+    """Reason for an exception that CALM did not raise itself, in one line."""
+    advice = how_to_install(error) if isinstance(error, ModuleNotFoundError) else None
+    return advice or f"{type(error).__name__}: {error}"
+
+
 def internal_failure(error: Exception) -> NoEquilibrium:
-    """Report CALM's own failure as an unsolved line: it does not stop the others."""
+    """Return an internal error of CALM, or a missing library, as an unsolved line, so that other
+    lines are still solved.
+    """
+    if isinstance(error, ModuleNotFoundError) and (advice := how_to_install(error)):
+        need, _, command = advice.partition(": ")
+        return NoEquilibrium("internal-error", f"T{need[1:]}.", f"Install it: {command}")
     return NoEquilibrium(
         "internal-error",
         f"CALM failed ({type(error).__name__}: {error}).",
@@ -114,23 +150,25 @@ LONGEST_TEXT = 60
 
 
 def one_line(text: str) -> str:
-    """Return a text in one line, without control signs."""
+    """Return a text in one line, without control characters."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 def unknown(what: str, text: str, known: Iterable[str]) -> str:
-    """Say that `what` does not exist, and what does: the nearest, or all when they are few."""
+    """Return the message `what` with the nearest known name, or with all names if they are few."""
     names = list(known)
     near = nearest(text, names)
     if near:
         return f"{what}; did you mean `{near}`?"
-    if len(names) <= 12:
-        return f"{what}; allowed: {', '.join(sorted(names)) or 'none'}"
+    if 0 < len(names) <= 12:
+        return f"{what}; allowed: {', '.join(sorted(names))}"
     return what
 
 
 def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = None) -> str:
-    """Say that a value is not allowed; offer what is like it, else `offer`."""
+    """Return the message for a value that is not allowed, with the nearest one allowed or else
+    `offer`.
+    """
     choices = list(allowed)
     meant = nearest(text, choices) or offer
     message = f"`{name}: {text}` must be one of {', '.join(choices)}"
@@ -138,20 +176,48 @@ def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = 
 
 
 def nearest(text: str, known: Iterable[str]) -> str | None:
-    """The name most like a text, None when none is like it."""
-    found = difflib.get_close_matches(text[:LONGEST_TEXT], list(known), 1)
-    return found[0] if found else None
+    """The name most like a text, None when none is like it.
+
+    Letters decide which names are alike, and their words and figures which of these comes first:
+    for ``chain-g30-16``, ``chain-short-g30-16`` precedes ``chain-g80-16``.
+    """
+    given = text[:LONGEST_TEXT]
+    alike = difflib.get_close_matches(given, list(known), 50)
+    wanted = _parts(given)
+    return max(alike, key=lambda name: _likeness(wanted, _parts(name)), default=None)
+
+
+def _parts(name: str) -> list[str]:
+    """Words and figures of a name; a size in millimetres is its figure."""
+    parts = re.split(r"[\W_]+", name.casefold())
+    return [re.sub(r"(?<=\d)mm$", "", part) for part in parts if part]
+
+
+def _likeness(wanted: Sequence[str], parts: Sequence[str]) -> float:
+    """Mean likeness of the parts wanted to those of a name, 1 if all are equal."""
+    best = [max((_alike(one, other) for other in parts), default=0.0) for one in wanted]
+    return sum(best) / max(len(best), 1) - 0.02 * max(len(parts) - len(wanted), 0)
+
+
+def _alike(one: str, other: str) -> float:
+    """Likeness of two words by their letters, of two figures by their ratio."""
+    if one.isdecimal() and other.isdecimal():
+        least, greatest = sorted((float(one), float(other)))
+        return least / greatest if greatest else 1.0
+    return difflib.SequenceMatcher(None, one, other).ratio() ** 2
 
 
 def shown(value: object) -> str:
-    """An offending value as messages show it."""
+    """Return an invalid value as shown in messages, shortened."""
     text = value if isinstance(value, str) else "…" if isinstance(value, (dict, list)) else ""
     text = " ".join(text.split())
     return text if len(text) <= LONGEST_TEXT else text[: LONGEST_TEXT - 1] + "…"
 
 
 def about_quantity(name: str, value: object, error: QuantityError) -> str:
-    """The message of a quantity gone wrong, with the line corrected where that is known."""
+    """Return the message about an invalid quantity, with the corrected line if a correction is
+    known.
+    """
     text = f"`{name}: {shown(value)}`" if shown(value) else f"`{name}`"
     message = f"{text} {error.complaint}"
     if error.suggestion:

@@ -1,4 +1,4 @@
-"""Places on the earth: latitudes and longitudes as people write them, and the ellipsoid."""
+"""Positions on the earth: the notations of latitude and longitude, and the WGS 84 ellipsoid."""
 
 import re
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 HEMISPHERES: Mapping[str, str] = {"latitude": "NS", "longitude": "EW"}
-"""Letters of the positive and the negative side."""
+"""Letters of the positive and the negative hemisphere."""
 
 _POSITION = re.compile(
     r"""(?P<before>[NSEW])?\s*
@@ -25,19 +25,19 @@ _POSITION = re.compile(
 def degrees_of(text: str, what: str) -> float | None:
     """Return a latitude or longitude [degrees], south and west negative.
 
-    Such as ``57 28.84 N``, ``57°28.84'N``, ``57-28.84N``, ``-5 12 30`` or ``5.2 W``. None where the
-    text has neither minutes nor a hemisphere, as a plain number or one with its unit.
+    Accepted are texts such as ``57 28.84 N``, ``57°28.84'N``, ``57-28.84N``, ``-5 12 30`` or ``5.2
+    W``. Returns None for a text with neither minutes nor a hemisphere, such as a plain number.
 
     Parameters
     ----------
-    text : to read
+    text : the text of a position
     what : ``latitude`` or ``longitude``
 
     Raises
     ------
     ValueError
-        Minutes or seconds of 60 and more, parts of degrees beside minutes, a sign beside a
-        hemisphere, or a hemisphere of the other kind.
+        Minutes or seconds are 60 or more; degrees with a fraction are followed by minutes; there
+        are both a sign and a hemisphere; or the hemisphere is one of the other coordinate.
     """
     found = _POSITION.fullmatch(text.strip())
     if found is None:
@@ -61,24 +61,24 @@ def degrees_of(text: str, what: str) -> float | None:
 
 
 def plain_degrees(text: str, what: str) -> float:
-    """Return the same of a text that may be a plain number of degrees, too.
+    """Return a latitude or longitude [degrees], also from a plain number of degrees.
 
     Parameters
     ----------
-    text : to read
+    text : the text of a position
     what : ``latitude`` or ``longitude``
 
     Raises
     ------
     ValueError
-        As `degrees_of`, or it is no number.
+        As in `degrees_of`, or the text is not a number.
     """
     placed = degrees_of(text, what)
     return float(text) if placed is None else placed
 
 
 def read_as_minutes(degrees: float) -> float:
-    """Return what is meant by degrees and minutes with a point between: 48.18 is 48°18'."""
+    """Return the angle of degrees and minutes separated by a point: 48.18 is read as 48°18'."""
     size = abs(degrees)
     whole = int(size)
     minutes = (size - whole) * 100.0
@@ -87,20 +87,20 @@ def read_as_minutes(degrees: float) -> float:
 
 SEMI_MAJOR = 6_378_137.0
 FLATTENING = 1.0 / 298.257223563
-_SQUARE = FLATTENING * (2.0 - FLATTENING)  # of the eccentricity
+_SQUARE = FLATTENING * (2.0 - FLATTENING)  # square of the eccentricity
 _ROUNDS = 10
 
 
 @dataclass(frozen=True)
 class Frame:
-    """East, north and up at a point of the ellipsoid [degrees]; the origin is that point."""
+    """Local axes east, north and up, with their origin at a point of the ellipsoid [degrees]."""
 
     latitude: float
     longitude: float
 
     @property
     def _axes(self) -> Floats:
-        """(3, 3) rows east, north, up in coordinates from the centre."""
+        """Unit vectors east, north and up in geocentric coordinates, shape (3, 3)."""
         phi, lam = np.radians([self.latitude, self.longitude])
         sin_phi, cos_phi, sin_lam, cos_lam = np.sin(phi), np.cos(phi), np.sin(lam), np.cos(lam)
         return np.array(
@@ -112,19 +112,23 @@ class Frame:
         )
 
     def place(self, latitude: Floats, longitude: Floats, depth: Floats) -> Floats:
-        """(n, 3) east, north and up [m] of positions [degrees] at depths [m]."""
+        """Return the east, north and up coordinates [m] of positions [degrees] at depths [m], shape
+        (n, 3).
+        """
         origin = _from_centre(np.array(self.latitude), np.array(self.longitude), np.array(0.0))
         found: Floats = (_from_centre(latitude, longitude, depth) - origin) @ self._axes.T
         return found
 
     def position(self, place: Floats) -> tuple[float, float, float]:
-        """Latitude, longitude [degrees] and depth [m] of a place (3,) [m]."""
+        """Return the latitude and longitude [degrees] and the depth [m] of local coordinates, shape
+        (3,) [m].
+        """
         origin = _from_centre(np.array(self.latitude), np.array(self.longitude), np.array(0.0))
         x, y, z = (origin + place @ self._axes).tolist()
         across = float(np.hypot(x, y))
         latitude = float(np.arctan2(z, across * (1.0 - _SQUARE)))
         height = 0.0
-        for _ in range(_ROUNDS):  # each makes the error some three hundred times less
+        for _ in range(_ROUNDS):  # each iteration divides the error by about 300
             normal = SEMI_MAJOR / np.sqrt(1.0 - _SQUARE * np.sin(latitude) ** 2)
             height = across * np.cos(latitude) + z * np.sin(latitude) - SEMI_MAJOR**2 / normal
             latitude = np.arctan2(z, across * (1.0 - _SQUARE * normal / (normal + height)))
@@ -133,7 +137,9 @@ class Frame:
 
 
 def _from_centre(latitude: Floats, longitude: Floats, depth: Floats) -> Floats:
-    """(…, 3) Cartesian coordinates [m] of positions [degrees] below the ellipsoid [m]."""
+    """Geocentric Cartesian coordinates [m] of positions [degrees] at depths [m] below the
+    ellipsoid, shape (…, 3).
+    """
     phi, lam = np.radians(latitude), np.radians(longitude)
     normal = SEMI_MAJOR / np.sqrt(1.0 - _SQUARE * np.sin(phi) ** 2)
     across = (normal - depth) * np.cos(phi)

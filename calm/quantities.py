@@ -1,7 +1,7 @@
-"""The quantities CALM reports: one table of names, symbols, units and meanings.
+"""The quantities that CALM reports: names, symbols, units and meanings.
 
-Table headings, CSV headers, plot labels and the manual all read it, so that a quantity is called
-the same and carries the same unit wherever it is shown. A second one has what instruments measure.
+Table headings, CSV headers, plot labels and the manual use this table, so that a quantity has the
+same name and unit everywhere. A second table has the quantities that instruments measure.
 """
 
 from collections.abc import Mapping
@@ -25,13 +25,13 @@ class Quantity:
     unit : str
         Unit of the number in results (SI, and degrees); empty for a pure number.
     meaning : str
-        One sentence for the manual.
+        Meaning as one sentence, for the manual.
     decimals : int
-        Digits after the point, in the unit displayed, that mean something to a reader.
+        Number of decimals shown, in the displayed unit.
     symbol : str
-        The letter of formulas, where there is one.
+        Symbol in formulas, if there is one.
     display : str
-        The unit people usually read, where it is another: a key of `_USUAL`.
+        Usual unit of display, if it differs from `unit`: a key of `_USUAL`.
     """
 
     name: str
@@ -44,38 +44,38 @@ class Quantity:
 
     @property
     def display_unit(self) -> str:
-        """The unit people read: that chosen by `show_in`, else the usual one."""
+        """Unit of display: the one chosen by `show_in`, or the usual one."""
         return _layout(self.unit, self.display, self.decimals)[0]
 
     @property
     def usual_unit(self) -> str:
-        """The unit people read where they choose none, and that of pictures."""
+        """Unit of display if none is chosen; pictures always use it."""
         return self.display or self.unit
 
     @property
     def usual_scale(self) -> float:
-        """Return how many of the usual unit make one `unit`."""
+        """Factor from `unit` to the usual unit."""
         return _USUAL.get(self.display, 1.0)
 
     @property
     def scale(self) -> float:
-        """Return how many of the unit displayed make one `unit`."""
+        """Factor from `unit` to the displayed unit."""
         return _layout(self.unit, self.display, self.decimals)[1]
 
     @property
     def header(self) -> str:
-        """Name and unit as the head of a column that programs read, e.g. ``depth_top[m]``."""
+        """Name and unit as a column header of a data file, such as ``depth_top[m]``."""
         return f"{self.name}[{self.unit}]" if self.unit else self.name
 
     @property
     def label(self) -> str:
-        """Title and usual unit as the label of an axis, e.g. ``depth [m]``."""
+        """Heading and usual unit as the label of an axis, such as ``depth [m]``."""
         return f"{self.heading} [{self.usual_unit}]" if self.usual_unit else self.heading
 
     def format(self, value: float | None) -> str:
-        """Digits of a value [`unit`] in the unit displayed; a dash when unknown.
+        """Format a value [`unit`] as a number in the displayed unit; an unknown value as a dash.
 
-        A value that rounds to nothing never shows a minus sign.
+        A value that rounds to zero has no minus sign.
         """
         if value is None or value != value:
             return "-"
@@ -83,13 +83,15 @@ class Quantity:
         return f"{value * scale:z.{places}f}"
 
     def say(self, value: float | None) -> str:
-        """A value [`unit`] with the unit displayed, for a sentence, e.g. ``113.2 m``."""
+        """Format a value [`unit`] with the displayed unit, for a sentence, such as ``113.2 m``."""
         if value is None or value != value:
             return "unknown"
         return self._with_unit(self.format(value))
 
     def figure(self, value: float) -> str:
-        """A value [`unit`] to four significant digits with the unit displayed, for data sheets."""
+        """Format a value [`unit`] to four significant digits with the displayed unit, for data
+        sheets.
+        """
         return self._with_unit(f"{float(f'{value * self.scale:.4g}'):.10g}")
 
     def _with_unit(self, text: str) -> str:
@@ -101,7 +103,7 @@ _USUAL = {
     **{"": 1.0, "°": 1.0, "mm": 1e3, "l": 1e3, "kN": 1e-3, "knot": 1.0 / (1852 / 3600)},
     "years": 1.0 / (365.25 * 86_400.0),
 }
-"""How many of a unit that people usually read make one of that of results."""
+"""Factors from the unit of results to the usual unit of display."""
 
 _TABLE = (
     Quantity("depth", "depth", "m", "Depth below the still-water surface."),
@@ -116,14 +118,14 @@ _TABLE = (
     Quantity("cut_length", "cut length", "m", "Length before any load.", 2),
     Quantity("tension", "tension", "N", "Pull in the line.", 0, "T"),
     Quantity("tilt", "tilt", "deg", "Angle of the axis from the vertical, 0 upright.", 1, "", "°"),
-    Quantity("knockdown", "knockdown", "m", "How much deeper than in still water."),
-    Quantity("safety_factor", "safety factor", "", "Breaking load over the greatest tension."),
-    Quantity("utilisation", "utilisation", "", "Greatest tension over the working load.", 2),
+    Quantity("knockdown", "knockdown", "m", "Increase of depth relative to still water."),
+    Quantity("safety_factor", "safety factor", "", "Breaking load divided by the maximum tension."),
+    Quantity("utilisation", "utilisation", "", "Maximum tension divided by the working load.", 2),
     Quantity("used_buoyancy", "used buoyancy", "",
-             "Share of the buoyancy of a float at the surface that is in use.", 3),
-    Quantity("reserve", "reserve", "N", "Buoyancy of the surface float that is not in use.", 0),
-    Quantity("draft", "draft", "m", "How deep a floating hull is immersed.", 2),
-    Quantity("freeboard", "freeboard", "m", "How far a floating hull stands out.", 2),
+             "Share of the buoyancy of a surface float that is used.", 3),
+    Quantity("reserve", "reserve", "N", "Buoyancy of the surface float that is not used.", 0),
+    Quantity("draft", "draft", "m", "Immersed height of a floating hull.", 2),
+    Quantity("freeboard", "freeboard", "m", "Height of a floating hull above the water.", 2),
     Quantity("vertical", "vertical pull", "N",
              "Upward pull on the anchor, downward pull on the tow point.", 0, "V"),
     Quantity("horizontal", "horizontal pull", "N",
@@ -135,7 +137,7 @@ _TABLE = (
     Quantity("life", "life in waves", "s", "Until fatigue in waves breaks it.", 1, "", "years"),
     Quantity("body_tension", "tension at the body", "N", "Pull on the towed body.", 0),
     Quantity("frequency", "frequency", "Hz", "Frequency at which the cable vibrates.", 2),
-    Quantity("required_weight", "required weight", "N", "Weight in water the anchor needs.", 0),
+    Quantity("required_weight", "required weight", "N", "Weight in water the anchor must have.", 0),
     Quantity("scope", "scope", "", "Cut length of the line over the water depth.", 3),
     Quantity("grounded_length", "grounded length", "m", "Cut length that lies on the seabed."),
     Quantity("speed", "speed", "m/s", "Speed of the water, or of the ship.", 2),
@@ -146,28 +148,28 @@ _TABLE = (
              "Net force in sea water of 1025 kg/m³, downward.", 2),
     Quantity("net_buoyancy", "net force in water", "N",
              "Net force in sea water of 1025 kg/m³, upward, by weight or by mass and volume.", 0),
-    Quantity("dry_mass", "mass in air", "kg", "Mass of a piece as it lies on the deck."),
+    Quantity("dry_mass", "mass in air", "kg", "Mass of a piece in air."),
     Quantity("wet_weight", "weight in water", "N", "Net force of a piece, downward.", 0),
     Quantity("lift_mass", "mass of the lift", "kg", "Mass of a piece with its clamps."),
     Quantity("force", "force", "N", "Force measured.", 0),
-    Quantity("at", "at", "m", "Where a clamp sits, from the top of its piece.", 2),
+    Quantity("at", "at", "m", "Distance of a clamp from the top of its piece.", 2),
     Quantity("volume", "volume", "m³", "Volume of water displaced.", 1, "", "l"),
     Quantity("density", "density", "kg/m³", "Density of the material.", 0),
     Quantity("stiffness", "stiffness", "N", "Pull over strain, EA.", 0, "EA", "kN"),
     Quantity("breaking_load", "breaking load", "N", "Load at which it breaks.", 1, "", "kN"),
-    Quantity("working_load", "working load", "N", "Load it is made for.", 1, "", "kN"),
-    Quantity("depth_rating", "depth rating", "m", "Greatest depth it stands.", 0),
+    Quantity("working_load", "working load", "N", "Load for which it is designed.", 1, "", "kN"),
+    Quantity("depth_rating", "depth rating", "m", "Maximum depth of use.", 0),
     Quantity("max_tilt", "greatest tilt", "deg",
-             "Tilt beyond which it is not to be trusted.", 0, "", "°"),
+             "Tilt above which its data are not reliable.", 0, "", "°"),
     Quantity("warn_tilt", "tilt of warning", "deg",
-             "Tilt from which its data need a look.", 0, "", "°"),
+             "Tilt above which its data should be checked.", 0, "", "°"),
     Quantity("kn", "normal drag", "N/(m/s)²", "Drag across its axis at 1 m/s.", 2, "Kn"),
     Quantity("kt", "axial drag", "N/(m/s)²", "Drag along its axis at 1 m/s.", 2, "Kt"),
     Quantity("k_surface", "drag afloat", "N/(m/s)²", "Drag at 1 m/s when it floats.", 2),
     Quantity("lift", "lift", "N/(m/s)²", "Lift at 1 m/s.", 2),
-    Quantity("drag_area", "drag area", "m²", "Area to which its drag coefficient belongs.", 4),
+    Quantity("drag_area", "drag area", "m²", "Area to which its drag coefficient refers.", 4),
     Quantity("cd_area", "Cd × area", "m²", "Drag coefficient times area.", 4),
-    Quantity("wind_area", "wind area", "m²", "Area on which the wind blows.", 2),
+    Quantity("wind_area", "wind area", "m²", "Area exposed to the wind.", 2),
     Quantity("cx", "Cx", "", "Drag coefficient of a sphere.", 3),
     Quantity("cn", "Cn", "", "Drag coefficient across the axis.", 3),
     Quantity("ct", "Ct", "", "Drag coefficient along the axis.", 4),
@@ -186,8 +188,9 @@ SHOWN_UNITS = {
     "speed": {"m/s": 1.0, "cm/s": 0.01, "kn": 1852 / 3600},
     "mass": {"kg": 1.0, "lb": 0.45359237},
 }
-"""The units in which people may have each dimension shown, and how many of the first they are;
-that is the unit of results."""
+"""Units of display that may be chosen for each dimension, with their sizes in the unit of results,
+which is listed first.
+"""
 
 _CHOICES = {next(iter(units)): dimension for dimension, units in SHOWN_UNITS.items()}
 _shown: dict[str, str] = {}
@@ -195,10 +198,11 @@ _shown: dict[str, str] = {}
 
 @cache
 def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
-    """Return the unit that people read, how many of it make one of results, and digits.
+    """Return the unit of display, the factor to it from the unit of results, and the number of
+    decimals.
 
-    What has a small unit of its own keeps it; a unit that is chosen has digits that mean as much as
-    the usual ones, feet as many as metres.
+    A quantity with a small usual unit, such as mm, keeps it. The number of decimals is chosen so
+    that the resolution is about that of the usual unit.
     """
     dimension, usual = _CHOICES.get(unit, ""), _USUAL.get(display, 1.0)
     chosen = "" if display and dimension != "force" else _shown.get(dimension, "")
@@ -209,14 +213,13 @@ def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
 
 
 def show_in(units: Mapping[str, str]) -> None:
-    """Show quantities to people in these units from now on, in this process.
+    """Set the units in which quantities are displayed, for this process.
 
-    Files for programs stay in SI. Quantities with a small unit of their own (diameters in mm) keep
-    that.
+    Data files remain in SI units. Quantities with a small usual unit (diameters in mm) keep it.
 
     Parameters
     ----------
-    units : by dimension of `SHOWN_UNITS`, one of its units; what is not named is shown as usual
+    units : unit by dimension of `SHOWN_UNITS`; other dimensions keep their usual units
     """
     _shown.clear()
     _layout.cache_clear()
@@ -224,17 +227,17 @@ def show_in(units: Mapping[str, str]) -> None:
 
 
 def shown_units() -> dict[str, str]:
-    """The units chosen by `show_in`, where they are not the usual ones."""
+    """Return the units chosen by `show_in`, by dimension."""
     return dict(_shown)
 
 
 def say(name: str, value: float | None) -> str:
-    """A value of a quantity with its unit, for a sentence, e.g. ``113.2 m``."""
+    """Format a value of a quantity with its unit, for a sentence, such as ``113.2 m``."""
     return QUANTITIES[name].say(value)
 
 
 def rounded(value: float, digits: int, *, up: bool) -> float:
-    """A value of so many digits that is not less, or not more, than another."""
+    """Round a value to a number of significant digits, up or down."""
     if value == 0.0:
         return 0.0
     step = 10.0 ** (floor(log10(abs(value))) - digits + 1)
@@ -242,17 +245,17 @@ def rounded(value: float, digits: int, *, up: bool) -> float:
 
 
 def bearing_of(east: float, north: float) -> float:
-    """Direction of a vector [degrees] clockwise from north, 0 to 360."""
+    """Return the direction of a vector, clockwise from north, 0 to 360 [degrees]."""
     return degrees(atan2(east, north)) % 360.0
 
 
 def bearing_text(bearing: float) -> str:
-    """A direction [degrees] as people write it: ``068°``."""
+    """Format a direction [degrees] in three digits: ``068°``."""
     return f"{round(bearing) % 360:03d}°"
 
 
 def duration(seconds: float) -> str:
-    """Return a time in the unit that fits."""
+    """Format a time [s] in seconds, minutes or hours."""
     if seconds < 90.0:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)
@@ -261,15 +264,16 @@ def duration(seconds: float) -> str:
 
 @dataclass(frozen=True)
 class MeasuredQuantity:
-    """A quantity that instruments of a mooring measure and that is put on levels.
+    """A quantity that instruments of a mooring measure, and that can be interpolated to fixed
+    levels.
 
     Attributes
     ----------
-    archive : its name in files of OceanSITES
-    standard_name, long_name, units : of what is written
-    dimension : of its unit, in the sense of `calm.units`
-    sought, usual : CF standard names, and usual names, by which it is found
-    noise : standard deviation of a good sensor that a user has not told otherwise
+    archive : its name in OceanSITES files
+    standard_name, long_name, units : attributes of the variable that is written
+    dimension : dimension of its unit, as in `calm.units`
+    sought, usual : CF standard names, and usual names of variables, by which it is found in files
+    noise : standard deviation of a good sensor, the default if the user gives none
     """
 
     archive: str
@@ -302,13 +306,15 @@ QUANTITIES_MEASURED = {
         "speed", ("northward_sea_water_velocity",), (), 0.01,
     ),
 }  # fmt: skip
-"""By the names that commands take; noise: what makers state of the usual instruments."""
+"""The quantities measured, by their names in commands; `noise` is the accuracy that manufacturers
+state for common instruments.
+"""
 
 
 def chosen_quantities(text: str | None) -> tuple[str, ...]:
-    """Return the names of a text such as ``temperature,salinity``; without one, all.
+    """Return the names in a text such as ``temperature,salinity``; all names if the text is None.
 
-    UsageError: a name is none of `QUANTITIES_MEASURED`, neither there nor in the archive.
+    UsageError: a name is unknown; names in OceanSITES files are accepted, too.
     """
     archived = {one.archive: name for name, one in QUANTITIES_MEASURED.items()}
     wanted = [part.strip() for part in (text or ",".join(QUANTITIES_MEASURED)).split(",")]

@@ -1,6 +1,6 @@
-"""Files that come with CALM: component catalogue, example lines, manual, moorings to begin with.
+"""Files that are installed with CALM: component catalogue, example lines, manual and templates.
 
-The first three stand inside the package once installed; in a checkout, beside it.
+In an installation the first three are inside the package; in a checkout they are next to it.
 """
 
 import importlib.resources
@@ -33,12 +33,15 @@ TEMPLATES: dict[Template, str] = {
     "slack-surface": "marker buoy on chain and floating rope, 60 m",
     "tow": "body behind a ship, at the depth wanted",
 }
-"""Commented moorings to begin with, one of each kind, and what each is.
+"""Kinds of template moorings, each with its description.
 
-None accepts a figure that is not known: that is for whoever signs the design."""
+A template accepts no unknown figure, since that is a decision of whoever signs the design.
+
+None accepts a figure that is not known: that is for whoever signs the design.
+"""
 
 
 def template(kind: Template) -> str:
-    """Return the text of the file of a kind."""
+    """Return the text of the template of a kind."""
     folder = importlib.resources.files("calm") / "templates"
     return (folder / f"{kind}.yaml").read_text(encoding="utf-8")

@@ -1,8 +1,8 @@
-"""Quantities as text, `12 mm`, turned into SI numbers.
+"""Convert text such as `12 mm` to SI numbers.
 
-Everyday units are looked up in the table below; the others are asked of pint, which is imported
-only then. Masses are never forces: `35 kg` where a force is wanted is an error that offers
-`35 kgf`. One kilogram-force is 9.80665 N wherever the mooring is.
+Common units are in the table below; others are converted by pint, which is imported only then. A
+mass is never accepted as a force: if a force is required, `35 kg` is an error whose message
+suggests `35 kgf`. One kilogram-force is 9.80665 N at every location.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ KNOT = 1852 / 3600
 
 @dataclass(frozen=True)
 class Dimension:
-    """Describe one kind of quantity: what it is called, its SI unit and its everyday units."""
+    """A kind of quantity: its name in messages, its SI unit and its common units."""
 
     noun: str
     unit: str
@@ -74,8 +74,8 @@ DIMENSIONS: Mapping[str, Dimension] = {
 }  # fmt: skip
 """Every kind of quantity, by name.
 
-Angles are kept in degrees and temperatures in degrees Celsius, as files and reports have them.
-Salinities are practical ones; a mass fraction is turned into one as in sea water of the reference
+Angles are in degrees and temperatures in degrees Celsius, as in files and reports. Salinities are
+practical salinities. A mass fraction is converted to one as for sea water of the reference
 composition, by the factor that defines it (Millero et al. 2008, Deep-Sea Research I 55, 50-72).
 """
 
@@ -111,7 +111,9 @@ _MISTAKEN: Mapping[str, tuple[str, str | None]] = {
     "mt": ("is in thousandths of a tonne; a metric ton is `t`", "t"),
     "Mt": ("is in millions of tonnes; a metric ton is `t`", "t"),
 }
-"""What pint reads as a unit that nobody means in a mooring: what is said, and what may be meant."""
+"""Units that pint knows but that are mistakes in a mooring file: the message, and the unit probably
+meant.
+"""
 
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4}(?![\d.]))?")
 _FRACTION = re.compile(r"([+-]?)(?:(\d+)\s+)?(\d+)\s*/\s*(\d+)(?![\d.])")
@@ -121,24 +123,25 @@ _THOUSANDS = re.compile(  # `1,250,000`, `1 250`, `1,250.0` and `1.250,0`
     r"|([,.])\d{3}(?:\2\d{3})+|(?:,\d{3})+(?=\.\d)|(?:\.\d{3})+(?=,\d)))"
     r"(?:[.,](\d+))?(?![\d.,])"
 )
-# a word ends where no more of it follows: else the ways to part one double with every letter
+# a word must end here: otherwise the number of ways to split a text doubles with each letter
 _UNIT = re.compile(r"(?:[A-Za-zµ°%][A-Za-z_µ°%]*(?![A-Za-z_µ°%])|[*/()]|\^-?[1-4](?!\d)|1(?=/))+")
 _SUPERSCRIPTS = str.maketrans("⁻¹²³⁴", "-1234")
 _LONGEST = 60
-_LARGEST = 1e30  # so that products of a few of them are numbers still
+_LARGEST = 1e30  # limit that keeps products of a few values finite
 
 
 class QuantityError(ValueError):
-    """Say that a text is not the quantity wanted.
+    """A text that is not a valid quantity of the required dimension.
 
     Attributes
     ----------
     complaint : str
-        What is wrong, to be read after the offending text: "needs a unit".
+        What is wrong, to be read after the invalid text: "needs a unit".
     suggestion : str or None
-        The text corrected, where a correction is known.
+        The corrected text, if a correction is known.
     is_other : bool
-        Whether the text is of another dimension, so that its unit or its number may be wrong.
+        Whether the text is of another dimension, so that either its unit or its number may be
+        wrong.
     """
 
     def __init__(
@@ -151,17 +154,17 @@ class QuantityError(ValueError):
 
 
 def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = None) -> float:
-    """Turn a number with its unit into SI (degrees, degC).
+    """Convert a number with its unit to SI (degrees, degC).
 
     Parameters
     ----------
     text : str or float
-        Such as ``"12 mm"``, ``"1/2 in"``, ``"1.5e3 N"``; zero, and any `number`, needs no unit. A
-        latitude or longitude may be of degrees and minutes: see `calm.positions`.
+        A text such as ``"12 mm"``, ``"1/2 in"`` or ``"1.5e3 N"``. Zero and any `number` need no
+        unit. Latitudes and longitudes may have degrees and minutes: see `calm.positions`.
     dimension : str
         A key of `DIMENSIONS`.
     usual_unit : str, optional
-        The unit to offer when there is none; the SI unit by default.
+        The unit to suggest if there is none; by default the SI unit.
 
     Raises
     ------
@@ -175,7 +178,7 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
 
 @functools.lru_cache(maxsize=4096)
 def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
-    """Return the value of a text without blanks around it."""
+    """Return the value of a text without surrounding blanks."""
     wanted = DIMENSIONS[dimension]
     if dimension in HEMISPHERES:
         try:
@@ -193,7 +196,7 @@ def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
                 raise
             corrected = text.removesuffix(unit) + error.suggestion
             if error.is_other and usual_unit not in (None, wanted.unit, error.suggestion):
-                # kilograms of what is usual in kN are kilograms-force, or a slip of the unit
+                # kilograms, if the usual unit is kN, mean kilograms-force or are a mistaken unit
                 usual = f"{text.removesuffix(unit)}{usual_unit}"
                 raise QuantityError(
                     f"{error.complaint}; write `{corrected}` or `{usual}`"
@@ -210,7 +213,7 @@ def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
 
 @dataclass(frozen=True)
 class QuantityRange:
-    """Hold the dimension of a quantity and its limits (SI, degrees)."""
+    """The dimension and the limits of a quantity (SI, degrees)."""
 
     dimension: str
     usual_unit: str | None = None
@@ -224,7 +227,7 @@ class QuantityRange:
         Raises
         ------
         QuantityError
-            The text is no such quantity, or beyond the limits.
+            The text is not such a quantity, or is outside the limits.
         """
         if text is None:
             raise QuantityError("has no value")
@@ -240,18 +243,18 @@ class QuantityRange:
 
 
 def with_unit(value: float, unit: str) -> str:
-    """Return a value in six digits with its unit, as a person reads it."""
+    """Format a value to six digits with its unit."""
     return f"{value:.6g} {unit}".rstrip()
 
 
 @functools.lru_cache(maxsize=1024)
 def unit_factor(text: str, dimension: str) -> float:
-    """Return what a number in this unit is multiplied by to be in SI (degrees, degC).
+    """Return the factor from a unit to SI (degrees, degC).
 
     Raises
     ------
     QuantityError
-        The unit is unknown, or of another dimension; its suggestion is a unit.
+        The unit is unknown or of another dimension; the suggestion is a unit.
     """
     wanted = DIMENSIONS[dimension]
     unit = _tidy(text)
@@ -281,8 +284,42 @@ def unit_factor(text: str, dimension: str) -> float:
     return _factor_by_pint(unit, wanted)
 
 
+def unit_line(text: str, wanted: str) -> tuple[float, float]:
+    """Return the factor and the zero of a unit: x in it is ``factor * x + zero`` in another.
+
+    Both are those of pint, which knows the zeros of temperature scales.
+
+    Parameters
+    ----------
+    text : the unit, such as ``"K"`` or ``"S m-1"``
+    wanted : the other unit, as pint writes it
+
+    Raises
+    ------
+    QuantityError
+        The unit is unknown, or of another dimension.
+    """
+    registry = _registry()
+    plain = text.rpartition(",")[2].strip()  # `ITS-90, deg C`
+    plain = _SCALES.get(re.sub(r"[\W_]", "", plain.lower()), _tidy(plain))
+    try:
+        ends = [float(registry.Quantity(x, plain).to(wanted).magnitude) for x in (0.0, 1.0)]
+    except Exception:  # of many kinds, for what is no unit and for units of other kinds
+        raise QuantityError(f"is not {wanted}, or a unit of that kind") from None
+    return ends[1] - ends[0], ends[0]
+
+
+_SCALES = {
+    **dict.fromkeys(("degreecelsius", "degreescelsius", "celsius", "degc", "degreec", "degreesc",
+                     "c"), "degC"),
+    **dict.fromkeys(("degreekelvin", "degreeskelvin", "kelvin", "degk", "k"), "K"),
+    **dict.fromkeys(("degreefahrenheit", "degreesfahrenheit", "fahrenheit", "degf", "f"), "degF"),
+}  # fmt: skip
+"""What scales of temperature are called, letters alone."""
+
+
 def _split(text: str, wanted: Dimension) -> tuple[float, str]:
-    """Return the number a text begins with, and the rest: its unit."""
+    """Return the number at the beginning of a text, and the rest, which is its unit."""
     fraction = _FRACTION.match(text)
     if fraction:
         sign, whole, numerator, denominator = fraction.groups()
@@ -310,7 +347,7 @@ def _split(text: str, wanted: Dimension) -> tuple[float, str]:
 
 
 def _tidy(unit: str) -> str:
-    """Return one spelling for the many ways of writing a unit: `m s-1`, `m.s^-1`, `m·s⁻¹`."""
+    """Return a single spelling for the variants of a unit: `m s-1`, `m.s^-1`, `m·s⁻¹`."""
     unit = unit.strip().replace("**", "^").replace("·", "*")
     unit = re.sub("[⁻¹²³⁴]+", lambda power: "^" + power[0].translate(_SUPERSCRIPTS), unit)
     unit = re.sub(r"\s*([*/^()])\s*", r"\1", unit)
@@ -320,7 +357,7 @@ def _tidy(unit: str) -> str:
 
 
 def _described(dimension: Dimension) -> str:
-    """Return what to write instead, e.g. "a length (m, mm, cm, km, in …)"."""
+    """Return a description of valid input, such as "a length (m, mm, cm, km, in …)"."""
     units = [unit for unit in dimension.units if unit]
     listed = ", ".join(units[:6]) + (" …" if len(units) > 6 else "")
     return dimension.noun if dimension.unit == "" else f"{dimension.noun} ({listed})"
@@ -334,7 +371,7 @@ def _registry() -> pint.UnitRegistry[float]:
 
 
 def _factor_by_pint(unit: str, wanted: Dimension) -> float:
-    """Return the factor of a unit the table does not hold."""
+    """Return the factor of a unit that is not in the table."""
     import difflib
 
     import pint

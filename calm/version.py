@@ -1,4 +1,4 @@
-"""The version of CALM, and the commit that it was built from."""
+"""The version of CALM, and the commit from which it was built."""
 
 from pathlib import Path
 
@@ -6,9 +6,10 @@ __version__ = "0.1.0"
 
 
 def built_from() -> str:
-    """The commit of this CALM, e.g. ``4c1fd21``, with ``-dirty`` where a checkout has changes.
+    """Return the commit of this installation, such as ``4c1fd21``, with ``-dirty`` if a checkout
+    has changes.
 
-    A wheel carries the commit in a file; a checkout asks git. Empty where neither knows.
+    A wheel contains the commit in a file; in a checkout it is obtained from git. Empty if unknown.
     """
     package = Path(__file__).parent
     written = package / "_shipped" / "commit"
@@ -18,7 +19,7 @@ def built_from() -> str:
 
 
 def commit_of(checkout: Path) -> str:
-    """The commit of a checkout of git's, empty where there is none or no git."""
+    """Return the commit of a git checkout; empty if there is no checkout or no git."""
     import subprocess
 
     if not (checkout / ".git").exists():

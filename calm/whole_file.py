@@ -1,4 +1,4 @@
-"""Files read whole, and put whole in their place: a reader sees the old content or the new."""
+"""Read and write files as a whole: a reader sees either the old or the new content."""
 
 import contextlib
 import glob
@@ -15,14 +15,15 @@ LARGEST_FILE = 1_000_000
 """Largest text file that is read [bytes]."""
 
 UNFINISHED = ".calm-part"
-"""How the names of files end that are not in their place yet."""
+"""Ending of the names of temporary files that are still being written."""
 
-_LONGEST = 40  # characters of a name that its part repeats: a long one leaves no room for more
-_STALE = 600.0  # seconds: no running process is still writing a part of this age
-_TOGETHER = 32  # files handed to the disk at once: one by one each waits for a turn of its own
+# characters of the target's name that the temporary name repeats, to limit its length
+_LONGEST = 40
+_STALE = 600.0  # seconds: an older temporary file is not being written by any process
+_TOGETHER = 32  # number of files flushed at once, since waiting for each in turn is slow
 
 GRAIN = 2.0
-"""A file written this lately may be written again without its time telling [s]."""
+"""Resolution of file times: a file younger than this may change without a new time [s]."""
 
 T = TypeVar("T")
 Stamp = tuple[tuple[str, int, int, int], ...]
@@ -30,12 +31,13 @@ Stamp = tuple[tuple[str, int, int, int], ...]
 
 @contextlib.contextmanager
 def beside(target: Path) -> Iterator[Path]:
-    """Open an empty file beside another; it takes its place once the block ends without an error.
+    """Provide an empty temporary file that replaces the target when the block ends without an
+    error.
 
     Raises
     ------
     OSError
-        The system refuses; what was there is untouched, and no part is left.
+        The system refuses; the target is unchanged, and no temporary file is left.
     """
     part = target.with_name(f".{target.name[:_LONGEST]}.{os.urandom(6).hex()}{UNFINISHED}")
     part.touch(exist_ok=False)
@@ -51,17 +53,17 @@ def beside(target: Path) -> Iterator[Path]:
 def put(
     target: Path, content: bytes, *, like: os.stat_result | None = None, durable: bool = False
 ) -> None:
-    """Write a file whole; a symbolic link is replaced, so that callers resolve it first.
+    """Write a file as a whole; a symbolic link is replaced, so callers must resolve it first.
 
     Parameters
     ----------
-    like : whose owner, where that is allowed, and permissions it gets
-    durable : whether it is to outlast a loss of power
+    like : status of the file whose permissions and, if allowed, owner are copied
+    durable : whether the file must survive a loss of power
 
     Raises
     ------
     OSError
-        The system refuses, e.g. because the disk is full; the old file is then untouched.
+        The system refuses, for example because the disk is full; the old file is unchanged.
     """
     with beside(target) as part:
         part.write_bytes(content)
@@ -75,7 +77,7 @@ def put(
 
 
 def sweep(folder: Path, name: str = "") -> None:
-    """Remove the parts that killed processes left in a folder, of all files or of one."""
+    """Remove old temporary files from a folder, of the file `name` or, by default, of all files."""
     begin = f".{glob.escape(name[:_LONGEST])}." if name else "."
     with contextlib.suppress(OSError):
         for part in folder.glob(f"{begin}*{UNFINISHED}"):
@@ -84,12 +86,12 @@ def sweep(folder: Path, name: str = "") -> None:
 
 
 def flush_to_disk(paths: Iterable[Path]) -> None:
-    """Wait until files, and the names in folders, are on the disk itself.
+    """Wait until files, and the names in folders, are stored on the disk.
 
     Raises
     ------
     OSError
-        The disk has not taken them.
+        The disk reports an error.
     """
     from concurrent.futures import ThreadPoolExecutor
 
@@ -103,20 +105,20 @@ def _flush(path: Path) -> None:
     try:
         handle = os.open(path, os.O_RDONLY if is_folder else os.O_RDWR)
     except OSError:
-        if is_folder:  # a system that opens no folders
+        if is_folder:  # a system that cannot open folders
             return
         raise
     try:
         os.fsync(handle)
     except OSError:
-        if not is_folder:  # not every file system does it for folders
+        if not is_folder:  # not every file system supports this for folders
             raise
     finally:
         os.close(handle)
 
 
 def _give(part: Path, like: os.stat_result) -> None:
-    """Give owner and group apart: who may not give the one away may give the other."""
+    """Set owner and group separately, because a user may be allowed to change the group alone."""
     for owner in ((-1, like.st_gid), (like.st_uid, -1)):
         with contextlib.suppress(OSError, AttributeError):
             os.chown(part, *owner)
@@ -124,12 +126,18 @@ def _give(part: Path, like: os.stat_result) -> None:
 
 
 def read_text(path: Path, *, largest: int = LARGEST_FILE) -> str:
-    """Read a small UTF-8 text file, or raise InputError."""
+    """Read a small UTF-8 text file.
+
+    InputError: it cannot be read, is too large, or is not UTF-8.
+    """
     return decoded(path, read_content(path, largest=largest)).removeprefix("\ufeff")
 
 
 def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
-    """Return the bytes of a small regular file, or raise InputError; nothing else is opened."""
+    """Return the bytes of a small regular file.
+
+    InputError: it is not a regular file, is too large, or cannot be read.
+    """
     with _regular(path):
         if path.stat().st_size > largest:
             megabytes = path.stat().st_size / 1e6
@@ -139,14 +147,19 @@ def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
 
 
 def read_head(path: Path, most: int) -> bytes:
-    """Return the first bytes of a regular file, or raise InputError; nothing else is opened."""
+    """Return the first bytes of a regular file.
+
+    InputError: it is not a regular file, or cannot be read.
+    """
     with _regular(path), path.open("rb") as file:
         return file.read(most)
 
 
 @contextlib.contextmanager
 def _regular(path: Path) -> Iterator[None]:
-    """Refuse what is no regular file, and a file that the system does not give."""
+    """Raise InputError for a path that is not a regular file, and for a file that cannot be
+    read.
+    """
     try:
         if path.is_dir():
             raise refused(path, "is a folder; a file is needed")
@@ -159,7 +172,10 @@ def _regular(path: Path) -> Iterator[None]:
 
 
 def decoded(path: Path, content: bytes) -> str:
-    """Return the text of a file with its byte order mark, or raise InputError."""
+    """Return the text of a UTF-8 file, including a byte-order mark.
+
+    InputError: it cannot be decoded.
+    """
     if b"\0" in content:
         raise refused(path, "is a binary file; text is needed")
     try:
@@ -170,13 +186,15 @@ def decoded(path: Path, content: bytes) -> str:
 
 
 class FileCache(Generic[T]):
-    """Keep the last of what was read from files, known by their names, times and sizes."""
+    """Cache the last value read from files; names, times and sizes of the files are the key."""
 
     def __init__(self) -> None:
         self._last: tuple[Stamp, T] | None = None
 
     def of(self, paths: Sequence[Path], read: Callable[[], T]) -> T:
-        """Return what `read` makes of files; it is called only where they are others or changed."""
+        """Return the value of `read`, which is called only if the files are others or have
+        changed.
+        """
         stamp = _stamp(paths)
         last = self._last
         if stamp is not None and last is not None and last[0] == stamp:
@@ -187,7 +205,7 @@ class FileCache(Generic[T]):
 
 
 def _stamp(paths: Sequence[Path]) -> Stamp | None:
-    """Return the names, times and sizes of files; None where they would not show a change."""
+    """Return the names, times and sizes of files; None if these would not show a change."""
     try:
         found = [(str(path), path.stat()) for path in paths]
     except (OSError, ValueError):

@@ -23,6 +23,7 @@ from pages import api, components, gallery, keys, pictures, results
 
 from calm.drawing.picture import image
 from calm.drawing.plot import figure_svg
+from calm.page.folder import write_page
 
 _ID = re.compile(r'\bid="([^"]+)"')
 _LINK = re.compile(r'<(\w+)\b[^>]*?\s(?:href|src)="([^"]*)"')
@@ -66,6 +67,7 @@ def build(target: Path) -> None:
         sphinx = [sys.executable, "-m", "sphinx", *options, sources, site]
         if subprocess.run(sphinx, check=False).returncode:
             sys.exit("the site is not built: mend what is named above")
+        write_page(site / "try")
         if wrong := sorted(dead_ends(site)):
             sys.exit("\n".join(wrong))
         for rest in (".buildinfo", ".doctrees", "objects.inv"):

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import settings
 
 from calm.quantities import show_in
-from calm.solve.solution import COLD, expect_many
 
 settings.register_profile("ci", derandomize=True, deadline=None, database=None)
 settings.register_profile("explore", deadline=None, max_examples=2000)
@@ -29,11 +28,11 @@ def without_the_users_catalogue(tmp_path_factory: pytest.TempPathFactory) -> Non
 
 @pytest.fixture(scope="session", autouse=True)
 def solve_compiled() -> None:
-    """The solver compiled, where numba is there: the same digits, sooner.
+    """Compile the solver where numba is installed: it gives the same digits, sooner.
 
-    `CALM_COMPILED=never` has the tests solve as the laws stand.
+    `CALM_COMPILED=never` makes the tests use the interpreted solver.
     """
-    expect_many(COLD)
+    os.environ.setdefault("CALM_COMPILED", "always")
 
 
 @pytest.fixture(autouse=True)

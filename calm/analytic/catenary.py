@@ -23,14 +23,14 @@ from calm.analytic.hodograph import Floats
 def position(
     arc: ArrayLike, horizontal: ArrayLike, vertical: ArrayLike, weight: ArrayLike
 ) -> tuple[Floats, Floats]:
-    """Return where an inextensible line is at a distance from a point whose pull is known.
+    """Position of a point of an inextensible line, relative to a point with known pull.
 
     Parameters
     ----------
     arc : distance along the line, up from the point; negative down [m]
-    horizontal, vertical : components of the tension at the point [N]; vertical is positive where
+    horizontal, vertical : components of the tension at the point [N]; vertical is positive if
         the line rises from the point; x takes the sign of `horizontal`
-    weight : > 0 [N/m]
+    weight : weight per metre, > 0 [N/m]
 
     Returns
     -------
@@ -40,7 +40,7 @@ def position(
     top = v + w * s
     sum_of_tensions = np.hypot(h, top) + np.hypot(h, v)
     with np.errstate(divide="ignore", invalid="ignore"):
-        # The half-angle form keeps its digits in a taut line, the difference in a slack one.
+        # the half-angle form is accurate for a taut line, the difference for a slack line
         taut = w * s / sum_of_tensions
         turn = np.where(
             np.abs(taut) < 0.5,
@@ -54,14 +54,14 @@ def position(
 
 @dataclass(frozen=True)
 class Catenary:
-    """A line that hangs between two points, by the pull at its upper end.
+    """A line that hangs between two points, given by the pull at its upper end.
 
     Parameters
     ----------
     horizontal : H > 0 [N]
     vertical : V at the upper end [N]; with a seabed V > 0
     length : unstretched length L > 0 [m]
-    weight : in water, per unstretched metre, > 0 [N/m]
+    weight : weight in water per unstretched metre, > 0 [N/m]
     stiffness : EA [N]; infinite (the default) for an inextensible line
     seabed : whether the line may lie on a level seabed, without friction, at its lower end
 
@@ -70,7 +70,7 @@ class Catenary:
     Raises
     ------
     ValueError
-        Where a field is outside its range.
+        A field is outside its range.
     """
 
     horizontal: ArrayLike
@@ -106,12 +106,12 @@ class Catenary:
 
     @property
     def tension_top(self) -> Floats:
-        """[N]"""
+        """Tension at the upper end [N]."""
         return np.hypot(self.horizontal, self.vertical)
 
     @property
     def tension_bottom(self) -> Floats:
-        """[N]"""
+        """Tension at the lower end [N]."""
         return np.hypot(self.horizontal, self.vertical_bottom)
 
     def position(self, arc: ArrayLike) -> tuple[Floats, Floats]:
@@ -125,7 +125,7 @@ class Catenary:
         Raises
         ------
         ValueError
-            Where an arc is not on the line.
+            An arc is not on the line.
         """
         length, bottom = np.asarray(self.length, float), self.vertical_bottom
         h, w = np.asarray(self.horizontal, float), np.asarray(self.weight, float)
@@ -153,26 +153,26 @@ def between(
     *,
     seabed: bool = False,
 ) -> Catenary:
-    """The catenary between two points.
+    """Find the catenary between two points.
 
     Parameters
     ----------
     x, z : horizontal distance > 0 and height of the upper end from the lower end [m]
-    length, weight, stiffness, seabed : as of `Catenary`; with a seabed z > 0
+    length, weight, stiffness, seabed : as in `Catenary`; with a seabed z > 0
 
     Returns
     -------
-    Catenary : its end lies at (x, z) to some 1e-13 of the length
+    Catenary : its upper end is at (x, z) to about 1e-13 of the length
 
     Raises
     ------
     ValueError
-        Where a value is outside its range, the line too short, or so long that it lies slack.
+        A value is outside its range, or the line is too short or slack.
 
     Notes
     -----
-    The compliance matrix ∂(x, z)/∂(H, V) is symmetric and positive definite, so the pull is unique
-    and Newton's method with a step that is halved until the miss falls leads to it.
+    The compliance matrix ∂(x, z)/∂(H, V) is symmetric and positive definite, so the pull is unique.
+    Newton's method converges to it if each step is halved until the miss decreases.
     """
     if not isfinite(x + z + length + weight):
         raise ValueError("the measures of a catenary must be finite")
@@ -185,13 +185,15 @@ def between(
         raise ValueError(f"a line of {length:g} m does not reach a point {chord:g} m away")
     if seabed:
         _refuse_slack(x, z, length, weight, stiffness)
-    # In units of the line's length and weight, so that one tolerance serves all.
+    # scaled by the line's length and weight, so that one tolerance suffices
     h, v = _solve(x / length, z / length, weight * length / stiffness, seabed)
     return Catenary(h * weight * length, v * weight * length, length, weight, stiffness, seabed)
 
 
 def _refuse_slack(x: float, z: float, length: float, weight: float, stiffness: float) -> None:
-    """A line that hangs straight down and still leaves x on the seabed has no pull to speak of."""
+    """Raise ValueError for a line so long that it hangs straight down and lies slack on the
+    seabed.
+    """
     if not z > 0.0:
         raise ValueError(f"the upper end must be above the seabed: its height is {z:g} m")
     # hanging plumb: z = l + w l²/(2 EA), l the unstretched length
@@ -203,7 +205,7 @@ def _refuse_slack(x: float, z: float, length: float, weight: float, stiffness: f
 
 
 def _solve(x: float, z: float, compliance: float, seabed: bool) -> tuple[float, float]:
-    """Pull (H, V) in units of the line's weight for a line of length 1; compliance w L/EA."""
+    """Pull (H, V) over the line's weight, for a line of length 1 and compliance w L/EA."""
     chord = hypot(x, z)
     if chord < 1.0:
         sag = sqrt(max(3.0 * ((1.0 - z * z) / (x * x) - 1.0), 1e-300))
@@ -227,7 +229,7 @@ def _solve(x: float, z: float, compliance: float, seabed: bool) -> tuple[float, 
                 if hypot(miss_x, miss_z) < size:
                     break
             share *= 0.5
-            if share < 1e-12:  # the miss is down to rounding
+            if share < 1e-12:  # the miss is at rounding level
                 return h, v
         h, v = new_h, new_v
     raise ValueError("no catenary was found between these points")
@@ -236,7 +238,7 @@ def _solve(x: float, z: float, compliance: float, seabed: bool) -> tuple[float, 
 def _miss(
     h: float, v: float, x: float, z: float, compliance: float, seabed: bool
 ) -> tuple[float, float, tuple[float, float, float]]:
-    """Miss of the upper end and ∂x/∂H, ∂x/∂V = ∂z/∂H, ∂z/∂V; length and weight are 1."""
+    """Miss of the upper end and ∂x/∂H, ∂x/∂V = ∂z/∂H, ∂z/∂V, for unit length and weight."""
     lifted = min(1.0, v) if seabed else 1.0
     bottom = v - lifted
     over, under = hypot(h, v), hypot(h, bottom)

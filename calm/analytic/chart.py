@@ -1,8 +1,8 @@
-"""Uniform current: three of the seven quantities of a cable give the other four.
+"""Uniform current: solve for a cable from three of its seven quantities.
 
-The cable hangs in the plane of a uniform current with drag normal to it only; A is its lower end,
-B its upper. What H. Braconnot's charts answer graphically is solved here on the same curve
-(`calm.analytic.chart_branch`), for every combination that has an answer.
+The cable hangs in the plane of a uniform current, with drag only in the normal direction. A is its
+lower end, B its upper end. The problems that H. Braconnot's charts solve graphically are solved
+here on the same curve (`calm.analytic.chart_branch`), for every combination that has a solution.
 """
 
 from __future__ import annotations
@@ -25,11 +25,12 @@ class ChartSolution:
     Parameters
     ----------
     phi_a, phi_b : angle of the cable, followed from A to B, to the current at its lower and upper
-        end [rad], from −π to π; negative where it goes down
+        end [rad], from −π to π; negative where the cable descends
     tension_a, tension_b : tension at the lower and upper end [N]
-    height, distance, length : B above A, B downstream of A, and along the cable [m]
-    h0 : tension at the apex of the curve over the weight, the unit of the chart [m]; 0 for a
-        straight cable, which has no apex
+    height, distance, length : height of B above A, distance of B downstream of A, and length of the
+        cable [m]
+    h0 : tension at the apex of the curve over the weight per metre, the unit of the chart [m]; 0
+        for a straight cable, which has no apex
     """
 
     phi_a: float
@@ -44,15 +45,15 @@ class ChartSolution:
 
 @dataclass(frozen=True)
 class ChartAnswer:
-    """Hold what three quantities say about a cable.
+    """Cables for three given quantities, or the reason why there is none.
 
     Parameters
     ----------
-    status : ``converged``; else ``no-equilibrium``, ``inconsistent`` (the givens contradict each
-        other) or ``one-parameter-family`` (they do not fix the cable)
+    status : ``converged``; else ``no-equilibrium``, ``inconsistent`` (the given quantities
+        contradict each other) or ``one-parameter-family`` (they do not fix the cable)
     k : K
-    solutions : every cable that fits: those that do not dip below A first, the first branch first
-    message, advice : without a solution: why, and what to change
+    solutions : all solutions: cables that do not dip below A first, the first branch first
+    message, advice : reason and advice, without a solution
     """
 
     status: str
@@ -74,18 +75,18 @@ def chart_solve(
     distance: float | None = None,
     length: float | None = None,
 ) -> ChartAnswer:
-    """Every cable that has three given quantities, to 1e-9; or why there is none.
+    """Find every cable with three given quantities, to 1e-9, or the reason why there is none.
 
-    A cable that turns by less than a hundredth of a radian is so nearly straight that its shape
-    (angles, height, distance, length) gives its tension with fewer digits than it has itself.
+    A cable that turns by less than a hundredth of a radian is almost straight, so its tension is
+    less accurate than the given shape (angles, height, distance, length).
 
     Parameters
     ----------
     k : K = ρ Cx D V²/(2|w|), from 0 to 100
-    weight : weight in water of a metre, w [N/m]; negative for a cable that floats
-    phi_a, phi_b : angles to the current [rad], −π to π. At most the end the cable hangs from below
-        (A; B where w < 0) can have a negative one.
-    tension_a, tension_b : tensions [N], not negative; that of the lighter end (A; B where w < 0)
+    weight : weight in water per metre, w [N/m]; negative for a buoyant cable
+    phi_a, phi_b : angles to the current [rad], −π to π. Only the end that is lower
+        (A; B if w < 0) can have a negative angle.
+    tension_a, tension_b : tensions [N], not negative; the smaller one (A; B if w < 0)
         may be 0
     height, length : positive [m]
     distance : positive when B lies downstream of A [m]
@@ -93,7 +94,7 @@ def chart_solve(
     Raises
     ------
     UsageError
-        Not three quantities, or one that is out of its range.
+        There are not exactly three quantities, or one is out of its range.
     """
     given = {
         "phi_a": phi_a, "phi_b": phi_b, "tension_a": tension_a, "tension_b": tension_b,
@@ -122,7 +123,7 @@ def chart_solve(
 
 
 def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | NoEquilibrium:
-    """The cables that sink, tensions over w; those that float have been turned upside down."""
+    """Solve for sinking cables, with tensions over w; buoyant cables have been mirrored before."""
     refusal = contradiction(known)
     if refusal:
         return refusal
@@ -145,7 +146,7 @@ def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolutio
 def _on_branch(
     branch: Branch, ends: Mapping[str, tuple[Branch, float] | None], sizes: Mapping[str, float]
 ) -> list[ChartSolution]:
-    """Every cable that is a piece of one branch."""
+    """Find every cable that is a piece of one branch."""
     places = [end for end in ends.values() if end is not None]
     if any(place[0].sign != branch.sign for place in places):
         return []
@@ -166,7 +167,7 @@ def _on_branch(
 
 
 def _distinct(pieces: list[Piece]) -> list[Piece]:
-    """Without those that were reached twice."""
+    """Remove duplicate pieces."""
     kept: list[Piece] = []
     for piece in sorted(pieces):
         close = 1e-6 * (piece[1] - piece[0]) + 1e-10 * (1.0 + abs(piece[0]))
@@ -175,12 +176,12 @@ def _distinct(pieces: list[Piece]) -> list[Piece]:
     return kept
 
 
-# The size that gives the scale: the first of these; a distance may vanish.
+# the scale follows from the first of these sizes; a distance may vanish
 _SCALES = ("length", "tension_b", "height", "tension_a", "distance")
 
 
 def _cable(branch: Branch, piece: Piece, sizes: Mapping[str, float]) -> ChartSolution | None:
-    """The piece enlarged to its given size; None where it would have to be turned round."""
+    """Scale the piece to its given size; None if this would need a negative scale."""
     unit = {name: float(size_of(branch, name, *piece)) for name in SIZES}
     name = next(name for name in _SCALES if name in sizes)
     scale = sizes[name] / unit[name] if unit[name] else 0.0
@@ -205,7 +206,7 @@ GIVENS = (*ANGLES, *SIZES)
 
 
 def check(known: Mapping[str, float], weight: float) -> None:
-    """Refuse what is no question at all."""
+    """Raise UsageError unless there are three quantities within their ranges."""
     if len(known) != 3:
         names = ", ".join(known) or "none"
         raise UsageError(f"three of {', '.join(GIVENS)} are needed; given: {names}")
@@ -228,7 +229,7 @@ def check(known: Mapping[str, float], weight: float) -> None:
 
 
 def mirrored(values: Mapping[str, float]) -> dict[str, float]:
-    """Return the same cable upside down: what floats then sinks, and what sinks floats."""
+    """Mirror a cable vertically: a buoyant cable becomes a sinking one, and vice versa."""
     swapped = {"a": "b", "b": "a"}
     mirrored = {}
     for name, value in values.items():
@@ -248,16 +249,14 @@ _LEAST_SLACK = 1e-12
 
 
 def family(what: str) -> NoEquilibrium:
-    """The refusal of quantities that leave one free."""
-    return NoEquilibrium(
-        "one-parameter-family", what, "Give another quantity in place of one of these."
-    )
+    """Return the outcome for quantities that do not determine the cable."""
+    return NoEquilibrium("one-parameter-family", what, "Replace one of these by another quantity.")
 
 
 def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
-    """Return what is wrong with the quantities of a sinking cable whatever K is, if anything.
+    """Find a contradiction among the quantities of a sinking cable, independent of K; None without.
 
-    Tensions are over w [m]. A cable that floats comes here upside down; messages hold for both.
+    Buoyant cables are mirrored before. The messages apply to buoyant and to sinking cables.
     """
     below, above = known.get("tension_a"), known.get("tension_b")
     height, distance = known.get("height", 0.0), known.get("distance", 0.0)
@@ -265,12 +264,12 @@ def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
         if abs(above - below - height) <= _ROUNDING * above:
             return family("Two tensions and the height are not independent: T_B = T_A + w H.")
         return _inconsistent(
-            "T_B = T_A + w H does not hold.", "Give two of these and one other quantity."
+            "T_B = T_A + w H is violated.", "Set two of these and one other quantity."
         )
     if above is not None and above <= (below or 0.0) + height:
         least = "that at the other end" if below is not None else "w H" if height else "0"
         return _inconsistent(
-            f"The tension at the upper end (the lower of a cable that floats) must exceed {least}.",
+            f"The tension at the upper end (lower end if buoyant) must exceed {least}.",
             "Check which end is which, and the weight.",
         )
     chord = math.hypot(height, distance)
@@ -283,19 +282,19 @@ def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
 
 
 def is_taut(known: Mapping[str, float]) -> bool:
-    """Return whether the cable is no longer than the straight way between its ends, to rounding."""
+    """Whether the cable is, to rounding, no longer than the distance between its ends."""
     chord = math.hypot(known.get("height", 0.0), known.get("distance", 0.0))
     return "length" in known and chord >= known["length"] * (1.0 - _LEAST_SLACK)
 
 
 def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
-    """Return why no cable has quantities that do not contradict each other.
+    """Find the reason why no cable has the given quantities, which do not contradict each other.
 
     Parameters
     ----------
     k : K
-    known : the quantities, of a cable that floats turned upside down
-    floats : whether they were turned
+    known : the quantities, mirrored for a buoyant cable
+    floats : whether they were mirrored
     """
     critical = float(critical_angle(k))
     shown = math.degrees(math.pi - critical if floats else critical)
@@ -303,19 +302,19 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
     start, end = known.get("phi_a"), known.get("phi_b")
     if known.get("tension_a") == 0.0:
         message = f"A cable without tension at one end is straight, at {angle}."
-        return _none(message, "Give a tension, or quantities of that straight cable.")
+        return _none(message, "Set a tension, or quantities of that straight cable.")
     if is_taut(known):
         message = (
             "A cable no longer than the distance between its ends would need infinite tension."
         )
         return _none(message, "Lengthen the cable or bring its ends closer.")
     if end is not None and not 0.0 < end < math.pi:
-        message = "The cable must rise at the end where its tension is greater."
-        return _none(message, "Give an angle between 0 and 180° there.")
+        message = "The cable must rise at the end with the larger tension."
+        return _none(message, "Set an angle between 0 and 180° there.")
     if start is not None and end is not None:
         lean = start + 2 * math.pi if start < critical - math.pi else start
         if (lean - critical) * (end - critical) <= 0.0:
-            return _none(f"No cable reaches across {angle}.", "Give two angles on one side of it.")
+            return _none(f"No cable passes {angle}.", "Set two angles on the same side of it.")
         return _none(
             "Between these two angles no cable rises from A to B in that sense.",
             "Check which end is which, and the sign of the distance if it is given.",
@@ -335,10 +334,10 @@ def _none(message: str, advice: str) -> NoEquilibrium:
 
 
 def straight(k: float, known: Mapping[str, float]) -> ChartSolution | NoEquilibrium | None:
-    """The straight cable at the critical angle, the only one that no branch of the curve holds.
+    """The straight cable at the critical angle, which is not on a branch of the curve.
 
-    It has three quantities [rad, m] to 1e-9, tensions over w; a refusal where they do not fix its
-    size; None where there is none.
+    It matches three quantities [rad, m] to 1e-9, with tensions over w. The result is a refusal if
+    they do not determine its size, and None if there is no such cable.
     """
     angle = float(critical_angle(k))
     sine, cosine = math.sin(angle), 0.0 if k == 0.0 else math.cos(angle)

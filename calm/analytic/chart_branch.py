@@ -14,8 +14,8 @@ With u = cos φ and u_c = cos φ_c, dT/T = −du/g integrates to
     T/(wH₀) = [(1 − u_c)(1 + u u_c)/((1 + u_c)(u − u_c))]^m,    m = (1 − u_c²)/(1 + u_c²)
 
 The bracket is written cosh λ. For K = 0 that λ is the parameter of the catenary; for every K it
-reaches as far as the curve does, where φ would crowd against φ_c. The arc and the abscissa are
-Gauss–Legendre quadratures in λ of smooth functions, good to rounding.
+covers the whole curve, while φ would accumulate at φ_c. The arc and the abscissa are Gauss–Legendre
+quadratures in λ of smooth functions, accurate to rounding.
 
 Source: H. Braconnot, charts for cables in a uniform current; closed form derived here.
 """
@@ -42,15 +42,16 @@ _NODES = _NODES + 0.5
 
 
 def critical_angle(k: ArrayLike) -> Floats:
-    """Angle to the current of a cable that stays straight [rad], 90° at K = 0.
+    """Angle to the current at which a cable is straight [rad], 90° for K = 0.
 
-    K ≥ 0, an array or a number, is the drag of a metre across the current over its weight.
+    K ≥ 0, an array or a number, is the drag per metre normal to the current over the weight per
+    metre.
     """
     return np.asarray(np.arccos(-_leaning(k)), dtype=np.float64)
 
 
 def check_k(k: float) -> float:
-    """K, or a `UsageError` when it is not between 0 and 100."""
+    """Return K, or raise `UsageError` if it is not between 0 and 100."""
     if not 0.0 <= k <= GREATEST_K:
         raise UsageError(f"K is {k:.6g}; the charts hold for K from 0 to {GREATEST_K:g}")
     return float(k)
@@ -74,9 +75,9 @@ class Branch:
 
     @classmethod
     def holding(cls, k: float, phi: float) -> tuple[Self, float] | None:
-        """The branch and the λ of an angle φ [rad]; None for the critical angle.
+        """Find the branch and the λ of an angle φ [rad], or None for the critical angle.
 
-        UsageError: an angle beyond ±180°.
+        Raises UsageError for an angle beyond ±180°.
         """
         if not -np.pi <= phi <= np.pi:
             raise UsageError(f"an angle is {np.degrees(phi):.6g}°; it must be from −180° to 180°")
@@ -88,26 +89,28 @@ class Branch:
         return branch, float(branch.parameter(branch.turned(phi)))
 
     def turned(self, angle: ArrayLike) -> Floats:
-        """ψ of angles φ of this branch, and φ of angles ψ [rad]."""
+        """Convert angles φ of this branch to ψ, or ψ to φ [rad]."""
         given = np.asarray(angle, dtype=np.float64)
         return given if self.sign > 0 else np.copysign(np.pi, given) - given
 
     @cached_property
     def exponent(self) -> float:
-        """m: T/(wH₀) = cosh^m λ."""
+        """Exponent m in T/(wH₀) = cosh^m λ."""
         return float(1.0 / np.hypot(1.0, 2.0 * self.k))
 
     @cached_property
     def limit(self) -> float:
-        """Cosine of ψ where the branch straightens beyond the apex; its negative before it."""
+        """Cosine of ψ towards which the branch straightens beyond the apex, and with opposite sign
+        before the apex.
+        """
         return float(-self.sign * _leaning(self.k))
 
     def log_tension(self, parameter: ArrayLike) -> Floats:
-        """ln(T/wH₀)."""
+        """Logarithm of the tension, ln(T/wH₀)."""
         return self.exponent * log_cosh(parameter)
 
     def angle(self, parameter: ArrayLike) -> Floats:
-        """ψ [rad]."""
+        """Angle ψ [rad]."""
         size = np.abs(np.asarray(parameter, dtype=np.float64))
         limit = np.where(np.asarray(parameter) < 0.0, -self.limit, self.limit)
         sech = _sech(size)
@@ -116,7 +119,7 @@ class Branch:
         return np.asarray(np.sign(parameter) * 2.0 * np.arctan(np.sqrt(squared_tangent)))
 
     def parameter(self, angle: ArrayLike) -> Floats:
-        """λ of angles ψ [rad] between the two critical ones."""
+        """Parameter λ of angles ψ [rad] between the two critical angles."""
         signed = np.asarray(angle, dtype=np.float64)
         limit = np.where(signed < 0.0, -self.limit, self.limit)
         size, critical = np.abs(signed), np.arccos(limit)
@@ -126,14 +129,14 @@ class Branch:
         return np.asarray(np.copysign(size, signed))
 
     def from_apex(self, parameter: ArrayLike) -> tuple[Floats, Floats]:
-        """s′ and y′ (downstream, whatever the branch) of points."""
+        """s′ and y′ (downstream on either branch) of points."""
         signed = np.asarray(parameter, dtype=np.float64)
         arc, distance = self.span(np.minimum(signed, 0.0), np.maximum(signed, 0.0))
         side = np.sign(signed)
         return side * arc, side * self.sign * distance
 
     def span(self, start: ArrayLike, end: ArrayLike) -> tuple[Floats, Floats]:
-        """Arc and distance, in H₀, from one point up to another, start ≤ end; vectorised."""
+        """Arc and distance between two points with start ≤ end, in units of H₀ (vectorised)."""
         first, last = (
             np.asarray(side, dtype=np.float64) for side in np.broadcast_arrays(start, end)
         )
@@ -144,8 +147,8 @@ class Branch:
         return total[0], total[1]
 
     def _span(self, limit: float, start: Floats, end: Floats) -> Floats:
-        """(2, …) arc and distance between two points of one side, 0 ≤ start ≤ end."""
-        # A short piece is integrated as it is, since the difference of two long ones loses digits.
+        """(2, …) arc and distance between two points on the same side, 0 ≤ start ≤ end."""
+        # a short piece is integrated directly, since the difference of two long ones loses digits
         short = end - start <= _PANEL
         whole = self._cumulative[limit]
         edge_start, edge_end = (
@@ -171,7 +174,7 @@ class Branch:
         total = np.array([np.sum(weights * arc, axis=0), np.sum(weights * arc * cosine, axis=0)])
         far = width > _PANEL
         if np.any(far):
-            # So far out the cable is straight to rounding.
+            # this far out the cable is straight to rounding
             rise = np.exp(self.log_tension(end)) - np.exp(self.log_tension(start))
             straight = np.where(far, rise, 0.0) / np.sqrt(1.0 - limit**2)
             total = np.where(far, [straight, limit * straight], total)
@@ -205,14 +208,14 @@ def log_cosh(parameter: ArrayLike) -> Floats:
 
 
 def inverse_log_cosh(value: ArrayLike) -> Floats:
-    """λ ≥ 0 of a given ln cosh λ ≥ 0."""
+    """λ ≥ 0 for a given ln cosh λ ≥ 0."""
     given = np.asarray(value, dtype=np.float64)
     excess = np.expm1(np.minimum(given, 1.0))
     near = np.log1p(excess + np.sqrt(excess * (excess + 2.0)))
     return np.where(given < 1.0, near, given + np.log1p(np.sqrt(-np.expm1(-2.0 * given))))
 
 
-# Angles nearer to the critical one than this [rad] are the critical one.
+# angles closer to the critical angle than this [rad] count as critical
 _STRAIGHT = 1e-12
 
 
@@ -249,7 +252,7 @@ class CurvePoints:
 
 
 def curve(k: float, phi: ArrayLike) -> CurvePoints:
-    """The curve of K at given angles, to 1e-12 of the arc; vectorised.
+    """Points of the curve for K at given angles (vectorised), to 1e-12 of the arc.
 
     Parameters
     ----------

@@ -1,18 +1,20 @@
-"""Search of a branch of the curve for every place where a cable fits what is given.
+"""Search a branch of the curve for all cables that match the given quantities.
 
-A cable is a piece of a branch, λ_A to λ_B, enlarged H₀ times. With λ_B > |λ_A| its upper end is B;
-λ_A < 0 when it dips below its lower end. Two given sizes (tensions over w, height, distance,
-length) have a ratio that does not depend on H₀. That leaves
+A cable is a piece of a branch, from λ_A to λ_B, scaled by H₀. With λ_B > |λ_A| its upper end is B;
+λ_A < 0 if it dips below its lower end. The ratio of two given sizes (tensions over w, height,
+distance, length) does not depend on H₀. That leaves
 
-- nothing to search where both angles, or one angle and the ratio of the tensions, are given;
-- one unknown on a line where one angle, or the ratio of the tensions, is given;
-- two unknowns for length, distance and one more: the ratio of these two then ties λ_B to λ_A.
+- no search if both angles, or one angle and the ratio of the tensions, are given;
+- one unknown if one angle, or the ratio of the tensions, is given;
+- two unknowns for length, distance and a third size: the ratio D/L then relates λ_B to λ_A.
 
-A residual is scanned on a grid that is fine where pieces are short and reaches to where the curve
-is straight to rounding; changes of sign are refined, dips towards zero examined for a pair.
+A residual is scanned on a grid that is fine for short pieces and extends to where the curve is
+straight to rounding. Changes of sign are refined, and minima close to zero are examined for a pair
+of roots.
 
-Of length, distance and one more, the mean of cos ψ over the piece is D/L, and the third is a share
-of the length. Where a grid of both ends shows that both may be met, Powell's method finishes it.
+For length, distance and a third size, the mean of cos ψ over the piece is D/L, and the third is a
+share of the length. If a grid of both ends shows that both conditions may be met, Powell's method
+finds the solution.
 """
 
 from collections.abc import Callable, Mapping
@@ -27,7 +29,7 @@ Piece = tuple[float, float]
 Path = Callable[[Floats], tuple[Floats, Floats]]
 
 _FINEST = 1e-10
-"""Least share of the reach of a grid; pieces so short are straight to rounding."""
+"""Smallest share of the range in a grid; shorter pieces are straight to rounding."""
 
 _POINTS = 240
 _NOISE = 1e-13
@@ -37,22 +39,22 @@ _WINDOW = 2 * _AROUND + 1
 
 @dataclass(frozen=True)
 class ChartSearch:
-    """A branch and the sizes given.
+    """Search a branch for given sizes.
 
     Parameters
     ----------
-    branch : where to look
-    sizes : the given among tension_a, tension_b (over w), height, distance (turned as the branch
-        is), length, all in metres
+    branch : branch to search
+    sizes : given values of tension_a, tension_b (over w), height, distance (mirrored like the
+        branch ), and length, all in metres
     """
 
     branch: Branch
     sizes: Mapping[str, float]
 
     def pieces(self, start: float | None, end: float | None) -> list[Piece]:
-        """Every piece with these ends, where given, and these sizes.
+        """Find all pieces with the given ends, if any, and the given sizes.
 
-        Without an end, two of the sizes must give the ratio of the tensions.
+        Without a given end, two of the sizes must determine the ratio of the tensions.
         """
         if end is not None and end <= 0.0:
             return []
@@ -78,7 +80,7 @@ class ChartSearch:
         return self._along(places, lambda place: (place, self._raised(place, ratio)))
 
     def log_ratio(self) -> float | None:
-        """ln(T_B/T_A) where two of T_A, T_B, H are given."""
+        """Return ln(T_B/T_A) if two of T_A, T_B and H are given."""
         below, above, height = (self.sizes.get(name) for name in _TENSION_NAMES)
         if height is not None and below is not None:
             return float(np.log1p(height / below))
@@ -89,13 +91,14 @@ class ChartSearch:
         return None
 
     def _raised(self, start: ArrayLike, ratio: float) -> Floats:
-        """The λ_B at which the tension is exp(ratio) times that at `start`."""
+        """λ_B at which the tension is exp(ratio) times the tension at `start`."""
         return inverse_log_cosh(log_cosh(start) + ratio / self.branch.exponent)
 
     def _residual(self, path: Path, places: Floats) -> Floats:
-        """Zero where the ratio of two given sizes is right, between −1 and 1."""
+        """Residual between −1 and 1 that vanishes if the ratio of two given sizes is right."""
         start, end = path(places)
-        # Of more than two, the path has used the tensions; one of them and the other size remain.
+        # with more than two sizes, the path has used the tensions; one of them and the other size
+        # remain
         names = sorted(self.sizes, key=_ORDER.index)
         first, second = names[0], names[-1]
         left = size_of(self.branch, first, start, end) * self.sizes[second]
@@ -112,10 +115,10 @@ _ORDER = (*_TENSION_NAMES, "distance", "length")
 
 
 def roots(function: Callable[[Floats], Floats], grid: Floats) -> Floats:
-    """Every zero of a vectorised function that a grid can show.
+    """Find all zeros of a vectorised function that a grid can resolve.
 
-    Changes of sign are refined to rounding. A dip towards zero that does not change the sign is
-    looked at ever closer, for two zeros that lie between two points of the grid.
+    Changes of sign are refined to rounding. Minima close to zero without a change of sign are
+    resolved more and more finely, in case two zeros lie between two grid points.
     """
     value = function(grid)
     steps = steps_with_zero(value)
@@ -135,13 +138,15 @@ def roots(function: Callable[[Floats], Floats], grid: Floats) -> Floats:
 
 
 def graded(length: float, points: int = _POINTS) -> Floats:
-    """Distances from an edge up to `length`: by constant ratio at first, then evenly as well."""
+    """Distances from an edge up to `length`: first with a constant ratio, then also evenly
+    spaced.
+    """
     near = np.geomspace(_FINEST * length, length, points)
     return merged(near, np.linspace(0.0, min(length, 40.0), 2 * points)[1:])
 
 
 def merged(*grids: Floats) -> Floats:
-    """One grid of several without points that all but coincide: a scan needs true neighbours."""
+    """Merge grids, without points that nearly coincide, since a scan needs distinct neighbours."""
     points = np.unique(np.concatenate(grids))
     gaps = np.diff(points)
     kept = np.ones(points.size, dtype=bool)
@@ -150,12 +155,12 @@ def merged(*grids: Floats) -> Floats:
 
 
 def reach(branch: Branch) -> float:
-    """λ beyond which nothing changes any more, to rounding, but tension and arc in step."""
+    """λ beyond which, to rounding, only tension and arc still change, and in proportion."""
     return 40.0 / branch.exponent + 20.0
 
 
 def size_of(branch: Branch, name: str, start: ArrayLike, end: ArrayLike) -> Floats:
-    """One size of pieces, in H₀: a tension (over wH₀), height, distance or length."""
+    """One size of pieces, in units of H₀: a tension (over wH₀), height, distance or length."""
     if name == "tension_a":
         return np.exp(branch.log_tension(start))
     if name == "tension_b":
@@ -168,7 +173,7 @@ def size_of(branch: Branch, name: str, start: ArrayLike, end: ArrayLike) -> Floa
 
 
 def refine(function: Callable[[Floats], Floats], left: Floats, right: Floats) -> Floats:
-    """The zeros of a vectorised function between places where its signs differ, to rounding."""
+    """Zeros of a vectorised function between points of opposite sign, to rounding."""
     from scipy.optimize.elementwise import find_root
 
     found = np.asarray(find_root(function, (left, right)).x) if left.size else left
@@ -176,37 +181,38 @@ def refine(function: Callable[[Floats], Floats], left: Floats, right: Floats) ->
 
 
 def steps_with_zero(value: Floats) -> NDArray[np.intp]:
-    """The steps of a scan, by the index of their first point, in which the sign changes."""
+    """Steps of a scan, by the index of their first point, in which the sign changes."""
     change = (np.sign(value[:-1]) != np.sign(value[1:])) & (value[:-1] != 0.0)
     change &= np.maximum(np.abs(value[:-1]), np.abs(value[1:])) > _NOISE
     return np.flatnonzero(change)
 
 
 def dips(value: Floats) -> NDArray[np.intp]:
-    """The points of a scan about which the value comes so near zero that it may touch it."""
+    """Points of a scan at which the value comes so close to zero that it may touch zero."""
     size = np.abs(value)
     before, here, after = size[:-2], size[1:-1], size[2:]
     dip = (here <= before) & (here < after) & (here > _NOISE)
     dip &= (value[:-2] * value[1:-1] > 0.0) & (value[1:-1] * value[2:] > 0.0)
-    # Noise dips too, but not from a height above it. Points may lie in pairs, so look further.
+    # rounding noise also has minima, but not from a larger value; points may occur in pairs, so
+    # compare with more distant points
     around = np.lib.stride_tricks.sliding_window_view(np.pad(size, _AROUND, mode="edge"), _WINDOW)
     dip &= here < 0.5 * around.max(axis=1)[1:-1]
     return np.flatnonzero(dip) + 1
 
 
 _POINTS_OF_ENDS = 24
-# Nearer to level than this the height of a piece is lost in rounding.
+# closer to horizontal than this, the height of a piece is lost in rounding
 _LEAST_RISE = 1.0 + 1e-13
 
 
 @dataclass(frozen=True)
 class LengthSearch:
-    """A branch, the mean cosine D/L wanted, and the third size as a share of the length.
+    """Search a branch for a mean cosine D/L, and a third size as a share of the length.
 
     Parameters
     ----------
-    branch : where to look
-    cosine : D/L, D turned as the branch is
+    branch : branch to search
+    cosine : D/L, with D mirrored like the branch
     third, share : str, float
         tension_a, tension_b or height; that size over the length.
     """
@@ -217,7 +223,7 @@ class LengthSearch:
     share: float
 
     def pieces(self) -> list[Piece]:
-        """Every piece that fits."""
+        """Find all pieces that match."""
         if not -1.0 < self.cosine < 1.0:
             return []
         outward = graded(reach(self.branch), _POINTS_OF_ENDS)
@@ -237,7 +243,7 @@ class LengthSearch:
         return [piece for piece in found if piece is not None]
 
     def _polished(self, start: float, end: float) -> Piece | None:
-        """The root that Powell's method reaches from a place, or None."""
+        """Root that Powell's method reaches from a starting point, or None."""
         from scipy.optimize import root
 
         least, farthest = abs(start) * _LEAST_RISE, 3.0 * reach(self.branch)
@@ -250,7 +256,7 @@ class LengthSearch:
             return first, abs(first) * _LEAST_RISE + float(above)
 
         def miss(at: Floats) -> Floats:
-            """Mean cosine and logarithm of the third share, less what is wanted."""
+            """Mean cosine and logarithm of the third share, minus their required values."""
             place = piece(at)
             arc, distance = self.branch.span(*place)
             third = size_of(self.branch, self.third, *place)

@@ -1,4 +1,4 @@
-"""Heavy line in a uniform stream, drag as the square of its normal component: the exact integrals.
+"""Heavy line in a uniform stream, with drag quadratic in the normal velocity: exact integrals.
 
 With φ the angle between the line going up and the way upstream, s up the line, w its weight and R
 its normal drag per metre when square to the stream, p = w/R:
@@ -35,7 +35,7 @@ Law = Literal["constant", "square"]
 
 
 def cosine_of_critical_angle(weight_ratio: ArrayLike) -> Floats:
-    """The cosine √(1 + p²/4) − p/2, without cancellation; p ≥ 0 [-]."""
+    """Cosine of the critical angle, √(1 + p²/4) − p/2, without cancellation, for p ≥ 0 [-]."""
     half = 0.5 * np.asarray(weight_ratio, float)
     return 1.0 / (half + np.sqrt(1.0 + half * half))
 
@@ -54,7 +54,7 @@ class Hodograph:
     Raises
     ------
     ValueError
-        Where p or f is outside its range.
+        p or f is outside its range.
     """
 
     weight_ratio: float
@@ -85,11 +85,11 @@ class Hodograph:
 
     @property
     def critical_angle(self) -> float:
-        """φc [rad]."""
+        """Critical angle φc [rad]."""
         return float(np.arctan2(self._sine, self._u))
 
     def parameter(self, angle: ArrayLike) -> Floats:
-        """The m of an angle [rad] of this branch; inf at φc, nan on the other branch."""
+        """Parameter m of an angle [rad] of this branch, inf at φc, and nan on the other branch."""
         half = 0.5 * np.asarray(angle, float)
         a, sine, cosine = self._a, np.sin(half), np.cos(half)
         # e^(2m) = (1 + tanh m)/(1 − tanh m), where 1 − tanh m is a sine of φ − φc
@@ -112,17 +112,19 @@ class Hodograph:
         return (cosine - sine) * (cosine + sine) / square, 2.0 * sine * cosine / square
 
     def angle(self, m: ArrayLike) -> Floats:
-        """φ [rad]."""
+        """Angle φ [rad]."""
         sine, cosine = self._half_angle(np.asarray(m, float))
         return 2.0 * np.arctan2(sine, cosine)
 
     @cached_property
     def _upright(self) -> float:
-        """The m of φ = 90°, the kink of the friction; 0 on the branch that does not come there."""
+        """Parameter m at φ = 90°, where the friction has a kink; 0 on the branch without this
+        angle.
+        """
         return float(np.arctanh(self._a)) if self.steep else 0.0
 
     def log_tension(self, m: ArrayLike) -> Floats:
-        """Logarithm of the tension, but for a constant."""
+        """Logarithm of the tension, up to a constant."""
         m = np.asarray(m, float)
         decay, a4 = np.exp(-2.0 * m), self._a**4
         less, more = -np.expm1(-2.0 * m), 1.0 + decay
@@ -136,11 +138,11 @@ class Hodograph:
         if self.friction == 0.0:
             return weight
         here, upright = self._rubbing(m), self._rubbing(np.asarray(self._upright))
-        # beyond 90° the stream rubs the other way
+        # beyond 90° the tangential flow reverses
         return weight + self.friction * np.abs(here - upright)
 
     def _rubbing(self, m: Floats) -> Floats:
-        """∫ F/(f R D) dφ down from φ, but for a constant: growing with m."""
+        """Increasing function ∫ F/(f R D) dφ down from φ, up to a constant."""
         u, a = self._u, self._a
         sine, cosine = self._half_angle(m)
         straight = 2.0 * m / self._sine
@@ -152,19 +154,19 @@ class Hodograph:
         return (u**3 * straight - bend / u) / (1.0 + u * u) + angle
 
     def slope(self, m: ArrayLike) -> Floats:
-        """R/T ds/dm: never 0, so that the arc grows with m."""
+        """R/T ds/dm; positive, so that the arc increases with m."""
         sine, cosine = self._half_angle(np.asarray(m, float))
         u, s2, c2 = self._u, sine * sine, cosine * cosine
         # 1 + u cos φ, without cancellation where both are near 1
         return 2.0 * u * (s2 + c2) / (self._sine * (1.0 + u) * (c2 + self._a**2 * s2))
 
     def arc(self, start: float, step: float) -> float:
-        """σ = ∫ R ds/T₀ over a step of m, T₀ the tension at `start`."""
+        """σ = ∫ R ds/T₀ over a step of m, with T₀ the tension at `start`."""
         return self._integral(start, step, None, 0.0)
 
     def reach(self, start: float, step: float) -> tuple[float, float]:
         """ξ and η: distance upstream and height over a step of m, in units of T₀/R."""
-        # either may vanish where the arc does not
+        # either may vanish although the arc does not
         floor = 1e-13 * abs(self.arc(start, step))
         xi, eta = (self._integral(start, step, share, floor) for share in (0, 1))
         return xi, eta
@@ -180,9 +182,11 @@ class Hodograph:
         return integrated(part, self._panels(start, step), floor)
 
     def _panels(self, start: float, step: float) -> list[float]:
-        """A step cut at the kink of the friction and, each way from it, by factors of 4 in m.
+        """Divide a step at the kink of the friction, and on both sides of the kink by factors of 4
+        in m.
 
-        The line turns over the first few of them; a long step as a whole would hide that.
+        The line turns within the first few parts; quadrature over the whole of a long step would
+        miss this.
         """
         low, high = sorted((start, start + step))
         edge, cuts = self._upright or self._a, []
@@ -193,9 +197,10 @@ class Hodograph:
         return [0.0, *(cuts if step > 0.0 else reversed(cuts)), step]
 
     def advance(self, start: float, arc: float) -> float:
-        """The step of m that an arc takes, in units of T₀/R; −`start` where the line comes level.
+        """Step of m for a given arc in units of T₀/R, or −`start` if the line becomes horizontal
+        first.
 
-        The start is a finite m; the arc counts up the line, negative down.
+        The start is a finite m. The arc counts up the line and is negative downwards.
         """
         from scipy.optimize import brentq
 
@@ -206,7 +211,7 @@ class Hodograph:
             return side * self.arc(start, side * step) - length
 
         def farther(near: float, width: float) -> float:
-            # the tension may grow without bound: no more than e^10 at a time
+            # the tension may grow without bound: limit its growth to e^10 per step
             far, reference = min(near + width, limit), self.log_tension(start + side * near)
             while self.log_tension(start + side * far) - reference > 10.0:
                 far = 0.5 * (near + far)
@@ -226,13 +231,14 @@ Floats = NDArray[np.float64]
 
 
 def integrated(part: Callable[[float], float], edges: Sequence[float], floor: float) -> float:
-    """Return the integral of a function over panels, to 1e-12 of it or to `floor`.
+    """Integrate a function over panels, to a relative error of 1e-12 or an absolute error of
+    `floor`.
 
     Parameters
     ----------
     part : the function
-    edges : of the panels, rising or falling
-    floor : error that does not matter
+    edges : edges of the panels, increasing or decreasing
+    floor : negligible absolute error
     """
     from scipy.integrate import quad
 
@@ -243,19 +249,19 @@ def integrated(part: Callable[[float], float], edges: Sequence[float], floor: fl
 
 
 class Station(NamedTuple):
-    """A point of a line in a stream, counted from the end that is given.
+    """A point of a line in a stream, relative to the given end.
 
     Attributes
     ----------
     angle : between the line going up and the way upstream [rad]
-    tension : [N]
+    tension : tension [N]
     x : distance upstream of the given end [m]
     z : height above the given end [m]
 
-    All have the shape of the arcs asked for. A towed cable, given at its body, has angles below
-    90°; a mooring line leans downstream and has angles above 90° (90° + tilt). A force at the
-    given end is that of the part below it: a body of weight W in water and drag D pulls with
-    T₀ = √(W² + D²) at the angle atan2(W, D); under a float of buoyancy B it is atan2(B, −D).
+    All have the shape of the given arcs. A towed cable, given at its body, has angles below 90°; a
+    mooring line is inclined downstream and has angles above 90° (90° + tilt). The force at the
+    given end is the load below it: a body of weight W in water and drag D pulls with T₀ = √(W² +
+    D²) at the angle atan2(W, D); for a float of buoyancy B the angle is atan2(B, −D).
     """
 
     angle: Floats

@@ -1,21 +1,22 @@
-"""A line in a uniform horizontal stream, its drag that of the normal component: R sin²φ per metre.
+"""A line in a uniform horizontal stream, with drag quadratic in the normal velocity: R sin²φ per
+metre.
 
-R is the drag per metre square to the stream, ½ρ Cn D V². One frame serves towed cables and
-moorings: see `Station`. The equations are, s up the line,
+R is the drag per metre of a line normal to the stream, ½ρ Cn D V². The same frame serves towed
+cables and moorings (see `Station`). With s up the line, the equations are
 
     dT/ds = w sin φ + F,      T dφ/ds = −(R sin²φ − w cos φ),      dx/ds = cos φ,      dz/ds = sin φ
 
 with a tangential drag F. Without weight T is constant and the shape is a catenary on its side; with
-weight the tension is elementary and the rest takes one quadrature. Where F = 0 the tension differs
-between two points by w times their difference in height, exactly.
+weight the tension is elementary, and the coordinates need one quadrature. If F = 0, the tension
+difference between two points is exactly w times their difference in height.
 
 Sources: L. Pode, *Tables for computing the equilibrium configuration of a flexible cable in a
 uniform stream*, David Taylor Model Basin report 687, 1951; E. E. Zajac, Bell System Technical
 Journal 36, 1957, for the critical angle.
 
-Pode's cable functions are those of the heavy line with a drag F along it that does not depend on
-the angle, unlike ½ρ Ct πD (V cos φ)². From the point where the line stands square to the stream,
-with p = w/R, f = F/R and T₀ there,
+Pode's cable functions are those of the heavy line with a tangential drag F that does not depend on
+the angle, unlike ½ρ Ct πD (V cos φ)². From the point where the line is normal to the stream, with p
+= w/R, f = F/R and T₀ at this point,
 
     τ = T/T₀ = exp ∫ (f + p sin α)/(sin²α − p cos α) dα,      R s/T₀ = σ = ∫ τ dα/(sin²α − p cos α),
 
@@ -51,7 +52,7 @@ def neutral_line(
     Raises
     ------
     ValueError
-        Where a parameter is outside its range.
+        A parameter is outside its range.
     """
     s, t, start, r = (np.asarray(value, float) for value in (arc, tension, angle, normal_drag))
     if not (np.all(t > 0.0) and np.all(r > 0.0)):
@@ -74,7 +75,7 @@ def critical_angle(weight_ratio: ArrayLike) -> Floats:
     Raises
     ------
     ValueError
-        Where p is negative: a line lighter than water is the mirror image, upside down.
+        p is negative. A line lighter than water is the vertical mirror image.
     """
     p = np.asarray(weight_ratio, float)
     if not np.all(p >= 0.0):
@@ -93,7 +94,7 @@ def critical_weight_ratio(angle: ArrayLike) -> Floats:
     Raises
     ------
     ValueError
-        Where an angle is outside its range.
+        An angle is outside its range.
     """
     phi = np.asarray(angle, float)
     if not np.all((phi >= 0.0) & (phi < 0.5 * np.pi)):
@@ -105,23 +106,24 @@ def critical_weight_ratio(angle: ArrayLike) -> Floats:
 def tension_ratio(
     angle: ArrayLike, start: float, weight_ratio: float, friction: float = 0.0, law: Law = "square"
 ) -> Floats:
-    """Tension at an angle over that at another of the same heavy line, in closed form.
+    """Ratio of the tensions of a heavy line at two angles, in closed form.
 
-    Without friction it is, from 90°, [u (1 + u cos φ)/(u − cos φ)]^((1 − u²)/(1 + u²)), u = cos φc.
+    Without friction and from 90° it is [u (1 + u cos φ)/(u − cos φ)]^((1 − u²)/(1 + u²)), u = cos
+    φc.
 
     Parameters
     ----------
     angle : φ, 0 to π, of any shape [rad]
     start : φ₀, 0 to π, on the same side of the critical angle [rad]
     weight_ratio : p = w/R > 0 [-]
-    friction : f ≥ 0: tangential over normal drag per metre, each where it is greatest [-]
-    law : "square": tangential drag f R cos²φ; "constant": f R whatever the angle (Pode)
+    friction : f ≥ 0: maximum tangential over maximum normal drag per metre [-]
+    law : "square": tangential drag f R cos²φ; "constant": f R at any angle (Pode)
 
     Raises
     ------
     ValueError
-        Where an angle is beyond the critical angle, which no line crosses, or a value is outside
-        its range.
+        An angle is beyond the critical angle, which no line crosses, or a value is outside its
+        range.
     """
     branch = branch_of(start, weight_ratio, friction, law)
     m = branch.parameter(_checked(angle))
@@ -142,29 +144,30 @@ def heavy_line(
     tangential_drag: float = 0.0,
     law: Law = "square",
 ) -> Station:
-    """Shape of a heavy line: the tension in closed form, arc, distance and height by quadrature.
+    """Shape of a heavy line. The tension is in closed form; arc, distance and height need
+    quadrature.
 
     Parameters
     ----------
     arc : distance s from the given end, up the line; negative down; any shape [m]
     tension : T₀ > 0 at the given end [N]
     angle : φ₀ at the given end, −π to π [rad]
-    weight : w > 0, in the fluid [N/m]
+    weight : w > 0, weight per metre in the fluid [N/m]
     normal_drag : R > 0, per metre square to the stream [N/m]
     tangential_drag : per metre along the stream, ≥ 0 [N/m]
-    law : how it falls with the angle: "square", as cos²φ, or "constant"
+    law : dependence on the angle: "square" (cos²φ) or "constant"
 
     Raises
     ------
     ValueError
-        Where a value is outside its range, or a line straight at the critical angle has no tension
-        left before the arc is reached.
+        A value is outside its range, or a line straight at the critical angle has no tension left
+        before the arc is reached.
 
     Notes
     -----
-    Below the point where it is level the line rises again: there its angle is below 0 or above π.
-    Seen from its other end that part is an ordinary line whose angle differs by π.
-    A line lighter than water is one of weight −w upside down.
+    Below the point where it is horizontal the line rises again, with an angle below 0 or above π.
+    Seen from its other end that part is an ordinary line whose angle differs by π. A line lighter
+    than water is the vertical mirror image of a line of weight −w.
     """
     if not (0.0 < tension < np.inf and 0.0 < normal_drag < np.inf):
         raise ValueError("the tension and the normal drag of a heavy line must be above 0")
@@ -206,7 +209,9 @@ def heavy_line(
 
 
 def branch_of(start: float, weight_ratio: float, friction: float, law: Law) -> Hodograph:
-    """The branch of shapes that an angle belongs to [rad]; the critical angle to the steep one."""
+    """Branch of shapes that an angle belongs to [rad]; the critical angle belongs to the steep
+    branch.
+    """
     _checked(start)
     if law not in ("constant", "square"):
         raise ValueError(f'the law of the tangential drag is "constant" or "square", not "{law}"')
@@ -243,16 +248,16 @@ def cable_functions(angle: ArrayLike, weight_ratio: float, friction: float = 0.0
 
     Parameters
     ----------
-    angle : φ, above the critical angle and up to π, of any shape [rad]; below 90° of a line that
-        is towed, its body at 90°. Above 90° (a moored line, the arc counted downwards and
-        negative) the drag along the line acts the other way, and the identity with it.
+    angle : φ, above the critical angle and up to π, of any shape [rad]; below 90° for a line that
+        is towed, its body at 90°. Above 90° (a moored line, the arc counted downwards and negative)
+        the tangential drag and its term in the identity change sign.
     weight_ratio : p = w/R > 0 [-]; `critical_weight_ratio` gives it for a critical angle
     friction : f = F/R ≥ 0 [-]
 
     Raises
     ------
     ValueError
-        Where an angle or a ratio is outside its range.
+        An angle or a ratio is outside its range.
     """
     branch = branch_of(0.5 * np.pi, weight_ratio, friction, "constant")
     angles = np.asarray(angle, float)

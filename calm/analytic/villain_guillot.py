@@ -1,20 +1,20 @@
 """Villain-Guillot's towed cable: drag linear or quadratic in each component of the velocity.
 
 A cable of weight μg per metre in the fluid (water or air) is towed at a speed V; α is the angle of
-its upward direction above the way it is towed, s counts from its lower end. Across it acts
-k_n (V sin α)^D per metre, along it k_t (V cos α)^D:
+its upward direction above the direction of tow, and s is counted from its lower end. The drag per
+metre is k_n (V sin α)^D normal to the cable and k_t (V cos α)^D along it:
 
     dT/ds = P = μg sin α + k_t (V cos α)^D,      T dα/ds = δ = μg cos α − k_n (V sin α)^D.
 
 The drag parameters below are k_n V^D and k_t V^D, in N/m. δ vanishes at α_d, where the cable is
-straight; a cable without a body is straight there from its free end on. Between, with ρ = T/δ the
-radius of curvature,
+straight; a cable without a body is straight at this angle from its free end. Otherwise, with ρ =
+T/δ the radius of curvature,
 
     dT/T = (P/δ) dα,      dρ/ρ = (P − dδ/dα)/δ dα.
 
-D = 1, k_t = k_n: the drag is the same force on every metre and the cable a catenary about the
-direction of that force and the weight together. D = 1, k_t ≠ k_n is in
-`calm.analytic.villain_guillot`. D = 2 is the heavy line of `calm.analytic.uniform`, f = k_t/k_n.
+For D = 1 and k_t = k_n the drag is the same force on every metre, and the cable is a catenary about
+the direction of the sum of this force and the weight. The case D = 1, k_t ≠ k_n is `unequal_cable`.
+D = 2 is the heavy line of `calm.analytic.uniform`, f = k_t/k_n.
 """
 
 from math import hypot, pi
@@ -42,7 +42,7 @@ def body_pull(weight: ArrayLike, lift: ArrayLike, drag: ArrayLike) -> tuple[Floa
     Raises
     ------
     ValueError
-        Where the drag is negative.
+        The drag is negative.
     """
     down, back = np.asarray(weight, float) - np.asarray(lift, float), np.asarray(drag, float)
     if not np.all(back >= 0.0):
@@ -51,7 +51,7 @@ def body_pull(weight: ArrayLike, lift: ArrayLike, drag: ArrayLike) -> tuple[Floa
 
 
 def straight_angle(weight: ArrayLike, normal_drag: ArrayLike, exponent: Literal[1, 2]) -> Floats:
-    """Angle α_d at which a cable is towed straight [rad]: tan α_d = μg/(k_n V) where D = 1.
+    """Angle α_d at which a cable is towed straight [rad], with tan α_d = μg/(k_n V) for D = 1.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def straight_angle(weight: ArrayLike, normal_drag: ArrayLike, exponent: Literal[
     Raises
     ------
     ValueError
-        Where a parameter is outside its range.
+        A parameter is outside its range.
     """
     w, r = np.asarray(weight, float), np.asarray(normal_drag, float)
     if exponent not in (1, 2):
@@ -75,7 +75,7 @@ def straight_angle(weight: ArrayLike, normal_drag: ArrayLike, exponent: Literal[
 def linear_cable(
     arc: ArrayLike, tension: ArrayLike, angle: ArrayLike, weight: ArrayLike, drag: ArrayLike
 ) -> Station:
-    """Shape of a towed cable with D = 1 and k_t = k_n = k; arrays broadcast.
+    """Shape of a towed cable for D = 1 and k_t = k_n = k (arrays broadcast).
 
     With ℓ = T₀/√((μg)² + (kV)²) and a = α₀ − α_d: tan(α − α_d) = sin a/(s/ℓ + cos a),
     T = T₀ √((s/ℓ)² + 2 (s/ℓ) cos a + 1).
@@ -84,14 +84,14 @@ def linear_cable(
     ----------
     arc : s ≥ 0 from the body [m]
     tension : T₀ ≥ 0 at the body [N]; 0 for a free end
-    angle : α₀ at the body; of no effect at a free end [rad]
+    angle : α₀ at the body [rad]; ignored at a free end
     weight : μg > 0 [N/m]
     drag : kV > 0 [N/m]
 
     Raises
     ------
     ValueError
-        Where a parameter is outside its range.
+        A parameter is outside its range.
     """
     s, t, start = (np.asarray(value, float) for value in (arc, tension, angle))
     check_arc(s, t)
@@ -118,13 +118,13 @@ def quadratic_cable(
     normal_drag: float,
     tangential_drag: float,
 ) -> Station:
-    """Shape of a towed cable with D = 2: elementary tension, the rest by quadrature.
+    """Shape of a towed cable for D = 2, with elementary tension and quadrature for the coordinates.
 
     Parameters
     ----------
     arc : s ≥ 0 from the body, of any shape [m]
     tension : T₀ ≥ 0 at the body [N]; 0 for a free end
-    angle : α₀ at the body, −π to π; of no effect at a free end [rad]
+    angle : α₀ at the body, −π to π; ignored at a free end [rad]
     weight : μg > 0 [N/m]
     normal_drag : k_n V² > 0 [N/m]
     tangential_drag : k_t V² ≥ 0 [N/m]
@@ -132,7 +132,7 @@ def quadratic_cable(
     Raises
     ------
     ValueError
-        Where a parameter is outside its range.
+        A parameter is outside its range.
     """
     arcs = np.asarray(arc, float)
     check_arc(arcs, np.asarray(tension, float))
@@ -145,15 +145,15 @@ def quadratic_cable(
 def straight_cable(
     arc: Floats, tension: float, angle: float, weight: float, rubbing: float
 ) -> Station:
-    """A cable that is straight at α_d, as from a free end.
+    """A cable that is straight at α_d, for instance from a free end.
 
     Parameters
     ----------
     arc : s ≥ 0 from the lower end [m]
-    tension : T₀ there [N]
+    tension : T₀ at the lower end [N]
     angle : α_d, from `straight_angle` [rad]
     weight : μg [N/m]
-    rubbing : drag along the cable at that angle [N/m]
+    rubbing : tangential drag at this angle [N/m]
     """
     sine, cosine = np.sin(angle), np.cos(angle)
     pull = tension + (weight * sine + rubbing) * arc
@@ -161,7 +161,7 @@ def straight_cable(
 
 
 def check_arc(arc: Floats, tension: Floats) -> None:
-    """Raise ValueError where an arc or a tension is negative or infinite."""
+    """Raise ValueError if an arc or a tension is negative or infinite."""
     if not all(np.all((value >= 0.0) & (value < np.inf)) for value in (arc, tension)):
         raise ValueError("the arc and the tension of a towed cable must not be negative")
 
@@ -173,7 +173,7 @@ def linear_tension_ratio(
     normal_drag: ArrayLike,
     tangential_drag: ArrayLike,
 ) -> Floats:
-    """T/T₀ = (δ₀/δ)^A e^(B (α − α₀)) of a towed cable with D = 1; arrays broadcast.
+    """Tension ratio T/T₀ = (δ₀/δ)^A e^(B (α − α₀)) of a towed cable for D = 1 (arrays broadcast).
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def linear_tension_ratio(
     Raises
     ------
     ValueError
-        Where a parameter is outside its range, or the angles lie on different sides of α_d.
+        A parameter is outside its range, or the angles are on different sides of α_d.
     """
     mean = straight_angle(weight, normal_drag, 1)
     power, rate = _powers(weight, normal_drag, tangential_drag)
@@ -199,7 +199,7 @@ def linear_tension_ratio(
 def _powers(
     weight: ArrayLike, normal_drag: ArrayLike, tangential_drag: ArrayLike
 ) -> tuple[Floats, Floats]:
-    """A and B."""
+    """Exponents A and B of `linear_tension_ratio`."""
     w, n, t = (np.asarray(value, float) for value in (weight, normal_drag, tangential_drag))
     if not np.all(t >= 0.0):
         raise ValueError("the tangential drag must not be negative")
@@ -215,10 +215,11 @@ def unequal_cable(
     normal_drag: float,
     tangential_drag: float,
 ) -> Station:
-    """Shape of a towed cable with D = 1, k_t ≠ k_n: elementary tension, the rest by quadrature.
+    """Shape of a towed cable for D = 1 and k_t ≠ k_n, with elementary tension and quadrature for
+    the coordinates.
 
-    Parameters, V in place of V², and errors are those of `quadratic_cable`; the
-    angle lies within π of α_d.
+    Parameters (with V in place of V²) and errors are those of `quadratic_cable`; the angle must be
+    within π of α_d.
 
     Notes
     -----
@@ -250,7 +251,7 @@ def unequal_cable(
             sine = 2.0 * np.exp(-np.logaddexp(m, -m))
             return float(ratio(m) * (1.0, np.tanh(m), side * sine)[share])
 
-        # the cable turns where m is near 0; a long step as a whole would hide that
+        # the cable turns near m = 0, which quadrature over a whole long step would miss
         cuts = [m - start for m in (-16.0, -4.0, -1.0, 1.0, 4.0, 16.0, 64.0)]
         ends = [0.0, *(cut for cut in cuts if 0.0 < cut < step), step]
         return integrated(part, ends, floor * load / tension) * tension / load

@@ -1,4 +1,4 @@
-"""From the models of a file and its environment to the arrays that the march takes."""
+"""Conversion of a file's models and environment to the arrays of the march."""
 
 from calm.assemble.arrays import assemble_floating as assemble_floating
 from calm.assemble.arrays import assemble_line as assemble_line

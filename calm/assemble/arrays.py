@@ -1,4 +1,4 @@
-"""The pieces and the environment of a file as the arrays that the march takes."""
+"""Conversion of a file's pieces and environment to the arrays of the march."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -23,13 +23,17 @@ from calm.physics.strumming import BourgetMarichal
 from calm.records.profile_tables import components
 
 TOWED_SPHERE_CX = 0.90
-"""Cx of a sphere at the free end of a tow, which wavers; held, it has 0.45: Bourget & Marichal."""
+"""Cx of a sphere at the free end of a tow, which oscillates; a fixed sphere has 0.45 (Bourget &
+Marichal).
+"""
 
 DEEPEST = 11_000.0
-"""Depth of the water where a tow gives none [m]: more than the deepest trench has."""
+"""Default water depth of a tow [m], more than the deepest trench."""
 
 LINEAR_WITHIN = 1e-5
-"""Share by which the density of sea water may differ from linear between levels."""
+"""Allowed relative deviation of the density of sea water from linear interpolation between
+levels.
+"""
 
 AIR_VISCOSITY = 1.46e-5
 """Kinematic viscosity of air [m²/s], in the standard atmosphere at sea level."""
@@ -40,15 +44,15 @@ _QUARTERS = np.array([0.25, 0.5, 0.75])
 def assemble_line(
     pieces: Sequence[files.Piece], solver: Solver | None = None, gravity: float = STANDARD_GRAVITY
 ) -> Line:
-    """The line above the anchor, or the whole towed line, in the order of the pieces.
+    """Build the line above the anchor, or the whole towed line, in the order of the pieces.
 
-    A piece that is cut to fit has length 0 until it is cut.
+    A piece with a fitted length has length 0 until it is fitted.
 
     Parameters
     ----------
     pieces : top to bottom, the anchor last if there is one
-    solver : the laws of drag, friction and strumming; the usual ones where not given
-    gravity : under which masses weigh [m/s²]
+    solver : laws of drag, friction and strumming; the defaults if None
+    gravity : acceleration of gravity for weights from masses [m/s²]
     """
     solver = solver or Solver()
     anchor = pieces[-1].component
@@ -61,7 +65,7 @@ def assemble_line(
         k = drag.sphere_drag(anchor.diameter, TOWED_SPHERE_CX)
         drags[-1], curves[-1] = (k, k, False), None
     clamps = [(i, clamp) for i, piece in enumerate(above) for clamp in piece.clamps]
-    hung = [clamp.component for _, clamp in clamps]
+    clamped = [clamp.component for _, clamp in clamps]
     return Line(
         length=np.array([piece.length or 0.0 for piece in above]),
         flexible=np.array([isinstance(part, files.Flexible) for part in parts]),
@@ -76,24 +80,26 @@ def assemble_line(
         thinning=np.array([0.5 if isinstance(part, Cable) else 0.0 for part in parts]),
         clamp_piece=np.array([i for i, _ in clamps]),
         clamp_at=np.array([clamp.at for _, clamp in clamps]),
-        clamp_buoyancy=np.array([net_buoyancy(part, gravity) for part in hung]),
-        clamp_volume=np.array([part.displaced_volume or 0.0 for part in hung]),
-        # what is clamped on is dragged as across its axis, whatever the inclination of the line
-        clamp_drag=np.array([drag_of(part)[0] for part in hung]),
+        clamp_buoyancy=np.array([net_buoyancy(part, gravity) for part in clamped]),
+        clamp_volume=np.array([part.displaced_volume or 0.0 for part in clamped]),
+        # clamped items: use the drag normal to their axis, for any inclination of the line
+        clamp_drag=np.array([drag_of(part)[0] for part in clamped]),
         anchor_height=anchor.length if isinstance(anchor, files.Anchor) else 0.0,
         lift=np.array([getattr(part, "lift", None) or 0.0 for part in parts]),
-        clamp_lift=np.array([getattr(part, "lift", None) or 0.0 for part in hung]),
+        clamp_lift=np.array([getattr(part, "lift", None) or 0.0 for part in clamped]),
         diameter=np.array([part.diameter if isinstance(part, Cable) else 0.0 for part in parts]),
         friction=Friction(solver.friction),
         strumming=vibration_law(solver),
         elongation=tuple(map(_elongation, parts)),
         drag_curve=tuple(curves),
-        clamp_drag_curve=tuple(_drag_curve(part, solver) for part in hung),
+        clamp_drag_curve=tuple(_drag_curve(part, solver) for part in clamped),
     )
 
 
 def _drag_curve(component: files.Component, solver: Solver) -> DragCurve | None:
-    """The drag curve of a smooth sphere or cylinder; None where it gives a drag of its own."""
+    """Drag curve of a smooth sphere or cylinder; None if the component has its own drag
+    coefficient.
+    """
     if solver.drag == "constant":
         return None
     if not isinstance(component, files.Sphere | files.Cylinder) or component.surface != "smooth":
@@ -116,7 +122,7 @@ def _elongation(component: files.Component) -> ElongationCurve | None:
 
 
 def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
-    """The line of some pieces with its clamps in a flow along it, as in a fall and a rise."""
+    """Return a line whose clamps have their drag in axial flow, as in a fall or a rise."""
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
     axial = [drag_of(each)[2] for each in clamps]
     curves = tuple(
@@ -127,7 +133,7 @@ def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
 
 
 def vibration_law(solver: Solver) -> BourgetMarichal | None:
-    """The law by which the Cn of cables grows as they strum; None where the file chooses none."""
+    """Law by which strumming increases the Cn of cables; None if the file has none."""
     keys = solver.strumming
     if not isinstance(keys, strumming_keys.BourgetMarichalKeys):
         return None
@@ -137,11 +143,11 @@ def vibration_law(solver: Solver) -> BourgetMarichal | None:
 def assemble_floating(
     pieces: Sequence[files.Piece], environment: Environment, water: Water
 ) -> Floating | None:
-    """Return how the first float rides at the surface; None where neither its draft nor its drag
-    is known.
+    """Return the surface properties of the first float; None if neither its draft nor its drag is
+    known.
 
-    A hull is that of the component's `hull`, or of its kind for a sphere and a cylinder; without
-    mass or volume there is no draft, and only a `k_surface` makes a difference.
+    The hull is the component's `hull`, or follows from its kind for a sphere and a cylinder.
+    Without mass or volume the draft is unknown, and only `k_surface` has an effect.
     """
     parts = (piece.component for piece in pieces)
     floats = (part for part in parts if isinstance(part, files.Rigid) and part.net_buoyancy > 0.0)
@@ -186,7 +192,7 @@ def _hull(component: RigidComponent) -> Hull | None:
         return spherical_hull(component.diameter)
     if isinstance(component, files.Cylinder) and hull != "sphere":
         return cylindrical_hull(component.diameter, component.length)
-    # a body of no stated width is as wide as its volume makes it
+    # a body of unspecified width gets the width for its volume
     if hull == "sphere":
         return spherical_hull(cbrt(6.0 * volume / pi))
     if hull == "cylinder" and component.length > 0.0:
@@ -195,7 +201,9 @@ def _hull(component: RigidComponent) -> Hull | None:
 
 
 def assemble_water(environment: Environment) -> Water:
-    """Current and density on the union of their levels, viscosity on its own; linear between."""
+    """Build the water: current and density on the union of their levels, viscosity on its own
+    levels, all linear in between.
+    """
     flows = [environment.current, *_surface_drift(environment)]
     density_levels, density = _density(environment)
     # np.unique would import masked arrays
@@ -223,9 +231,9 @@ def assemble_water(environment: Environment) -> Water:
 
 
 def _viscosity(environment: Environment, levels: Floats, density: Floats) -> tuple[Floats, Floats]:
-    """Depths [m] and the kinematic viscosity at them [m²/s], from the levels of the density.
+    """Depths [m] and kinematic viscosities [m²/s], at the levels of the density.
 
-    Where temperature and salinity are not given, it is that of sea water of 10 °C and salinity 35.
+    Without temperature and salinity, the viscosity is that of sea water of 10 °C and salinity 35.
     """
     sea = environment.density
     if not isinstance(sea, SeaWater):
@@ -247,7 +255,7 @@ def _gravity(environment: Environment) -> float:
 
 
 def _surface_drift(environment: Environment) -> list[files.CurrentTable]:
-    """Return what the wind adds to the current; nothing where it drives no surface drift."""
+    """Surface drift that the wind adds to the current; an empty list if there is none."""
     wind = environment.wind
     if wind is None or wind.surface_drift == 0.0:
         return []
@@ -257,12 +265,12 @@ def _surface_drift(environment: Environment) -> list[files.CurrentTable]:
 
 
 def _density(environment: Environment) -> tuple[Floats, Floats]:
-    """Levels [m] and the density at them [kg/m³]."""
+    """Levels [m] and densities at these levels [kg/m³]."""
     given = environment.density
     if isinstance(given, DepthTable):
         return np.array(given.depth), np.array(given.value)
     if not isinstance(given, SeaWater):
-        # A constant asks for no level of its own.
+        # a constant density needs no level
         return np.array(environment.current.depth[:1]), np.array([given])
     position = environment.position
     place = () if position is None else (position.latitude, position.longitude)
@@ -270,7 +278,7 @@ def _density(environment: Environment) -> tuple[Floats, Floats]:
     def density(depth: Floats) -> Floats:
         return seawater.density(*_probed(given, depth), depth, *place)
 
-    # Without rows to the bottom the last ones hold, but pressure goes on rising.
+    # below the last row its values are kept, but the pressure increases down to the seabed
     rows = [*given.temperature.depth, *given.salinity.depth, 0.0, _depth(environment)]
     levels = _refined(np.unique(rows), density)
     return levels, density(levels)
@@ -286,12 +294,14 @@ def _probed(sea: SeaWater, depth: Floats) -> tuple[Floats, Floats]:
 
 
 def _refined(levels: Floats, values: Callable[[Floats], Floats]) -> Floats:
-    """Levels halved until `values` is linear between them; it may bend only at the levels given."""
+    """Bisect levels until `values` is linear in between; kinks are allowed only at the given
+    levels.
+    """
     while True:
         thickness = np.diff(levels)[:, np.newaxis]
         inside = levels[:-1, np.newaxis] + thickness * _QUARTERS
         error = np.abs(np.interp(inside, levels, values(levels)) / values(inside) - 1.0)
-        # Half of what is promised: between the quarters it may be a little more.
+        # half of the tolerance, since the error may be slightly larger between the quarter points
         bent = error.max(axis=1) > 0.5 * LINEAR_WITHIN
         if not bent.any():
             return levels

@@ -1,4 +1,4 @@
-"""The catalogue as it is searched: by id, name, maker, size and kind, and what each one is for."""
+"""Search of the catalogue by id, name, manufacturer, size, kind, role and limits."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ from calm.units import QuantityError, parse_quantity
 
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
 _ELSEWHERE = 4
-"""The rank of a component whose id does not have all words."""
+"""Rank of a component whose id does not contain all words."""
 _BETWEEN = re.compile(r"[\s_-]+")
 _SIZE = re.compile(
     r"(?<![\w.,/])((?:\d+[ -])?\d+/\d+|\d+(?:[.,]\d+)?)[ -]?"
     r"(mm|cm|inch(?:es)?|in|\"|″|(?<=/\d)|(?<=/\d\d))(?!\w)"
 )
-"""A number with its unit; a fraction without one is of inches."""
+"""A number with its unit; a fraction without a unit is in inches."""
 _OF_A_SIZE = 0.02
-"""Share by which sizes differ that are the same in millimetres and inches, rounded."""
+"""Relative difference up to which sizes count as equal, such as rounded millimetres and inches."""
 _USED = re.compile(r"\buse: *([\w-]+)")
 _ALIKE = 0.8
-"""Likeness from which on a word is taken for a misspelt one: `releese` and `release` have 0.86."""
+"""Similarity above which a word counts as misspelt: `releese` and `release` have 0.86."""
 _SHORT = 5
-"""Letters below which a word that nothing has is not taken for a misspelt one."""
+"""Number of letters below which an unknown word does not count as misspelt."""
 
 
 @dataclass(frozen=True)
 class Listed:
-    """A component as the list shows it."""
+    """A component as shown in the list."""
 
     id: str
     name: str
@@ -54,29 +54,31 @@ class Listed:
 
     @cached_property
     def own_words(self) -> str:
-        """Return what is written of it, hyphens as they are and as nothing."""
+        """Searchable text of the entry, with and without hyphens."""
         every = (self.id, self.name, self.maker, self.kind, self.role, self.material)
         own = " ".join(every).casefold()
         return f"{own} {own.replace('-', '')}"
 
     @cached_property
     def searched(self) -> str:
-        """The text in which words are looked for."""
+        """Complete searchable text, with synonyms and the source."""
         plain = self.own_words.replace("-", " ")
         synonyms = (words for pattern, words in _FOUND if pattern.search(plain))
         return " ".join([plain, *synonyms, self.own_words, self.source])
 
     @cached_property
     def sizes(self) -> tuple[float, ...]:
-        """The diameter and the sizes that the name tells [m]."""
-        told = tuple(
+        """Diameter, and sizes found in the name [m]."""
+        named = tuple(
             _metres(*found) for found in _SIZE.findall(f"{self.name} {self.id}".casefold())
         )
-        return told if self.diameter is None else (*told, self.diameter)
+        return named if self.diameter is None else (*named, self.diameter)
 
 
 class Index:
-    """The components that a line can use, in the order of the catalogue, the file's own first."""
+    """The components available to a line, in catalogue order, with the file's own components
+    first.
+    """
 
     def __init__(self, catalogue: Catalogue) -> None:
         self.catalogue = catalogue
@@ -87,7 +89,9 @@ class Index:
 
     @classmethod
     def of(cls, catalogue: Catalogue, text: str) -> Index:
-        """The index of a catalogue under the `components:` of a mooring file that can be read."""
+        """Build the index of a catalogue and of a mooring file's `components:`, as far as
+        readable.
+        """
         try:
             document = compose("", text)
         except InputError:
@@ -97,11 +101,11 @@ class Index:
         return cls(catalogue)
 
     def get(self, id: str) -> Listed | None:
-        """One component; None where there is none of that id."""
+        """Return a component, or None if the id is unknown."""
         return self._listed.get(id)
 
     def figures(self, id: str) -> Figures:
-        """The figures of a component, by the keys of their columns."""
+        """Values of a component by the keys of their columns."""
         if id not in self._figures:
             self._figures[id] = figures_of(self.catalogue, id)
         return self._figures[id]
@@ -114,20 +118,20 @@ class Index:
         first: Sequence[str] = (),
         by: str | None = None,
     ) -> list[Listed]:
-        """Return those that have every word of a text and keep every limit in it, as
-        ``breaking>50kN``.
+        """Find the components that contain all words of a text and meet all limits in the text,
+        such as ``breaking>50kN``.
 
-        Hyphens part words as blanks do: makers, catalogues and people set them differently. A size
-        as ``8mm`` or ``17 in`` is looked for in either unit. What is complete comes before an
-        outline, and what has the words itself before what has them as synonyms or in its source; of
-        components that fit alike, those that the shipped lines use most come first.
+        Hyphens separate words like blanks, since spellings vary. A size such as ``8mm`` or ``17
+        in`` matches in either unit. Complete components precede outlines, and components that
+        contain the words themselves precede those with synonyms or a matching source. Equally good
+        matches are sorted by their use in the shipped lines.
 
         Parameters
         ----------
-        first : ids, in their order, that come before all others but the one that is typed whole
-        by : the key of a column: the greatest first, what is not known last
+        first : ids, in their order, that precede all others except an exact match
+        by : key of a column to sort by: largest first, unknown values last
         """
-        plain, limits = _asked(text)
+        plain, limits = _parsed(text)
         words = _words(plain)
         sizes = [(_words(found[0]), _metres(*found.groups())) for found in _SIZE.finditer(plain)]
         others = _words(_SIZE.sub(" ", plain))
@@ -157,13 +161,13 @@ class Index:
         return sorted(hits, key=order)
 
     def spelt(self, text: str) -> str:
-        """Return a text with each word that no component has as the one most like it that some
-        has.
+        """Replace each word that no component contains by the most similar word that one
+        contains.
         """
         every = " ".join(each.searched for each in self._listed.values())
         own = _BETWEEN.split(" ".join(each.own_words for each in self._listed.values()))
         known = {word for word in own if word.isalpha() and len(word) >= _SHORT - 1}
-        for word in _words(_SIZE.sub(" ", _asked(text)[0])):
+        for word in _words(_SIZE.sub(" ", _parsed(text)[0])):
             if len(word) >= _SHORT and word.isalpha() and word not in every:
                 near = difflib.get_close_matches(word, known, 1, _ALIKE)
                 text = re.sub(re.escape(word), near[0] if near else word, text, flags=re.I)
@@ -174,11 +178,11 @@ class Index:
         return inf if value is None else -abs(value)
 
 
-def _asked(text: str) -> tuple[str, list[Wanted]]:
-    """Return the plain words of a text in small letters, and the limits in it."""
-    asked = [(word.casefold(), wanted(word)) for word in text.split()]
-    limits = [limit for _, limit in asked if limit is not None]
-    return " ".join(word for word, limit in asked if limit is None), limits
+def _parsed(text: str) -> tuple[str, list[Wanted]]:
+    """Split a text into its plain words, in lower case, and its limits."""
+    parsed = [(word.casefold(), wanted(word)) for word in text.split()]
+    limits = [limit for _, limit in parsed if limit is not None]
+    return " ".join(word for word, limit in parsed if limit is None), limits
 
 
 def _words(text: str) -> list[str]:
@@ -186,24 +190,24 @@ def _words(text: str) -> list[str]:
 
 
 def _metres(number: str, unit: str) -> float:
-    """Return a size in metres: `1 1/4` or `1-1/4` inches are one and a quarter."""
+    """Convert a size to metres: `1 1/4` or `1-1/4` inches are one and a quarter."""
     value = sum(float(Fraction(each.replace(",", "."))) for each in _words(number))
     return value * {"mm": 1e-3, "cm": 1e-2}.get(unit, 0.0254)
 
 
 @cache
 def _uses() -> Counter[str]:
-    """Return how often the shipped lines use each component."""
+    """Number of uses of each component in the shipped lines."""
     files = sorted(shipped_folder("lines").glob("*.yaml"))
     return Counter(id for file in files for id in _USED.findall(file.read_text("utf-8")))
 
 
 def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
-    """Return how well a component fits: its id, beginning or end of it, all words in it, in what is
-    written of it, in synonyms.
+    """Rank of a match: exact id, start or end of the id, all words in the id, all words in the
+    entry's own text, or in its synonyms.
 
-    Of ids that have all words, one that begins with the first of them is nearer. `others` are the
-    words that are no sizes.
+    Among ids with all words, an id that begins with the first word ranks higher. `others` are the
+    words without sizes.
     """
     if not words:
         return 0
@@ -217,7 +221,7 @@ def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
     return _ELSEWHERE + any(word not in each.own_words for word in others)
 
 
-@lru_cache(4096)  # an index is made anew whenever a file's own components change
+@lru_cache(4096)  # an index is rebuilt whenever a file's own components change
 def _listed(entry: CatalogueEntry, own: bool) -> Listed:
     fields = entry.section.data
 
@@ -276,7 +280,7 @@ _FOUND = tuple(
 
 @dataclass(frozen=True)
 class CatalogueColumn:
-    """A figure of components: its key, heading, dimension, and the unit it is shown in."""
+    """A value of components: its key, heading, dimension, and displayed unit."""
 
     key: str
     heading: str
@@ -286,7 +290,7 @@ class CatalogueColumn:
     decimals: int = 0
 
     def shown(self, value: float | None) -> str:
-        """A figure for people; empty where it is not known."""
+        """Formatted value; empty if unknown."""
         return "" if value is None else f"{value * self.scale:.{self.decimals}f}"
 
 
@@ -298,8 +302,9 @@ COLUMNS = (
     CatalogueColumn("drag", "drag N", "force", "N", 1.0, 1),
     CatalogueColumn("mass", "mass kg", "mass", "kg", 1.0, 1),
 )
-"""Net force in water, + up; loads; depth rating; drag across the axis at 1 m/s; mass in air. Of a
-cable or chain per metre, but for its loads."""
+"""Net buoyancy in water, positive up; loads; depth rating; normal drag at 1 m/s; mass in air. All
+except loads and depth are per metre for a cable or chain.
+"""
 
 
 _ALSO = {
@@ -319,7 +324,7 @@ Figures = dict[str, float | None]
 
 
 def figures_of(catalogue: Catalogue, id: str) -> Figures:
-    """The figures of a component or assembly by the keys of `COLUMNS`; SI units."""
+    """Values of a component or assembly by the keys of `COLUMNS`, in SI units."""
     from calm.assemble.component_forces import datasheet
 
     try:
@@ -339,22 +344,22 @@ def figures_of(catalogue: Catalogue, id: str) -> Figures:
 
 @dataclass(frozen=True)
 class Wanted:
-    """A limit that a figure is to keep: ``breaking>50kN``."""
+    """A limit on a value, such as ``breaking>50kN``."""
 
     key: str
     relation: str
     limit: float
 
     def holds(self, figures: Figures) -> bool:
-        """Return whether it is kept; not where the figure is unknown."""
+        """Whether the limit is met; false if the value is unknown."""
         value = figures.get(self.key)
         return value is not None and bool(_HOLDS[self.relation](value, self.limit))
 
 
 def wanted(word: str) -> Wanted | None:
-    """The limit that a word of a search is; None of a plain word.
+    """Parse a word of a search as a limit; None for a plain word.
 
-    A number alone has the unit of its column.
+    A number without a unit has the unit of its column.
     """
     found = _ASKED.fullmatch(word)
     if found is None:

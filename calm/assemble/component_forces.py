@@ -1,4 +1,4 @@
-"""Forces that follow from the figures of a component: net force, mass, drags, and their sums."""
+"""Forces of components: net buoyancy, mass and drag, and their sums for assemblies."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
@@ -18,16 +18,18 @@ from calm.units import QuantityError, parse_quantity
 
 
 def net_buoyancy(component: files.Component, gravity: float) -> float:
-    """Net force in reference water, + up [N, N/m]: given, or from masses under a gravity [m/s²]."""
+    """Net buoyancy in reference water, positive up [N, N/m], as specified or from masses and
+    gravity [m/s²].
+    """
     given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
     return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
 
 
 def mass_in_air(component: files.Component) -> float | None:
-    """Mass, per metre of a cable or chain, as given or from the weight in water [kg, kg/m].
+    """Mass, per metre for a cable or chain, as specified or from the weight in water [kg, kg/m].
 
-    It follows from the displaced volume, or from the density of the material: that of steel for a
-    chain or an anchor that does not say. None where it does not follow.
+    The weight in water is converted with the displaced volume, or with the density of the material;
+    steel is the default for a chain or an anchor. None if neither is known.
     """
     if component.mass is not None:
         return component.mass
@@ -46,12 +48,12 @@ def mass_in_air(component: files.Component) -> float | None:
 
 
 def drag_of(component: files.Component, solver: Solver | None = None) -> tuple[float, float, bool]:
-    """Kn, Kt [N/(m/s)², per metre of cable or chain] and whether drag depends on the axis.
+    """Kn, Kt [N/(m/s)², per metre for cable or chain], and whether the drag depends on the axis.
 
     Parameters
     ----------
-    component : of any kind; an anchor has no drag
-    solver : the laws of friction and strumming of cables and chains; the usual ones where not given
+    component : component of any kind; an anchor has no drag
+    solver : laws of friction and strumming of cables and chains; the defaults if None
     """
     if isinstance(component, SphereShape | CylinderShape):
         return _shape_drag(component)
@@ -95,21 +97,21 @@ def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]
 
 
 def axial_drag_of(component: files.Component) -> float:
-    """K of what is clamped on a line in a flow along that line [N/(m/s)²].
+    """K of a clamped component in flow along the line [N/(m/s)²].
 
-    Its tangential drag; where its drag does not depend on the axis, that of any direction.
+    This is its tangential drag, or its drag in any direction if it does not depend on the axis.
     """
     kn, kt, directional = drag_of(component)
     return kt if directional else kn
 
 
 def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, float]:
-    """Kn and Kt of a metre of cable or chain [N/(m/s)²].
+    """Kn and Kt per metre of cable or chain [N/(m/s)²].
 
-    A cable's Kn includes its strumming; under Bourget & Marichal's law it is that of a cable at
-    rest, which the march raises. Pode's constant friction is Kt = Ct ½ρ Cn D. Where a cable or
-    chain gives no Ct, that of this law is such that its friction is the same as under the other
-    laws, Ct π/Cn: 0.012, 0.022 and 0.031 by finish.
+    A cable's Kn includes strumming; with Bourget & Marichal's law it is the value at rest, which
+    the march increases. Pode's constant friction is Kt = Ct ½ρ Cn D. If a cable or chain has no Ct,
+    the default for this law gives the same friction as the other laws, Ct π/Cn: 0.012, 0.022 and
+    0.031 by finish.
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
@@ -143,7 +145,7 @@ def _strumming_cn(cable: Cable, cn: float, solver: Solver) -> float:
 
 
 def _mass(cable: Cable) -> float:
-    """Return the mass of a metre [kg/m], if need be from its weight in water and its diameter."""
+    """Mass per metre [kg/m], if necessary from the weight in water and the diameter."""
     if cable.mass is not None:
         return cable.mass
     displaced = CATALOGUE_DENSITY * pi * cable.diameter**2 / 4
@@ -155,14 +157,14 @@ _PART_KEYS = {"use", "label", "length", "count", "clamps", "at"}
 
 @dataclass(frozen=True)
 class Datasheet:
-    """Figures that follow, in sea water of `CATALOGUE_DENSITY`; per metre of a cable or chain.
+    """Derived values in sea water of `CATALOGUE_DENSITY`, per metre for a cable or chain.
 
     Attributes
     ----------
-    net_buoyancy : + up [N]
-    kn, kt : drag across and along the axis, in newtons at 1 m/s [N/(m/s)²]; `kn` is None for an
-        anchor, `kt` its drag in the fall
-    cd_area : drag coefficient times area, across the axis [m²]
+    net_buoyancy : net buoyancy, positive up [N]
+    kn, kt : drag normal and tangential to the axis, in newtons at 1 m/s [N/(m/s)²]; `kn` is None
+        for an anchor, and `kt` its drag in the fall
+    cd_area : drag coefficient times area, normal to the axis [m²]
     """
 
     net_buoyancy: float
@@ -172,12 +174,10 @@ class Datasheet:
 
 
 def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> Datasheet | None:
-    """Return what follows from the figures of a definition; for an assembly, the sums over its
-    parts.
+    """Return the derived values of a definition, or their sums over the parts of an assembly.
 
-    None for an outline, and for an assembly whose parts cannot be summed here: they override
-    figures of a component, or use what the catalogue does not have (`catalogue` None: no catalogue
-    at all).
+    None for an outline, and for an assembly whose parts override values of a component or are
+    missing in the catalogue (`catalogue` None: no catalogue at all).
     """
     if isinstance(definition, files.Component):
         return _of_component(definition, 1.0)
@@ -206,7 +206,7 @@ def _items(parts: tuple[dict[str, Any], ...]) -> Iterator[Mapping[str, Any]]:
 
 
 def _component(catalogue: files.Catalogue, item: Mapping[str, Any]) -> files.Component | None:
-    """The component that an item uses as it is."""
+    """Return the component that an item uses without changes, or None."""
     if not item.keys() <= _PART_KEYS or catalogue.entry(str(item.get("use"))) is None:
         return None
     found = catalogue.get(str(item["use"]))
@@ -214,7 +214,7 @@ def _component(catalogue: files.Catalogue, item: Mapping[str, Any]) -> files.Com
 
 
 def _of_component(component: files.Component, metres: float) -> Datasheet:
-    """Return the figures of some metres of a cable or chain; a rigid piece has its own length."""
+    """Return the values of a length of cable or chain, or of a rigid piece."""
     if isinstance(component, Anchor):
         return Datasheet(component.net_buoyancy, None, component.kt, None)
     kn, kt, along = drag_of(component)

@@ -1,4 +1,4 @@
-"""Solve blocks of times in threads, and write the blocks one after another."""
+"""Solve blocks of times in threads, and write the blocks in order."""
 
 from __future__ import annotations
 
@@ -41,20 +41,20 @@ class Progress:
 
 
 class SolvedBlock(NamedTuple):
-    """Hold a solved block: its chunks for the file, and the status (n,) of each profile."""
+    """A solved block: its chunks for the file, and the status (n,) of each profile."""
 
     status: NDArray[np.int8]
     chunks: Chunks
 
 
 class BlockTask(NamedTuple):
-    """Hold the profiles of a block and the layout of their result.
+    """Profiles of a block, and the layout of their result.
 
     Attributes
     ----------
     layout, block : see `calm.dataset.netcdf.packed`
-    time : (n,) of the profiles
-    levels : their currents, see `calm.records.record.Record.profiles`
+    time : (n,) times of the profiles
+    levels : currents of the profiles, see `calm.records.record.Record.profiles`
     """
 
     layout: ResultLayout
@@ -103,7 +103,7 @@ def in_threads(
 ) -> Generator[Done]:
     """Solve tasks in threads, and yield the results in the order of the tasks.
 
-    A consumer that stops early cancels the waiting tasks and waits for the running ones.
+    A consumer that stops early cancels the waiting tasks and waits for those in progress.
 
     Parameters
     ----------

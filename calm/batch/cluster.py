@@ -12,7 +12,7 @@ from calm.errors import UsageError
 from calm.version import __version__
 
 PATIENCE = "20s"
-"""How long the scheduler may take to answer."""
+"""Timeout for an answer of the scheduler."""
 
 
 def on_cluster(
@@ -28,22 +28,17 @@ def on_cluster(
 
     Parameters
     ----------
-    address : of the scheduler, such as ``tcp://10.0.0.1:8786``
+    address : address of the scheduler, such as ``tcp://10.0.0.1:8786``
     tell : called with a message when the scheduler has no worker
 
     Raises
     ------
     UsageError
-        `distributed` is not installed; no scheduler answers; the workers have no CALM; the
+        No scheduler answers; the workers have no CALM; the
         scheduler is lost, or one block loses its worker again and again.
     """
-    try:
-        from distributed import CancelledError, Client, KilledWorker
-    except ImportError:
-        raise UsageError(
-            "--scheduler needs dask: pip install 'calm-mooring[cluster]', here, for the scheduler "
-            "and on the workers"
-        ) from None
+    from distributed import CancelledError, Client, KilledWorker
+
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
@@ -62,13 +57,13 @@ def on_cluster(
 
     with client:
         if not client.nthreads():
-            tell(f"the scheduler at {address} has no worker yet: waiting for the first")
+            tell(f"the scheduler at {address} has no workers yet; waiting for the first worker")
         try:
             yield from in_order(submit, tasks, ahead)
         except (CancelledError, KilledWorker, OSError) as error:
             raise UsageError(f"the scheduler or its workers were lost: {error}") from None
         except (ImportError, AttributeError, RuntimeError) as error:
-            # what dask makes of modules that are not there
+            # dask raises these for missing modules
             raise UsageError(
                 f"the scheduler or a worker cannot take the work: {error}; "
                 f"calm-mooring {__version__} is needed there too"

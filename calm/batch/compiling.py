@@ -25,8 +25,8 @@ class _Notice(event.Listener):
         self.report("compiling the solver for this machine, once only; this takes up to a minute")
         if cache_folder() is None:
             self.report(
-                "no writable folder was found to keep it in, so every run compiles again; set "
-                "NUMBA_CACHE_DIR to one"
+                "no writable cache folder was found, so every run compiles again; set "
+                "NUMBA_CACHE_DIR to a writable folder"
             )
 
     def on_end(self, event: Any) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,14 +21,14 @@ from calm.files.pieces import clamps_down
 from calm.records.record import Record
 
 _BESIDE = {"component": "component_label depth_top", "clamp": "clamp_label clamp_depth"}
-"""Label and depth of what goes along a dimension, the coordinates of its variables."""
+"""Label and depth variables of each dimension, the coordinates of its variables."""
 _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 
 
 def laid_out(
     layout: ResultLayout, time: NDArray[np.datetime64], columns: Mapping[str, NDArray[Any]]
 ) -> dict[str, NDArray[Any]]:
-    """The values of some times, by name, as the variables of a layout that go with time."""
+    """Arrays of a range of times, by name, for the time-dependent variables of a layout."""
     unit = str(layout.variables[0].attributes["units"]).partition(" ")[0]
     since = time.astype("datetime64[ns]").astype(np.int64)
     known = {**columns, layout.variables[0].name: since // dict(_TIME_UNITS)[unit]}
@@ -38,7 +39,7 @@ def laid_out(
 
 
 def layout_of(mooring: Design, record: Record) -> ResultLayout:
-    """Lay out the result of a mooring in the profiles of a record."""
+    """Create the layout of the result for a mooring and a record."""
     pieces = mooring.file.pieces
     clamps = [clamp.label for clamp in clamps_down(pieces)]
     sizes = {"time": record.count, "component": len(pieces)}
@@ -78,7 +79,10 @@ def layout_of(mooring: Design, record: Record) -> ResultLayout:
         "record",
         "currents": "; ".join(f"{key}: {value}" for key, value in record.source.items()),
         "notes": "\n".join(record.notes),
+        "read": json.dumps([card.to_dict() for card in record.cards], ensure_ascii=False),
     }
+    sentences = [card.sentence() for card in record.cards]
+    attributes["history"] = "\n".join([str(attributes["history"]), *sentences])
     if len(of_station) > 1:
         attributes["featureType"] = "timeSeriesProfile"
     known = {name: value for name, value in attributes.items() if value}
@@ -86,7 +90,7 @@ def layout_of(mooring: Design, record: Record) -> ResultLayout:
 
 
 def time_axis(time: NDArray[np.datetime64], meaning: str) -> Variable:
-    """Return the variable of some times, in the coarsest unit in which each is a whole number."""
+    """Create the time variable, in the coarsest unit in which all times are whole numbers."""
     return Variable("time", ("time",), "<i8", {
         "standard_name": "time", "long_name": meaning, "axis": "T",
         "units": f"{_time_unit(time)} since 1970-01-01 00:00:00", "calendar": "standard",
@@ -95,7 +99,9 @@ def time_axis(time: NDArray[np.datetime64], meaning: str) -> Variable:
 
 
 def _station(mooring: Design, record: Record) -> tuple[list[Variable], str]:
-    """The mooring as a station: at the place of the currents where its file has no position."""
+    """Describe the mooring as a station, at the position of the currents if its file has no
+    position.
+    """
     name, position = mooring.file.name or "mooring", mooring.file.position
     if position is not None:
         return station(name, (position.latitude, position.longitude), "the anchor")
@@ -105,7 +111,7 @@ def _station(mooring: Design, record: Record) -> tuple[list[Variable], str]:
 
 
 def _time_unit(time: NDArray[np.datetime64]) -> str:
-    """The coarsest unit in which every time is a whole number."""
+    """Coarsest unit in which all times are whole numbers."""
     since = time.astype("datetime64[ns]", copy=False).view(np.int64)
     parts = [since[start : start + 65536] for start in range(0, len(since), 65536)]
     return next(

@@ -1,4 +1,4 @@
-"""The result of a batch, opened: its labels, its parts and its statuses."""
+"""Access to a finished result of a batch: its labels, its parts and its statuses."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 TOP = "top"
-"""What the first component, the free end of the line, is always called besides its own label."""
+"""Additional name of the first component, the free end of the line."""
 
 
 def open_result(path: Path) -> Dataset:
-    """A result of `calm batch`, of which nothing is loaded yet.
+    """Open a result of `calm batch`, without loading its data.
 
-    UsageError: it cannot be read.
+    Raises UsageError if the result cannot be read.
     """
     import xarray as xr
 
@@ -31,38 +31,38 @@ def open_result(path: Path) -> Dataset:
 
 @contextmanager
 def readable(path: Path) -> Iterator[None]:
-    """Says what to do where a finished result cannot be read.
+    """Context manager that turns read errors of a finished result into helpful messages.
 
-    UsageError: in place of what the libraries raise, whatever that is.
+    Raises UsageError instead of any exception of the libraries.
     """
     try:
         yield
     except (UsageError, MemoryError):
         raise
-    # damaged files leave the libraries by exceptions of many kinds
+    # libraries raise many kinds of exceptions for damaged files
     except Exception as error:
         reason = str(error).partition("\n")[0] or type(error).__name__
         raise UsageError(
-            f"{path} cannot be read: {reason}; the command that wrote it writes it again"
+            f"{path} cannot be read: {reason}; run the command that wrote it again"
         ) from None
 
 
 def labels_of(dataset: Dataset, name: str) -> tuple[str, ...]:
-    """The labels of a result, such as `clamp_label`; none where it has no such parts."""
+    """Labels in a result, such as `clamp_label`; empty if there are no such parts."""
     return tuple(map(str, dataset[name].values)) if name in dataset else ()
 
 
 def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
-    """Prefix of the variables of a part of the line in a result, and its column.
+    """Find the variables of a part of the line in a result: their prefix, and the column.
 
     Parameters
     ----------
-    label : of a component or a clamp; ``top`` is the first component, whatever else is called so
+    label : label of a component or a clamp; ``top`` always selects the first component
 
     Raises
     ------
     UsageError
-        No part is called so; the message offers the nearest that is.
+        No part has the label; the message suggests the nearest label.
     """
     components, clamps = (labels_of(dataset, f"{kind}_label") for kind in ("component", "clamp"))
     if label == TOP:
@@ -72,13 +72,13 @@ def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
     if label in clamps:
         return "clamp_", clamps.index(label)
     parts = [TOP, *components, *clamps]
-    raise UsageError(unknown(f"no part of the line is called `{label}`", label, parts))
+    raise UsageError(unknown(f"no part of the line has the label `{label}`", label, parts))
 
 
 def status_names(dataset: Dataset) -> tuple[str, ...]:
-    """Return what the numbers of `status` in a result mean; the first is 0.
+    """Names of the numbers in `status` of a result, beginning with 0.
 
-    UsageError: the dataset is no result of `calm batch`.
+    Raises UsageError if the dataset is not a result of `calm batch`.
     """
     attributes = dataset["status"].attrs if "status" in dataset else {}
     names = tuple(str(attributes.get("flag_meanings", "")).split())
@@ -89,9 +89,9 @@ def status_names(dataset: Dataset) -> tuple[str, ...]:
 
 
 def statuses_of(dataset: Dataset) -> dict[str, int]:
-    """Return how many profiles of a result ended with each status that occurs.
+    """Number of profiles of a result with each status that occurs.
 
-    UsageError: the dataset is no result of `calm batch`.
+    Raises UsageError if the dataset is not a result of `calm batch`.
     """
     names = status_names(dataset)
     counts = np.bincount(np.asarray(dataset["status"]), minlength=len(names))

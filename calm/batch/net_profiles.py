@@ -1,8 +1,9 @@
-"""Many current profiles of a net of legs, by the compiled search of `calm.solve.leg_marches`.
+"""Many current profiles of a net of legs, solved by the compiled search of
+`calm.solve.leg_marches`.
 
-Each is sought from where the net is in still water, or where it does not stand there in the current
-of its file. Where that leads to nothing that stands, or the seabed is a grid, the profile is solved
-as `calm run` does.
+The search for each profile starts from the net in still water, or if there is no equilibrium in
+still water, from the net in the current of its file. If this fails, or if the seabed is a grid, the
+profile is solved as in `calm run`.
 """
 
 from collections.abc import Callable
@@ -21,7 +22,7 @@ from calm.batch.solving import sea_of  # by name: what a compiled law calls
 from calm.batch.statuses import OF_PROFILES, STATUSES
 from calm.case.design import Design, Result, result_together
 from calm.case.line_figures import leaning_of
-from calm.case.net import net_legs
+from calm.case.net import net_legs, solve_together
 from calm.case.result_tables import MOORED_ENDS
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
@@ -32,7 +33,7 @@ from calm.physics.line import BETTER, Floats, Water
 from calm.physics.profile import Sea
 from calm.physics.track import head_count
 from calm.records.grids import SeabedGrid
-from calm.solve import expect_many, leg_closing, leg_numbers
+from calm.solve import leg_closing, leg_numbers
 from calm.solve.leg_closing import NetTask, copy_values, do_task, drifts
 from calm.solve.leg_numbers import Marching, NetProblem, above_bed, place_of
 from calm.solve.net import NetSearch, NetSolution
@@ -40,22 +41,22 @@ from calm.solve.problem import CHOSEN, FINE
 from calm.solve.solution import FOUND
 
 ROUGHLY = 1e-6
-"""What may be left of lengths and forces, in shares: a run leaves less, which takes longer."""
+"""Tolerance of lengths and forces, in shares, larger than in a single run to save time."""
 BLOCK = 256
-"""Profiles that a thread takes at a time."""
+"""Number of profiles that a thread takes at a time."""
 TO_SOLVE = 1
-"""How a profile ends that is to be solved alone."""
+"""Outcome of a profile that has to be solved alone."""
 Column = tuple[float, ...]
 
 
 class NetRows(NamedTuple):
-    """Hold what is found of n profiles.
+    """Results of n profiles.
 
     Attributes
     ----------
-    pieces : (n, p, 12) place [m] and force [N] at the upper and at the lower end of each
-    clamps : (n, c, 7) place, sum of the forces above and below, and the greater one
-    shares : (n, l) of the buoyancy of the float at the upper end of each leg
+    pieces : (n, p, 12) position [m] and force [N] at the upper and at the lower end of each piece
+    clamps : (n, c, 7) position, sum of the forces above and below, and the larger of the two forces
+    shares : (n, l) share in use of the buoyancy of the float at the upper end of each leg
     """
 
     pieces: Floats
@@ -63,16 +64,16 @@ class NetRows(NamedTuple):
     shares: Floats
 
 
-class NetPaper(NamedTuple):
-    """Hold what profiles are laid out on, and from where they are sought.
+class NetArrays(NamedTuple):
+    """Work arrays and start of the search for profiles.
 
     Attributes
     ----------
-    on, still : what a profile is laid out on; the water without it
-    start, slopes, scale : the unknowns and slopes of the net there, and what scales them
-    x : room for the unknowns
-    piece, clamp : first of each leg in the rows
-    weight : of the anchor of each leg, inf where it has none [N]
+    on, still : work arrays for a profile; the water without current
+    start, slopes, scale : unknowns and slopes of the net at the start, and their scales
+    x : work array for the unknowns
+    piece, clamp : index of the first piece and clamp of each leg in the rows
+    weight : weight of the anchor of each leg [N]; inf without an anchor
     """
 
     on: solving.ProfileLevels
@@ -90,7 +91,7 @@ def solve_net_rows(
     ask: Callable[[NetTask, float], float],
     net: NetProblem,
     step: float,
-    paper: NetPaper,
+    arrays: NetArrays,
     depth: Floats,
     u: Floats,
     v: Floats,
@@ -98,39 +99,40 @@ def solve_net_rows(
     rows: NetRows,
     endings: Any,
 ) -> None:
-    """Solve profiles; what they lead to goes to their rows.
+    """Solve profiles, and write the results to their rows.
 
     Parameters
     ----------
     step : angle step [rad]
-    depth : (1 or n, k) of the levels [m]
-    u, v, w : (n, k) current [m/s]; NaN where there is none
-    endings : (n,) those not 0 are left alone; then how each ends
+    depth : (1 or n, k) depth of the levels [m]
+    u, v, w : (n, k) current [m/s]; NaN for missing values
+    endings : (n,) outcome of each profile; profiles with a value other than 0 on entry are skipped
     """
     for case in range(endings.size):
         if endings[case] != 0:
             continue
-        endings[case], sea = sea_of(paper.on, depth, u, v, w, case, paper.still)
+        endings[case], sea = sea_of(arrays.on, depth, u, v, w, case, arrays.still)
         if endings[case] != 0:
             continue
-        copy_values(paper.start, paper.x)
-        for k in range(len(paper.x)):
-            copy_values(paper.slopes[k], net.slopes[k])
-        copy_values(paper.scale, net.scale)
+        copy_values(arrays.start, arrays.x)
+        for k in range(len(arrays.x)):
+            copy_values(arrays.slopes[k], net.slopes[k])
+        copy_values(arrays.scale, net.scale)
         how = Marching(sea, 4.0 * step, CHOSEN, False, False, FINE, 0.0)
-        ending = ask(NetTask(leg_closing.CLOSE, net, paper.x, how, leg_closing.NEAR, True), 0.0)
+        ending = ask(NetTask(leg_closing.CLOSE, net, arrays.x, how, leg_closing.NEAR, True), 0.0)
         if ending == FOUND:
             how = Marching(sea, step, CHOSEN, False, False, FINE, 0.0)
-            ending = ask(NetTask(leg_closing.SETTLE, net, paper.x, how, ROUGHLY, True), 0.0)
+            ending = ask(NetTask(leg_closing.SETTLE, net, arrays.x, how, ROUGHLY, True), 0.0)
         endings[case] = TO_SOLVE
-        if ending == FOUND and stands(net, paper):
+        if ending == FOUND and is_valid(net, arrays):
             endings[case] = 0
-            tell_net(net, paper, rows, case)
+            write_net(net, arrays, rows, case)
 
 
-def stands(net: NetProblem, paper: NetPaper) -> bool:
-    """Return whether no leg is out of the water or in the seabed, no anchor is lifted, and
-    something holds the net in its place."""
+def is_valid(net: NetProblem, arrays: NetArrays) -> bool:
+    """Whether a solution is valid: no leg is out of the water or below the seabed, no anchor is
+    lifted, and the net is held horizontally.
+    """
     near = net.errors[leg_closing.DEPTH_ERROR] + 1e-9 * net.length + 1e-6 * net.lines.limits.depth
     for i in range(len(net.legs)):
         leg, state, record = net.legs[i], net.state[i], net.lines.work.records[i][FINE]
@@ -140,17 +142,17 @@ def stands(net: NetProblem, paper: NetPaper) -> bool:
                 return False
             first = net.last[i][net.lines.surfacing[i][0].piece] + 1
         for n in range(count):
-            if n < state[leg_numbers.HUNG] and above_bed(net, i, paper.x, record, n) < -near:
+            if n < state[leg_numbers.HUNG] and above_bed(net, i, arrays.x, record, n) < -near:
                 return False
             if n >= first and record[2][n] > near + leg.highest:
                 return False
-        if record[5][count - 1] > paper.weight[i]:
+        if record[5][count - 1] > arrays.weight[i]:
             return False
     return not drifts(net)
 
 
-def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None:
-    """Write what is found of a profile to its row."""
+def write_net(net: NetProblem, arrays: NetArrays, rows: NetRows, case: int) -> None:
+    """Write the results of a profile to its row."""
     for i in range(len(net.legs)):
         leg, record = net.legs[i], net.lines.work.records[i][FINE]
         count = int(net.state[i][leg_numbers.COUNT])
@@ -159,7 +161,7 @@ def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None
         rows.shares[case, i] = net.state[i][leg_numbers.SHARE]
         own = 1 if leg.own > 1 else 0
         for p in range(own, leg.pieces):
-            row = rows.pieces[case, paper.piece[i] + p - own]
+            row = rows.pieces[case, arrays.piece[i] + p - own]
             for side in range(2):
                 n = net.first[i][p] if side == 0 else net.last[i][p]
                 for k in range(6):
@@ -169,7 +171,7 @@ def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None
         for n in range(1, count):
             if record[7][n] < 0.0:
                 continue
-            row = rows.clamps[case, paper.clamp[i] + int(record[7][n])]
+            row = rows.clamps[case, arrays.clamp[i] + int(record[7][n])]
             row[0], row[1] = record[BETTER][n - 1] + dx, record[BETTER + 1][n - 1] + dy
             row[2] = record[BETTER + 2][n - 1]
             above = below = 0.0
@@ -183,27 +185,27 @@ def tell_net(net: NetProblem, paper: NetPaper, rows: NetRows, case: int) -> None
 
 @dataclass(frozen=True)
 class NetProfiles:
-    """A net made ready for many profiles."""
+    """A net prepared for many profiles."""
 
     net: Design
 
     def water(self, depth: Column, u: Column, v: Column, w: Column) -> Water:
-        """Its water with another current."""
+        """Return the water of the net with another current."""
         environment = replace(self.net.file.environment, current=CurrentTable(depth, u, v, w))
         return self.net.water_of(environment)
 
     @cached_property
     def still(self) -> NetSolution | None:
-        """The net in still water; None where it does not stand there."""
-        expect_many(inf)
+        """The net in still water; None without equilibrium."""
+        settings = replace(self.net.settings, compiled=True)
         try:
-            return self.net.together(self.net.water.still())
+            return solve_together(self.net.legs, self.net.water.still(), settings, None)
         except NoEquilibrium:
             return None
 
     @cached_property
     def at_rest(self) -> Result | None:
-        """Return what is measured of it there; None where a check of it fails."""
+        """Results in still water; None if a check fails."""
         with suppress(NoEquilibrium):
             if self.still is not None:
                 return result_together(self.net, self.still, self.still.legs)
@@ -211,26 +213,27 @@ class NetProfiles:
 
     @cached_property
     def base(self) -> NetSolution | None:
-        """From where profiles are sought: the net in still water, or else in that of its file."""
+        """Start of the search: the net in still water, or else in the current of its file."""
         with suppress(NoEquilibrium):
             return self.still or self.net.standing
         return None
 
     @cached_property
     def slopes(self) -> tuple[Floats, Floats] | None:
-        """Slopes of the net there, and what scales them; None where profiles are to be solved
-        alone."""
+        """Slopes of the net at the start, and their scales; None if profiles must be solved
+        alone.
+        """
         if self.base is None or isinstance(self.net.file.environment.seabed, SeabedGrid):
             return None
         search, step = self.search(), 4.0 * self.net.settings.angle_step
         search.put_in(self.net.water.still() if self.still else self.net.water)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        # unknowns closed already; near them the legs' own scales are taken and the slopes found
+        # the unknowns are closed already; this call computes the scales of the legs and the slopes
         search.do(leg_closing.CLOSE, self.base.unknowns, how, np.inf)
         return np.array(search.net.slopes), np.array(search.net.scale)
 
     def search(self) -> NetSearch:
-        """The search for it, compiled."""
+        """Create the compiled search for the net."""
         settings = replace(self.net.settings, compiled=True)
         nodes = len(nodes_of(self.net.file.legs))
         water = self.water(*[(0.0,)] * 4)
@@ -239,11 +242,12 @@ class NetProfiles:
     def solve(
         self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
     ) -> dict[str, Floats]:
-        """The columns of profiles, by name; how each ends goes to `status` where that is 0.
+        """Solve profiles, and return their columns by name; outcomes are written to `status` if
+        that is 0.
 
         Parameters
         ----------
-        current : depth (1 or n, k) of levels [m], and u, v, w (n, k) there [m/s]
+        current : depth (1 or n, k) of levels [m], and u, v, w (n, k) at these levels [m/s]
         status : (n,) index in `STATUSES`
         """
         count, pieces = len(status), self.net.file.pieces
@@ -257,7 +261,7 @@ class NetProfiles:
                 mine = tuple(np.array(each, np.float64, order="C") for each in own)
                 self._solve_rows(mine, NetRows(*(row[block] for row in rows)), endings[block])
 
-            solve(slice(0, 0))  # compiles where need be
+            solve(slice(0, 0))  # compiles if necessary
             with ThreadPoolExecutor(workers) as pool:
                 list(pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]))
         else:
@@ -272,7 +276,7 @@ class NetProfiles:
         return columns
 
     def _solve_rows(
-        self, current: tuple[Floats, ...], rows: NetRows, endings: NDArray[np.int64]
+        self, current: tuple[Floats, ...], rows: NetRows, endings: NDArray[np.intp]
     ) -> None:
         search, water = self.search(), self.water(*[(0.0,)] * 4)
         assert self.base is not None
@@ -280,7 +284,7 @@ class NetProfiles:
         of_legs = self.net.file.legs
         weights = [leg.anchor_weight if leg.anchored else inf for leg in self.net.legs]
         clamped = [len(piece.clamps) for piece in self.net.file.pieces]
-        paper = NetPaper(
+        arrays = NetArrays(
             on=solving.levels_for(current[0].shape[1], water),
             still=search.sea,
             start=self.base.unknowns,
@@ -293,12 +297,12 @@ class NetProfiles:
         )
         step = float(search.settings.angle_step)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        ask = by_address(do_task, NetTask(leg_closing.CLOSE, search.net, paper.x, how, 0.0, True))
-        given = (ask, search.net, step, paper, *current, rows, endings)
+        ask = by_address(do_task, NetTask(leg_closing.CLOSE, search.net, arrays.x, how, 0.0, True))
+        given = (ask, search.net, step, arrays, *current, rows, endings)
         outcome(solve_net_rows, True, *given)
 
     def _columns(self, rows: NetRows) -> dict[str, Floats]:
-        """The columns that the rows lead to."""
+        """Compute the columns from the rows."""
         file, count = self.net.file, len(rows.shares)
         pieces, clamps, legs = (row.shape[1] for row in rows)
         place, tilt = np.zeros((count, pieces, 3)), np.zeros((count, pieces))
@@ -366,7 +370,7 @@ class NetProfiles:
         self, current: tuple[Floats, ...], case: int, columns: dict[str, Floats],
         status: NDArray[np.int8],
     ) -> None:  # fmt: skip
-        """Solve a profile as `calm run` does."""
+        """Solve a profile as in `calm run`."""
         (depth, u, v, w), still = current, self.still
         read = np.zeros((depth.shape[1], 4))
         levels = depth[case if len(depth) > 1 else 0]

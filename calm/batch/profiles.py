@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import prod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,9 +27,10 @@ from calm.files import Clamp, CurrentTable, Piece
 from calm.files.pieces import clamps_down
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import Floats, Integers, Water
+from calm.records.given import as_file, is_record
 from calm.solve import Status
 from calm.solve.audit import referee_of
-from calm.solve.mooring import MORE_ROOM, AskedSearch, find_asked, search_of
+from calm.solve.mooring import MORE_ROOM, SearchTask, run_search, search_of
 from calm.solve.problem import MANY_ROOM, problem_of
 from calm.solve.solution import FOUND
 
@@ -37,8 +38,11 @@ if TYPE_CHECKING:
     import pandas
     from xarray import Dataset
 
+    from calm.records.given import Given
+    from calm.records.record import Levels
+
 BLOCK = 1024
-"""Profiles that a worker takes at a time."""
+"""Number of profiles that a worker takes at a time."""
 
 _IMPLAUSIBLE = STATUSES.index("implausible-current")
 _ANCHOR_LIFTS = STATUSES.index(Status.ANCHOR_LIFTS.label)
@@ -46,11 +50,11 @@ _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
 class Profiles(Columnar):
-    """A mooring in n profiles: NaN where `status` is not 0.
+    """Results of a mooring in n profiles, with NaN if `status` is not 0.
 
-    Where the profiles came in an array of more dimensions, n stands for all of these. Depths,
-    offsets and knockdown [m], tensions and forces [N], tilt [degrees]; the p components
-    are in the order of the file, the anchor last, the m clamps down the line.
+    If the profiles were given as an array with more dimensions, n stands for all of these. Depths,
+    offsets and knockdown are in m, tensions and forces in N, tilt in degrees; the p components are
+    in the order of the file, with the anchor last, and the m clamps are listed down the line.
 
     Further attributes are the batch columns: those of `Components` have the shape (n, p), those of
     `Clamps`, such as ``clamp_depth``, (n, m), and those of the ends (n,), or (n, l) for the legs of
@@ -58,7 +62,7 @@ class Profiles(Columnar):
 
     Attributes
     ----------
-    component_label, clamp_label : (p,), (m,)
+    component_label, clamp_label : labels (p,) and (m,)
     status : (n,) index in `STATUSES`
     """
 
@@ -68,13 +72,13 @@ class Profiles(Columnar):
 
     @classmethod
     def names(cls) -> list[str]:
-        """Return the names of the columns, in their order."""
+        """Names of the columns, in their order."""
         own = (one.variable for columns in cls.columns().values() for one in columns)
         return ["component_label", "clamp_label", *own, "status"]
 
     @classmethod
     def columns(cls) -> dict[str, list[ResultColumn]]:
-        """The batch columns by dimension: `component`, `clamp`, and none for the ends."""
+        """Batch columns by dimension: `component`, `clamp`, or empty for the ends."""
         return {
             "component": Components.columns(Output.BATCH),
             "clamp": Clamps.columns(Output.BATCH),
@@ -85,7 +89,7 @@ class Profiles(Columnar):
     def made(
         cls, pieces: Sequence[Piece], status: NDArray[np.int8], columns: Mapping[str, Floats]
     ) -> Profiles:
-        """Make the profiles of a line, with labels and derived columns."""
+        """Build the profiles of a line, with labels and derived columns."""
         parts: dict[str, Sequence[Piece | Clamp]] = {
             "component": pieces,
             "clamp": clamps_down(pieces),
@@ -100,14 +104,14 @@ class Profiles(Columnar):
         return cls(**labels, **known, status=status)
 
     def __repr__(self) -> str:
-        """Return how many profiles, components and clamps there are."""
+        """Summary with the numbers of profiles, components and clamps."""
         parts = f"{len(self.component_label)} components, {len(self.clamp_label)} clamps"
         failed = np.count_nonzero(self.status)
         return f"Profiles({self.status.size} profiles, {failed} not solved; {parts})"
 
     def to_xarray(self) -> Dataset:
-        """Return a dataset with labels and units, its dimensions `profile` (or `profile_0`, …),
-        `component`, `clamp` and, of a net, `leg`.
+        """Return a dataset with labels and units; its dimensions are `profile` (or `profile_0`, …),
+        `component`, `clamp` and, for a net, `leg`.
         """
         from xarray import Dataset
 
@@ -127,8 +131,9 @@ class Profiles(Columnar):
         return Dataset(variables, coords=labels)
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Return a data frame with a row a profile and a column for each quantity and label:
-        ``frame["tilt", "adcp"]``; what belongs to no part has the label 0, or that of its leg.
+        """Return a data frame with one row per profile and one column per quantity and label:
+        ``frame["tilt", "adcp"]``; values of the whole line have the label 0, or the label of the
+        leg.
         """
         import pandas
 
@@ -144,50 +149,75 @@ class Profiles(Columnar):
 
 def solve_profiles(
     mooring: Design,
-    u: ArrayLike,
-    v: ArrayLike,
-    depth: ArrayLike,
+    u: ArrayLike | Given,
+    v: ArrayLike | None = None,
+    depth: ArrayLike | None = None,
     w: ArrayLike | None = None,
     *,
     workers: int | None = None,
 ) -> Profiles:
     """Solve a mooring in many current profiles.
 
-    Each profile takes the place of the file's current; density, wind and all else stay. Each is
-    solved for itself: neither order nor company nor `workers` changes a bit of its results. They
-    agree with `calm run` to 1e-4 of the water depth and 2e-4 of the tension.
+    Each profile replaces the current of the file; density, wind and everything else stay the same.
+    Profiles are independent: neither their order, nor other profiles, nor `workers` changes a
+    single bit of their results. The results agree with `calm run` to 1e-4 of the water depth and
+    2e-4 of the tension.
 
     Parameters
     ----------
-    u, v, w : (..., k) current to the east, to the north, upward [m/s]; w is 0 where not given. A
-        level where any is NaN is left out, as is one above the water; between levels everything
-        is linear in depth, beyond them constant.
-    depth : (k,), or shaped as u, of the levels, in any order [m]
-    workers : threads; one for each processor that may be used where not given
+    u, v, w : (..., k) current to the east, to the north, upward [m/s]; w is 0 by default. A
+        level with a NaN is ignored, as is a level above the surface; values are linear between
+        levels, and constant beyond. In place of the arrays, `u` may be a record of currents as
+        `calm batch` reads it: a path, an `xarray.Dataset`, or a `pandas.DataFrame` with the
+        columns of a CSV file. Its profiles are in the order of time.
+    depth : (k,), or the shape of u, depths of the levels, in any order [m]
+    workers : number of threads; by default one per available processor
 
     Raises
     ------
     UsageError
         The design is a tow.
+    InputError
+        The record cannot be read.
     TypeError
-        The current is no numbers.
+        The current is not numeric, or `v` or `depth` is missing.
     ValueError
-        Arrays whose shapes do not fit together; less than one worker.
+        The shapes of the arrays do not match, or there is less than one worker.
     NoEquilibrium
-        Where a piece is to be cut to fit, and no length does.
+        A piece has a fitted length, and no length fits.
     """
-    return Batch(mooring).solve(u, v, depth, w, workers=workers)
+    batch = Batch(mooring)
+    if is_record(u):
+        if any(each is not None for each in (v, depth, w)):
+            raise TypeError("a record holds the whole current; give no v, depth or w beside it")
+        levels, east, north, up = _recorded(mooring, u)
+        return batch.solve(east, north, levels, up, workers=workers)
+    if v is None or depth is None:
+        raise TypeError("u needs v and depth, unless it is a path, a dataset or a table")
+    return batch.solve(cast("ArrayLike", u), v, depth, w, workers=workers)
+
+
+def _recorded(mooring: Design, given: Any) -> Levels:
+    """Depth, u, v, w of all profiles of a record."""
+    from calm.records.current_file import open_record
+    from calm.records.current_terms import Terms
+
+    at = mooring.file.position
+    place = None if at is None else (at.latitude, at.longitude)
+    terms = Terms(float(mooring.water.depth), place)
+    with as_file(given) as path, open_record(path, terms) as record:
+        return record.profiles(0, record.count)
 
 
 @dataclass(frozen=True)
 class Batch:
-    """A mooring or a net made ready for many profiles, which may come in several goes."""
+    """A mooring or a net prepared for many profiles, which may be solved in several calls."""
 
     mooring: Design
 
     @cached_property
     def water(self) -> Water:
-        """The water of the mooring with no current but what the wind drives."""
+        """Water of the mooring, with wind-driven current only."""
         return assemble_water(replace(self.mooring.file.environment, current=_STILL))
 
     @cached_property
@@ -203,7 +233,7 @@ class Batch:
         *,
         workers: int | None = None,
     ) -> Profiles:
-        """As `solve_profiles`."""
+        """Solve profiles (see `solve_profiles`)."""
         if workers is not None and workers < 1:
             raise ValueError(f"{workers} workers: at least one is needed")
         shape, current = _checked(u, v, depth, w)
@@ -235,14 +265,16 @@ class Batch:
             columns = Results(*(array[block] for array in rows))
             self._solve_block(leg, mine, columns, status[block])
 
-        _ = self._starts  # compiles where need be, and by one thread
+        _ = self._starts  # compiles if necessary, in a single thread
         with ThreadPoolExecutor(workers or processors()) as pool:
             for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
                 pass
         return _measured(leg, rows, status)
 
     def _implausible(self, current: tuple[Floats, ...]) -> NDArray[np.bool_]:
-        """(n,) profiles with a level that is faster than any current, or deeper than any sea."""
+        """Whether each profile (n,) has a level that is faster than any current or deeper than any
+        sea.
+        """
         greatest = self.mooring.file.environment.maximum_speed
         depth, u, v, w = current
         return np.asarray(implausible(depth, u, v, w, greatest).any(axis=1))
@@ -250,12 +282,12 @@ class Batch:
     def _solve_block(
         self, leg: Leg, current: tuple[Floats, ...], rows: Results, status: NDArray[np.int8]
     ) -> None:
-        # always copies: what is read-only is of another type
+        # always copies, since read-only arrays have another type in numba
         depth, u, v, w = (np.array(array, np.float64, order="C") for array in current)
         false = self._implausible((depth, u, v, w))
         if false.any():
             u[false] = np.nan
-        endings = np.zeros(len(status), np.int64)
+        endings = np.zeros(len(status), np.intp)
         self._solve_rows(leg, (depth, u, v, w), rows, endings, MANY_ROOM)
         for ending in np.unique(endings).tolist():
             status[endings == ending] = status_of(leg, ending)
@@ -267,7 +299,7 @@ class Batch:
 
     @cached_property
     def _starts(self) -> Floats:
-        """From where every profile of a line is sought."""
+        """Start values of the search for every profile of a line."""
         leg = self.mooring.moored
         line, none = leg.line, np.zeros((0, 1))
         rows = Results(
@@ -276,7 +308,7 @@ class Batch:
             np.zeros((0, len(OF_ENDS))),
         )
         current = np.zeros((1, 1)), none, none, none
-        return self._march(leg, current, rows, np.zeros(0, np.int64), MANY_ROOM, None)
+        return self._march(leg, current, rows, np.zeros(0, np.intp), MANY_ROOM, None)
 
     def _solve_rows(
         self,
@@ -286,7 +318,9 @@ class Batch:
         endings: Integers,
         room: int,
     ) -> None:
-        """Solve profiles, with room for so many segments; with more where that is too little."""
+        """Solve profiles with work arrays for `room` segments, and again with larger arrays if
+        necessary.
+        """
         self._march(leg, current, rows, endings, room, self._starts)
         again = np.flatnonzero(endings == LACKS_ROOM)
         if again.size:
@@ -308,7 +342,7 @@ class Batch:
         room: int,
         starts: Floats | None,
     ) -> Floats:
-        """Solve profiles from known starts, or first find these, and return the starts."""
+        """Solve profiles from known starts, or first compute the starts, and return the starts."""
         line, water = leg.line, self.water
         depth, *parts = current
         on = solving.levels_for(depth.shape[1], water)
@@ -316,25 +350,25 @@ class Batch:
             line, water, leg.settings, compiled=True, rough=True, room=room,
             intervals=len(on.intervals),
         )  # fmt: skip
-        # a profile without current is told apart from the others
+        # a profile without current is detected separately
         problem = problem._replace(limits=problem.limits._replace(at_rest=False))
         search, referee = search_of(problem, True), referee_of(line, water, 0.0, True)
         found: Any = problem.starts
         if starts is not None:
             found[:] = starts
         pieces = leg.file.pieces[:-1]
-        paper = ProfileArrays(
+        arrays = ProfileArrays(
             on=on,
-            may_lie=np.array([one.component.kind == "chain" for one in pieces], np.int64),
+            may_lie=np.array([one.component.kind == "chain" for one in pieces], np.intp),
         )
-        find = by_address(find_asked, AskedSearch(search, referee))
-        given = (find, search, referee, paper, starts is None, depth, *parts, rows, endings)
+        find = by_address(run_search, SearchTask(search, referee))
+        given = (find, search, referee, arrays, starts is None, depth, *parts, rows, endings)
         outcome(solving.solve_rows, True, *given)
         return np.asarray(found)
 
 
 def processors() -> int:
-    """Return how many processors this process may use."""
+    """Number of processors available to this process."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -343,7 +377,9 @@ def processors() -> int:
 def _checked(
     u: ArrayLike, v: ArrayLike, depth: ArrayLike, w: ArrayLike | None
 ) -> tuple[tuple[int, ...], tuple[Floats, Floats, Floats, Floats]]:
-    """The shape of the profiles, and depth, u, v, w, all of two dimensions."""
+    """Check the arrays, and return the shape of the profiles, and depth, u, v, w as two-dimensional
+    arrays.
+    """
     east, north, down = _numbers(u), _numbers(v), _numbers(depth)
     up = np.broadcast_to(np.zeros(()), east.shape) if w is None else _numbers(w)
     if not east.ndim or not east.shape == north.shape == up.shape:
@@ -359,12 +395,12 @@ def _checked(
     shape = east.shape[:-1]
     count = prod(shape)
     flat = [array.reshape(count, levels) for array in (east, north, up)]
-    rows = count if down.shape == east.shape else 1  # one for all of them
+    rows = count if down.shape == east.shape else 1  # a single row of depths for all profiles
     return shape, (down.reshape(rows, levels), flat[0], flat[1], flat[2])
 
 
 def _numbers(values: ArrayLike) -> NDArray[Any]:
-    """As an array; what is masked is a gap."""
+    """Convert to an array, with NaN for masked values."""
     array: NDArray[Any] = np.ma.filled(values, np.nan) if np.ma.isMA(values) else np.asarray(values)
     if array.dtype.kind not in "iuf":
         raise TypeError(f"a current is numbers, not {array.dtype}")
@@ -372,7 +408,7 @@ def _numbers(values: ArrayLike) -> NDArray[Any]:
 
 
 def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
-    """The profiles in the dimensions that they came in."""
+    """Return the profiles in their original dimensions."""
     columns: dict[str, Any] = {
         name: array.reshape(shape + array.shape[1:])
         for name, array in vars(profiles).items()
@@ -382,7 +418,7 @@ def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
 
 
 def _measured(leg: Leg, rows: Results, status: NDArray[np.int8]) -> Profiles:
-    """The results with the anchor, and with the knockdown from the shape in still water."""
+    """Build the profiles with the anchor, and with the knockdown from the shape in still water."""
     pieces, clamps, ends = rows
     above = leg.file.pieces[:-1]
     depth_top = np.full(pieces.shape[-1], np.nan)

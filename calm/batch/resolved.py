@@ -19,13 +19,16 @@ RESOLVED, HASH = "input_resolved", "input_sha256"
 
 _NO_MATTER = frozenset(
     {"path", "line", "column", "checks", "notices", "variants", "description", "current"}
+    | {"doubts", "named"}
     | {"sources", "searched", "prefer", "waves", "seas"}
 )
-"""What of a mooring file changes no figure of its results: every profile has its own current."""
+"""Keys of a mooring file that do not affect the results of a batch; `current` is replaced by the
+profiles.
+"""
 
 
 class InputHash:
-    """Compute the SHA-256 of an input: of its text, then of the measured values."""
+    """SHA-256 of an input: of its text, followed by the measured values."""
 
     def __init__(self, text: str) -> None:
         self._digest = hashlib.sha256(text.encode("utf-8", "surrogateescape"))
@@ -49,8 +52,8 @@ def resolved_input(
 
     Parameters
     ----------
-    time : (n,) of the record
-    options : options of the command that change figures
+    time : (n,) times of the record
+    options : options of the command that change results
     """
     first, last = (str(one.astype("datetime64[s]")) for one in (time[0], time[-1]))
     known = {
@@ -68,7 +71,7 @@ def with_input(text: str) -> Attributes:
 
 
 def _plain(value: Any) -> Any:
-    """A model as mappings, lists, text and numbers; without what is None or does not matter."""
+    """Convert a model to mappings, lists, text and numbers, without None and irrelevant keys."""
     if isinstance(value, BaseModel):
         return _known({name: getattr(value, name) for name in type(value).model_fields})
     if is_dataclass(value):

@@ -17,7 +17,7 @@ from calm.errors import UsageError
 from calm.records.record import Record
 
 BLOCK, BLOCK_OF_NET = 4096, 64
-"""Profiles in a block: one thread solves them in less than a second, usually."""
+"""Number of profiles in a block, which a thread usually solves in less than a second."""
 
 
 def run_batch(
@@ -56,15 +56,16 @@ def run_batch(
         The record has no profile; the result cannot be written; no scheduler answers, or it is
         lost.
     NoEquilibrium
-        A piece is to be cut to fit, and no length does.
+        A piece has a fitted length, and no length fits.
     """
     if record.count == 0:
-        raise UsageError("the record has no profile in the period asked for")
+        raise UsageError("the record has no profile in the requested period")
     length = block or (BLOCK_OF_NET if mooring.several else BLOCK)
     text = resolved_input(mooring, record.time, {})
     whole, found = layout_of(mooring, record), InputHash(text)
     layout = replace(whole, attributes={**whole.attributes, **with_input(text)})
-    of_blocks = replace(whole, attributes={})  # which go to other machines, too
+    # without attributes, since the blocks may go to other machines
+    of_blocks = replace(whole, attributes={})
 
     def tasks() -> Iterator[BlockTask]:
         for start in range(0, record.count, length):

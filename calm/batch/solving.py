@@ -1,7 +1,7 @@
-"""Profiles solved one after another, by the search of `calm.solve`, and what is kept of each.
+"""Solution of successive profiles by the search of `calm.solve`, and their results.
 
-A profile is solved roughly: to a millionth of the depth, and not audited. What its shapes on cuts
-and on halved cuts lead to is extrapolated from both.
+A profile is solved roughly: to a millionth of the depth, and without an audit. The results are
+extrapolated from the shapes on cuts and on halved cuts.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from calm.physics.line import BETTER, NO_ROOM, Floats, Integers, Water
 from calm.physics.passing import FAILURE
 from calm.physics.profile import Interval, Sea, find_bends
 from calm.physics.referee import RefereeShape, find_ends
-from calm.solve.mooring import FIRST_OTHER, HANGING, NODES, SHARE_IN_USE, SOUGHT, AskedSearch
+from calm.solve.mooring import FIRST_OTHER, HANGING, NODES, SHARE_IN_USE, SOUGHT, SearchTask
 from calm.solve.problem import BELOW, FINE, Limits, LineProblem, Search
 from calm.solve.search import Referee
 from calm.solve.solution import FOLDED, FOUND, MARCH_STOPPED, SUPPORTED, TOO_HEAVY, UNSUPPORTED
@@ -29,12 +29,14 @@ OF_ENDS = (
 )  # fmt: skip
 
 NO_CURRENT, LEVELS_COINCIDE, HEAPED, LACKS_ROOM = range(100, 104)
-"""How a profile ends, besides the endings of `calm.solve.solution`: no level with a value, two of
-one depth, a heap on the seabed of what is meant to stand; more segments than there is room for."""
+"""Outcomes of a profile in addition to those of `calm.solve.solution`: no level with a value, two
+levels at one depth, more than chain on the seabed below a sub-surface line, and too many segments
+for the work arrays.
+"""
 
 
 class Results(NamedTuple):
-    """Rows of the profiles: of pieces (n, 6, p), clamps (n, 5, m) and ends (n, 6)."""
+    """Rows of results of the profiles: pieces (n, 6, p), clamps (n, 5, m) and ends (n, 6)."""
 
     pieces: Floats
     clamps: Floats
@@ -42,13 +44,14 @@ class Results(NamedTuple):
 
 
 class ProfileLevels(NamedTuple):
-    """Hold what a profile is laid out on.
+    """Work arrays for the levels of a profile.
 
     Attributes
     ----------
-    read, joined : its levels, and these joined with the others: see `lay_profile`
+    read, joined : levels of the profile, and all levels after the merge: see `lay_profile`
     levels, intervals, bends : as in `Sea`
-    fixed : (f, 4) depth, what is added to u and to v, and density of the levels all profiles get
+    fixed : (f, 4) (f, 4) depth, addition to u and to v, and density of the levels added to all
+        profiles
     """
 
     read: Floats
@@ -60,7 +63,7 @@ class ProfileLevels(NamedTuple):
 
 
 def levels_for(count: int, water: Water) -> ProfileLevels:
-    """Return what profiles of so many levels are laid out on, in the water of a mooring."""
+    """Create work arrays for profiles with `count` levels, in the water of a mooring."""
     most = count + len(water.level)
     intervals: Any = np.zeros(most + 2, record_type(Interval))
     fixed = np.column_stack([water.level, water.u, water.v, water.density])
@@ -75,11 +78,11 @@ def levels_for(count: int, water: Water) -> ProfileLevels:
 
 
 class ProfileArrays(NamedTuple):
-    """Hold what a profile is laid out on, and its shape measured.
+    """Work arrays of a profile and its shape.
 
     Attributes
     ----------
-    may_lie : whether a piece may lie on the seabed below a line that stands under water
+    may_lie : whether a piece of a sub-surface line may lie on the seabed
     """
 
     on: ProfileLevels
@@ -87,10 +90,10 @@ class ProfileArrays(NamedTuple):
 
 
 def solve_rows(
-    find: Callable[[AskedSearch, float], float],
+    find: Callable[[SearchTask, float], float],
     search: Search,
     referee: Referee,
-    paper: ProfileArrays,
+    arrays: ProfileArrays,
     first: bool,
     depth: Floats,
     u: Floats,
@@ -99,43 +102,43 @@ def solve_rows(
     results: Results,
     endings: Integers,
 ) -> None:
-    """Solve profiles; what they lead to goes to their rows of the results.
+    """Solve profiles, and write the results to their rows.
 
     Parameters
     ----------
-    first : whether they are the first of a mooring, whose `starts` are to be filled before
-    depth : (1 or n, k) of the levels [m]
-    u, v, w : (n, k) current [m/s]; NaN where there is none
-    endings : (n,) how each ends
+    first : whether they are the first profiles of a mooring, so that `starts` must be computed
+    depth : (1 or n, k) depth of the levels [m]
+    u, v, w : (n, k) current [m/s]; NaN for missing values
+    endings : (n,) outcome of each profile
     """
     if first:
-        find(AskedSearch(search, referee), 1.0)
+        find(SearchTask(search, referee), 1.0)
     for case in range(endings.size):
-        endings[case], sea = sea_of(paper.on, depth, u, v, w, case, search.problem.sea)
+        endings[case], sea = sea_of(arrays.on, depth, u, v, w, case, search.problem.sea)
         if endings[case] != FOUND:
             continue
-        problem = in_current(search.problem, paper.on, sea)
+        problem = in_current(search.problem, arrays.on, sea)
         ending = refused_at_once(problem.limits)
         if ending == FOUND:
-            ending = int(find(AskedSearch(Search(search.miss, problem), referee), 0.0))
+            ending = int(find(SearchTask(Search(search.miss, problem), referee), 0.0))
             if ending == MARCH_STOPPED and problem.work.left[FAILURE] == NO_ROOM:
                 ending = LACKS_ROOM
         endings[case] = ending
         if ending == FOUND:
-            if is_heap(problem, paper):
+            if is_heap(problem, arrays):
                 endings[case] = HEAPED
-            measure(problem, referee, paper, results, case)
+            measure(problem, referee, arrays, results, case)
 
 
 def sea_of(
     on: ProfileLevels, depth: Floats, u: Floats, v: Floats, w: Floats, case: int, still: Sea
 ) -> tuple[int, Sea]:
-    """Lay out the water of a profile: FOUND, or NO_CURRENT or LEVELS_COINCIDE; and the water.
+    """Build the water of a profile; the outcome is FOUND, NO_CURRENT or LEVELS_COINCIDE.
 
     Parameters
     ----------
-    depth, u, v, w : as of `solve_rows`; `case` is the row
-    still : of the same gravity and viscosity
+    depth, u, v, w : as in `solve_rows`; `case` is the row
+    still : water with the same gravity and viscosity
     """
     at = depth[case if depth.shape[0] > 1 else 0]
     found, ending, total = read_profile(at, u[case], v[case], w[case], on.read), FOUND, 0
@@ -151,7 +154,7 @@ def sea_of(
 
 
 def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem:
-    """Return the same problem in the water of the profile that was laid out last."""
+    """Return the problem in the water of the last profile."""
     given = problem.limits
     moving = False
     for k in range(len(sea.intervals) - 1):
@@ -169,35 +172,35 @@ def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem
 
 
 def refused_at_once(limits: Limits) -> int:
-    """Return how a line ends that need not be sought; FOUND where it is to be sought."""
+    """Outcome of a line that is rejected without a search; FOUND if a search is needed."""
     refused = limits.refused_at_rest if limits.at_rest else limits.refused
     if refused == SUPPORTED:
         return FOUND
     return UNSUPPORTED if refused == TOO_HEAVY else FOLDED
 
 
-def is_heap(problem: LineProblem, paper: ProfileArrays) -> bool:
-    """Return whether more of a line that stands under water lies on the seabed than may."""
-    told, record = problem.work.found, problem.work.records[FINE]
-    if told[SOUGHT] != BELOW:
+def is_heap(problem: LineProblem, arrays: ProfileArrays) -> bool:
+    """Whether a sub-surface line has a piece on the seabed that may not lie there."""
+    found, record = problem.work.found, problem.work.records[FINE]
+    if found[SOUGHT] != BELOW:
         return False
     heap = False
-    for n in range(int(told[HANGING]) + 1, int(told[NODES])):
-        heap |= paper.may_lie[int(record[6][n])] == 0
+    for n in range(int(found[HANGING]) + 1, int(found[NODES])):
+        heap |= arrays.may_lie[int(record[6][n])] == 0
     return heap
 
 
 def tilt_of(x: float, y: float, z: float) -> float:
-    """Angle of a vector from the vertical [degrees]; 0 for none."""
+    """Angle of a vector from the vertical [degrees], 0 for a zero vector."""
     return atan2(sqrt(x * x + y * y), z) * 180.0 / pi
 
 
 def measure(
-    problem: LineProblem, referee: Referee, paper: ProfileArrays, results: Results, case: int
+    problem: LineProblem, referee: Referee, arrays: ProfileArrays, results: Results, case: int
 ) -> None:
-    """Write what the shape of a profile leads to in its row."""
-    told, record = problem.work.found, problem.work.records[FINE]
-    nodes = int(told[NODES])
+    """Write the results of a profile's shape to its row."""
+    found, record = problem.work.found, problem.work.records[FINE]
+    nodes = int(found[NODES])
     find_ends(RefereeShape(record, nodes, nodes - 1, referee.first, referee.last))
     pieces, _, ends = results
     head = referee.moored.head
@@ -217,7 +220,7 @@ def measure(
             ends[case, 4] = -k
     ends[case, 0] = pieces[case, DEPTH, 0]
     ends[case, 3] = used_buoyancy(problem)
-    ends[case, 5] = told[FIRST_OTHER + 2] if told[FIRST_OTHER] >= 0.0 else nan
+    ends[case, 5] = found[FIRST_OTHER + 2] if found[FIRST_OTHER] >= 0.0 else nan
     if head > 1:
         lean_of_head(problem, referee, results, case, head)
     measure_clamps(problem, results, case)
@@ -226,7 +229,7 @@ def measure(
 def lean_of_head(
     problem: LineProblem, referee: Referee, results: Results, case: int, head: int
 ) -> None:
-    """Give all pieces of a head, which is one rod, its tilt."""
+    """Set the tilt of all pieces of a head, which form one rod."""
     fine = problem.work.records[FINE]
     end = referee.last[head - 1]
     dx, dy, dz = fine[0][0] - fine[0][end], fine[1][0] - fine[1][end], fine[2][0] - fine[2][end]
@@ -237,7 +240,7 @@ def lean_of_head(
 
 
 def node_of(record: Any, nodes: int, n: int) -> tuple[float, float, float, float, float, float]:
-    """Extrapolated place [m], from the line's end, and force [N] at a node."""
+    """Extrapolated position relative to the line's end [m], and force [N] at a node."""
     x, y, z = record[BETTER], record[BETTER + 1], record[BETTER + 2]
     fx, fy, fz = record[BETTER + 3], record[BETTER + 4], record[BETTER + 5]
     end = nodes - 1
@@ -245,7 +248,7 @@ def node_of(record: Any, nodes: int, n: int) -> tuple[float, float, float, float
 
 
 def measure_clamps(problem: LineProblem, results: Results, case: int) -> None:
-    """Write what the shape leads to at the clamps, down the line."""
+    """Write the results at the clamps, down the line."""
     record = problem.work.records[FINE]
     nodes, row = int(problem.work.found[NODES]), 0
     for n in range(1, nodes):
@@ -267,13 +270,13 @@ def measure_clamps(problem: LineProblem, results: Results, case: int) -> None:
 
 def used_buoyancy(problem: LineProblem) -> float:
     """Share in use of the buoyancy of the floats at the surface."""
-    told = problem.work.found
-    sought = int(told[SOUGHT])
+    found = problem.work.found
+    sought = int(found[SOUGHT])
     if sought == BELOW:
         return 1.0
     total = used = 0.0
     for k in range(sought + 1):
-        share = told[SHARE_IN_USE] if k == sought else problem.work.shares[0][k]
+        share = found[SHARE_IN_USE] if k == sought else problem.work.shares[0][k]
         lift = problem.surfacing[k].surface_lift
         total += lift
         used += share * lift
@@ -281,7 +284,9 @@ def used_buoyancy(problem: LineProblem) -> float:
 
 
 def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -> int:
-    """The levels at or below the surface that have a value, sorted; how many, -1 if two are one."""
+    """Copy the valid levels at or below the surface, sorted; return their number, or -1 if two
+    coincide.
+    """
     count = 0
     for j in range(depth.size):
         if not (isfinite(u[j]) and isfinite(v[j]) and isfinite(w[j]) and depth[j] >= 0.0):
@@ -302,7 +307,7 @@ def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -
 
 
 def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
-    """Column of a table at a depth, of which the first level below it is the k-th."""
+    """Column of a table at a depth, for which the first deeper level is k."""
     if k == 0:
         return float(table[0, c])
     if k == count:
@@ -314,17 +319,17 @@ def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
 def lay_profile(
     read: Floats, count: int, fixed: Floats, levels: Any, intervals: Any, joined: Floats
 ) -> int:
-    """Join a profile with the fixed levels, and lay out levels and intervals as in `Sea`.
+    """Merge a profile with the fixed levels, and write levels and intervals as in `Sea`.
 
     Parameters
     ----------
-    read : depth, u, v, w of its levels
-    fixed : (f, 4) depth, what is added to u and to v, density
-    joined : filled with depth, u, v, w, density of the levels of both
+    read : depth, u, v, w of the profile's levels
+    fixed : (f, 4) depth, addition to u and to v, density
+    joined : filled with depth, u, v, w, density of the merged levels
 
     Returns
     -------
-    How many levels both have.
+    Number of merged levels.
     """
     total = i = j = 0
     given = fixed.shape[0]
@@ -335,11 +340,11 @@ def lay_profile(
             i += 1
         if j < given and fixed[j, 0] == depth:
             j += 1
-        # at a level itself the upper of its intervals holds it to rounding
+        # at a level itself, the interval above reproduces the value to rounding
         k = i - 1 if i > 0 and read[i - 1, 0] == depth else i
         f = j - 1 if j > 0 and fixed[j - 1, 0] == depth else j
         joined[total, 0] = depth
-        for c in range(1, 4):  # no current is in the air
+        for c in range(1, 4):  # there is no current in the air
             joined[total, c] = value_at(read, count, k, depth, c) if depth >= 0.0 else 0.0
         joined[total, 1] += value_at(fixed, given, f, depth, 1)
         joined[total, 2] += value_at(fixed, given, f, depth, 2)
@@ -363,7 +368,7 @@ def lay_profile(
 
 
 def value_at(table: Floats, count: int, k: int, depth: float, c: int) -> float:
-    """As `between`; at the k-th level itself, what stands there."""
+    """Column of a table at a depth (see `between`), exact at the k-th level."""
     if k < count and table[k, 0] == depth:
         return float(table[k, c])
     return between(table, count, k, depth, c)

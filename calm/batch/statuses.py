@@ -1,4 +1,4 @@
-"""Endings of the profiles of a batch, and what each means for what is counted of them."""
+"""Endings of the profiles of a batch, and their use in statistics."""
 
 from collections.abc import Mapping
 from enum import Enum
@@ -16,7 +16,7 @@ from calm.solve.finish import STATUS_OF
 
 
 class Ending(Enum):
-    """Name what a status comes to."""
+    """Category of a status in statistics."""
 
     SOLVED = "solved"
     NO_EQUILIBRIUM = "without equilibrium"
@@ -26,11 +26,12 @@ class Ending(Enum):
 
 STATUSES = (*(status.label for status in Status), "no-current", "levels-coincide",
             "implausible-current")  # fmt: skip
-"""What the numbers of a `status` mean; the first is 0."""
+"""Names of the numbers in `status`, beginning with 0."""
 
 IN_WEAK_CURRENT = frozenset({Status.SLACK.label, Status.ABOVE_SURFACE.label})
-"""Statuses of a line that the current is too weak to pull tight or to keep in the water: the
-extremes of its response are not among these profiles. They may be among those of the others."""
+"""Statuses of a line that the current is too weak to pull tight or to keep in the water. Such
+profiles do not contain the extremes of the response; profiles with other failures may.
+"""
 
 _ENDINGS = {
     Status.CONVERGED.label: Ending.SOLVED,
@@ -42,23 +43,23 @@ _ENDINGS = {
 
 
 OF_PROFILES = {NO_CURRENT: "no-current", LEVELS_COINCIDE: "levels-coincide"}
-"""The status of a profile that is none, by how it ends."""
+"""Status of a profile without a current, by its outcome."""
 
 
 def status_of(leg: Leg, ending: int) -> int:
-    """The index in `STATUSES` of how the solver ended with a profile of a mooring."""
+    """Index in `STATUSES` of the solver's outcome for a profile of a mooring."""
     if ending == HEAPED:
         return STATUSES.index(leg.heaped("a piece").status)
     return STATUSES.index(OF_PROFILES.get(ending) or STATUS_OF[ending].label)
 
 
 def ending_of(status: str) -> Ending:
-    """Return what a status of `STATUSES` comes to."""
+    """Category of a status of `STATUSES`."""
     return _ENDINGS.get(status, Ending.NO_EQUILIBRIUM)
 
 
 def endings(counts: Mapping[str, int]) -> dict[Ending, int]:
-    """Profiles by how they ended, from their counts by status; 0 where none did."""
+    """Number of profiles in each category, from their numbers by status; 0 for empty categories."""
     ended = dict.fromkeys(Ending, 0)
     for status, count in counts.items():
         ended[ending_of(status)] += count
@@ -71,10 +72,10 @@ _AT_ONCE = 8192
 def implausible(
     depth: Floats, u: Floats, v: Floats, w: Floats | None, maximum_speed: float
 ) -> NDArray[np.bool_]:
-    """Return which levels (n, k) are faster than `maximum_speed` [m/s], or deeper than any sea.
+    """Whether each level (n, k) is faster than `maximum_speed` [m/s], or deeper than any sea.
 
-    An infinite speed is faster. Levels above the surface and those without a value drop out
-    first, and are none of them.
+    An infinite speed counts as too fast. Levels above the surface and levels without a value are
+    ignored.
     """
     with np.errstate(invalid="ignore", over="ignore"):
         squared = u * u + v * v + (0.0 if w is None else w * w)
@@ -84,9 +85,9 @@ def implausible(
 
 
 def first_implausible(record: Record, maximum_speed: float) -> str:
-    """The first time, level and value of a record that is implausible, in words.
+    """Describe the first implausible time, level and value of a record.
 
-    InputError: the file is damaged.
+    Raises InputError if the file is damaged.
     """
     for start in range(0, record.count, _AT_ONCE):
         depth, u, v, w = record.profiles(start, min(start + _AT_ONCE, record.count))

@@ -1,4 +1,4 @@
-"""The one path from a file to a result: read, assemble, solve, check. Every command takes it."""
+"""Reading, assembling, solving and checking of a file, as every command does."""
 
 from calm.case.design import Design as Design
 from calm.case.design import Result as Result

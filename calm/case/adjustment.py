@@ -1,7 +1,7 @@
 """Changes that may size a mooring: ``LABEL.buoyancy``, ``.length`` or ``.count``.
 
-A change is made in the models of the file, as if it had been written there; everything else follows
-from them.
+A change is made in the models of the file, as if the file contained the new value; all derived
+values follow.
 """
 
 from collections.abc import Callable
@@ -18,11 +18,11 @@ from calm.units import DIMENSIONS, QuantityError, parse_quantity, with_unit
 MOST_BUOYANCY = 100.0
 """Largest factor on the buoyancy of a float, unless a range is given."""
 MOST_LENGTH = 2.0
-"""Greatest length of a piece in water depths, unless a range is given."""
+"""Largest length of a piece in water depths, unless a range is given."""
 LEAST_LENGTH = 0.01
-"""Least length of a cable or chain [m]."""
+"""Smallest length of a cable or chain [m]."""
 MOST_COUNT = 1000
-"""Greatest count of a component, unless a range is given."""
+"""Largest count of a component, unless a range is given."""
 
 Parts = tuple[Piece | Clamp, ...]
 
@@ -33,16 +33,16 @@ class Adjustment:
 
     Attributes
     ----------
-    text : as it was written, e.g. ``top float.buoyancy``
+    text : the text that names it, e.g. ``top float.buoyancy``
     file : the mooring before the change
-    parts : those that change together, before the change
-    dimension : of the number, a key of `calm.units.DIMENSIONS`
+    parts : parts that change together, before the change
+    dimension : dimension of the number, a key of `calm.units.DIMENSIONS`
     now : the number before the change
-    range : least and greatest value where none is given
-    to : returns the mooring with another number
-    bounded : no range may begin below that
-    whole : it is a whole number
-    note : what to keep in mind with it
+    range : default smallest and largest value
+    to : function that returns the mooring with another number
+    bounded : whether a range may not begin below that of `range`
+    whole : whether it is a whole number
+    note : remark for the user
     """
 
     text: str
@@ -68,14 +68,14 @@ class Adjustment:
 
 
 def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
-    """Net force in water of a rigid piece or clamped instrument [N], or of a cable [N/m]."""
+    """Change the net buoyancy of a rigid piece or clamped instrument [N], or of a cable [N/m]."""
     component = parts[0].component
     for each in (part.component for part in parts):
         if isinstance(each, Chain | Anchor):
             article = "an anchor" if isinstance(each, Anchor) else f"a {each.kind}"
             raise LookupError(f"{article} has a weight and no buoyancy to change")
     if any(part.component != component for part in parts):
-        raise LookupError("these parts differ; name one")
+        raise LookupError("these parts differ; select one")
     now = component.net_buoyancy
     most = MOST_BUOYANCY * now
     if most < 0.0 and component.mass is not None:
@@ -84,7 +84,7 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
     places = {part.place for part in parts}
 
     def to(value: float) -> MooringFile:
-        # what else the net force could follow from goes, as in an override on the line
+        # remove other keys from which the net buoyancy could follow, as in an override on the line
         gone = "weight" if cable else "volume"
         lifted = component.model_copy(update={"buoyancy": value, gone: None})
 
@@ -104,21 +104,23 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
         range=(min(most, 0.0), max(most, 0.0)),
         to=to,
         bounded=False,
-        note="Only the net force in water changes; size, drag and mass do not. A real part "
-        "with this buoyancy has a different drag: put it in the file and run that.",
+        note="Only the net buoyancy changes; size, drag and mass do not. A real part with this "
+        "buoyancy has a different drag: put it in the file and solve the mooring again.",
     )
 
 
 def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
-    """Unstretched length of a cable or chain [m]; its clamps stay where they are from its top."""
+    """Change the unstretched length of a cable or chain [m]; clamps keep their distances from its
+    top.
+    """
     pieces = [part for part in parts if isinstance(part, Piece)]
     if len(pieces) < len(parts) or not isinstance(pieces[0].component, Flexible):
         raise LookupError("only cables and chains are cut to length")
     now, depth = pieces[0].length, file.environment.depth
     if now is None or any(piece.length is None for piece in pieces):
-        raise LookupError("it is cut to fit (`length: fit`); give it a length in the file first")
+        raise LookupError("its length is fitted (`length: fit`); set a length in the file first")
     _refuse_several_items(pieces)
-    assert depth is not None  # a mooring stands on the seabed
+    assert depth is not None  # a mooring has a seabed
     places = {piece.place for piece in pieces}
     lowest = max((clamp.at for piece in pieces for clamp in piece.clamps), default=0.0)
 
@@ -131,7 +133,7 @@ def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
 
 
 def _count(text: str, file: MooringFile, parts: Parts) -> Adjustment:
-    """Return how many times a component stands in line, with its own clamps each time."""
+    """Change the number of copies of a component in line, each with its own clamps."""
     pieces = [part for part in parts if isinstance(part, Piece)]
     if len(pieces) < len(parts):
         raise LookupError("clamped instruments are not counted; only pieces in line are")
@@ -143,8 +145,8 @@ def _count(text: str, file: MooringFile, parts: Parts) -> Adjustment:
     if any((each.use, each.component) != (one.use, one.component) for each in item):
         raise LookupError("it is part of an assembly, which is counted as a whole")
     if any(each.length is None for each in item):
-        raise LookupError("it is cut to fit (`length: fit`), which only one piece can be")
-    if len(item) > 1:  # labels of several are numbered
+        raise LookupError("its length is fitted (`length: fit`), which allows only one piece")
+    if len(item) > 1:  # labels of several copies are numbered
         one = one.with_clamps(
             lambda clamp: replace(clamp, label=clamp.label.rpartition(" ")[0]),
             label=one.label.rpartition(" ")[0],
@@ -170,18 +172,18 @@ _FIELDS = {"buoyancy": _buoyancy, "length": _length, "count": _count}
 
 
 def parse_change(text: str, file: MooringFile) -> Adjustment:
-    """Read what is to be changed, e.g. ``top float.buoyancy``.
+    """Parse the name of a value to change, e.g. ``top float.buoyancy``.
 
     Parameters
     ----------
-    text : the label of a part of the line, or of several without their numbers; a point;
-        ``buoyancy``, ``length`` or ``count``
-    file : the mooring, in which the label is looked up
+    text : the label of a part of the line, or the common label of several without their numbers; a
+        point; ``buoyancy``, ``length`` or ``count``
+    file : the mooring in which the label is looked up
 
     Raises
     ------
     UsageError
-        With a caret under what is wrong, and the nearest right thing.
+        The text is invalid; the message points to the mistake and suggests a correction.
     """
     text = " ".join(text.split())
     name, point, field = text.rpartition(".")
@@ -196,14 +198,14 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
 
 def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[float, float]:
-    """The range of a change: as given, each end with its unit, or that of the adjustment.
+    """Parse the range of a change, each end with its unit; by default the range of the adjustment.
 
-    UsageError: an end is no such quantity, or they are in the wrong order.
+    Raises UsageError if an end has a wrong dimension, or the ends are in the wrong order.
     """
     if texts is None:
         low, high = change.range
         if low == high:
-            raise UsageError(f"{change.text} is 0; give its range with --between")
+            raise UsageError(f"{change.text} is 0; set its range with --between")
         return low, high
     ends = []
     for text in texts:

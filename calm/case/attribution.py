@@ -1,17 +1,17 @@
 """Shares of each drag in a mooring's shape.
 
-Let y(λ₁ … λ_p) be what is to be explained, such as the knockdown, of the line whose drag i is λ_i
-times what it is. The share of drag i is that of Aumann and Shapley,
+Let y(λ₁ … λ_p) be the quantity to explain, such as the knockdown, of the line with drag i
+multiplied by λ_i. The share of drag i is that of Aumann and Shapley,
 
     share_i = ∫₀¹ ∂y/∂λ_i (s, …, s) ds
 
-All drags grow together from nothing to their full size, and at every stage each is charged with
-what its own growth adds. The shares add up to y(1 … 1) − y(0 … 0). No other rule does that, is
-blind to how the line is divided into components and charges nothing to a drag that moves nothing
-(Billera & Heath, Mathematics of Operations Research 7, 1982). Taking one component away and looking
-at the difference is no such rule: the differences do not add up, since drags act on each other.
+All drags increase together from zero to full size, and at every stage each is attributed the change
+that its own increase causes. The shares add up to y(1 … 1) − y(0 … 0). This is the only rule with
+this property that is independent of the division of the line into components, and attributes zero
+to a drag without effect (Billera & Heath, Mathematics of Operations Research 7, 1982). Removing one
+component at a time does not work: the differences do not add up, since drags interact.
 
-With drags that follow the square of the speed the stage s = t² is the mooring in t times its
+If drags are proportional to the square of the speed, the stage s = t² is the mooring in t times its
 current.
 """
 
@@ -30,37 +30,45 @@ from calm.solve.mooring import Nearby
 from calm.solve.net import NearbyNet
 
 STAGES = (4, 8)
-"""Gauss points in t: the second number where the first misses the whole by `FAIR`."""
-FAIR = 0.01
+"""Numbers of Gauss points in t; the second is used if the first has an error above
+`LARGEST_MISS`.
+"""
+LARGEST_MISS = 0.01
 LEAST_DRAG = 1e-3
-"""Share of the drag from which the shares count where the line has no unique shape without drag."""
+"""Share of the drag at which the shares begin, for a line whose shape is not unique without
+drag.
+"""
 
 _STEP = 2e-4
-"""Growth of a drag for its derivative: large against the tolerance, small against its own use."""
+"""Relative increase of a drag for its derivative, large against the tolerance of the solver."""
 SETTINGS = Settings(angle_step=radians(4.0), tolerance=1e-10)
-"""Coarse, since the shares are scaled to the whole in the end."""
+"""Coarse settings, since the shares are scaled to the total in the end."""
 
 
 SolverPart = tuple[int, int, int]
-"""Number of a leg, 0 of a single line; index of a piece of it, and of a clamp, or -1 for none."""
+"""Number of a leg (0 for a single line), index of a piece in the leg, and index of a clamp or
+-1.
+"""
 
 Varied = Callable[[int, Line], Floats]
-"""What is seen (3,), in the columns of `Attribution`, where a leg of a number has another line."""
+"""Function that returns the values (3,) of `Attribution` if the leg with a given number has another
+line.
+"""
 
 
 @dataclass(frozen=True)
 class Attribution:
-    """The shares of p drags, each of a piece or of an instrument clamped on it.
+    """Shares of p drags, each on a piece or on a clamped instrument.
 
-    The columns of `start` and `shares` are the depth and excursion of a point of the line [m] and
-    the share in use of the buoyancy at the surface.
+    The columns of `start` and `shares` are depth and excursion of a point of the line [m], and the
+    share in use of the buoyancy at the surface.
 
     Attributes
     ----------
-    parts : p of them
-    start : (3,) without drag, or with the least of it
-    shares : (p, 3) what each drag adds to it; the sums are the whole growth
-    miss : (3,) error of the sums before they were scaled, as a share of the whole growth
+    parts : the p parts
+    start : (3,) values without drag, or with the smallest drag
+    shares : (p, 3) contribution of each drag; the sums are the total change
+    miss : (3,) error of the sums before they were scaled, as a share of the total change
     """
 
     parts: list[SolverPart]
@@ -75,20 +83,20 @@ def attribute(
     start: Floats | None,
     whole: Floats,
 ) -> Attribution:
-    """Share out a point's depth and excursion, and the buoyancy in use, among the drags.
+    """Attribute a point's depth and excursion, and the buoyancy in use, to the drags.
 
     Parameters
     ----------
-    lines : of the legs; a single line is one
-    near : what is seen of the point with such lines, solved by `SETTINGS`
-    start : (3,) the values without drag, in the columns of `Attribution`; None where the line has
-        no unique shape then, and the shares are to count from `LEAST_DRAG`
-    whole : (3,) the values with all the drag
+    lines : lines of the legs, or a single line
+    near : function that observes the point for such lines, solved with `SETTINGS`
+    start : (3,) the values without drag, in the columns of `Attribution`; None if the line has
+        no unique shape then, and the shares begin at `LEAST_DRAG`
+    whole : (3,) the values with full drag
 
     Raises
     ------
     NoEquilibrium
-        The line has no equilibrium at one of the stages.
+        The line has no equilibrium at a stage.
     """
     parts = [(leg, *part) for leg, line in enumerate(lines) for part in _parts_with_drag(line)]
     least = 0.0
@@ -102,14 +110,16 @@ def attribute(
         total = shares.sum(axis=0)
         grows = np.abs(growth) > 1e-9 * np.maximum(np.abs(whole), 1.0)
         miss = np.where(grows, total / np.where(grows, growth, 1.0) - 1.0, 0.0)
-        if np.abs(miss).max() <= FAIR:
+        if np.abs(miss).max() <= LARGEST_MISS:
             break
     scaled = shares * np.where(grows & (total != 0.0), growth / np.where(total, total, 1.0), 0.0)
     return Attribution(parts=parts, start=start, shares=scaled, miss=miss)
 
 
 def with_drag(line: Line, pieces: float | Floats, clamps: float | Floats | None = None) -> Line:
-    """Return the same line with its drags multiplied, of clamps as of pieces unless given."""
+    """Return the line with multiplied drags; the clamps have the same factor unless another is
+    given.
+    """
     return replace(
         line,
         normal_drag=pieces * line.normal_drag,
@@ -119,7 +129,7 @@ def with_drag(line: Line, pieces: float | Floats, clamps: float | Floats | None 
 
 
 def _parts_with_drag(line: Line) -> list[tuple[int, int]]:
-    """Parts that have drag, down the line, the clamps of a piece after it."""
+    """Parts with drag, down the line, each piece followed by its clamps."""
     pieces = np.flatnonzero((line.normal_drag > 0.0) | (line.tangential_drag > 0.0))
     clamps = np.flatnonzero(line.clamp_drag > 0.0)
     parts = [(int(p), -1) for p in pieces] + [(int(line.clamp_piece[m]), int(m)) for m in clamps]
@@ -159,7 +169,7 @@ def _integral(
 
 
 def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
-    """Return what is seen of a point of a single line: the top of a piece, or a clamp."""
+    """Observe a point of a single line: the top of a piece, or a clamp."""
 
     def near(lines: Sequence[Line]) -> Varied:
         nearby = Nearby(lines[0], water, SETTINGS)
@@ -170,7 +180,7 @@ def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Var
 
 
 def of_a_net(net: Design, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
-    """The same of a point of a net."""
+    """Observe a point of a net: the top of a piece, or a clamp."""
 
     def near(lines: Sequence[Line]) -> Varied:
         legs, nodes = net_legs(net.with_lines(lines).legs), len(nodes_of(net.file.legs))

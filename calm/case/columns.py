@@ -38,7 +38,7 @@ class Output(Flag):
     BUILDER = auto()
 
 
-NOWHERE = Output(0)
+NO_OUTPUT = Output(0)
 FILES = Output.JSON | Output.CSV | Output.NETCDF
 LINE_TABLES = Output.MOORING_TABLE | Output.TOW_TABLE | Output.NET_TABLE
 _LAST = 1000
@@ -72,7 +72,7 @@ class ResultColumn:
     name: str
     quantity: Quantity | None
     description: str
-    outputs: Output = NOWHERE
+    outputs: Output = NO_OUTPUT
     prefix: str = ""
     of_part: Callable[[Any], Any] | None = None
     found: Callable[[Any], Any] | None = None
@@ -95,7 +95,7 @@ class ResultColumn:
 
     @property
     def unit(self) -> str:
-        """SI unit, or degrees; empty for text and pure numbers."""
+        """SI unit, or degrees. Text and pure numbers have an empty unit."""
         return "" if self.quantity is None else self.quantity.unit
 
     @property
@@ -117,7 +117,7 @@ class ResultColumn:
 
 def column(
     description: str,
-    outputs: Output = NOWHERE,
+    outputs: Output = NO_OUTPUT,
     *,
     title: str = "",
     unit: str | None = None,
@@ -131,10 +131,11 @@ def column(
     Parameters
     ----------
     description, outputs, more : attributes of the `ResultColumn`
-    title, unit, decimals : of the quantity. By default it is the entry of `QUANTITIES` with the
-        name of the field, of which `title` may replace the heading; a field without is text.
+    title, unit, decimals : title, unit and digits of the quantity. By default it is the entry of
+        `QUANTITIES` with the name of the field, of which `title` may replace the heading; a field
+        without is text.
     in_repr : whether the `repr` of a row includes the field
-    default : of the field
+    default : default value of the field
     """
 
     def named(name: str, prefix: str) -> ResultColumn:

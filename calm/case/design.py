@@ -18,7 +18,7 @@ import numpy as np
 
 from calm.assemble import assemble_water
 from calm.case.leg import Leg
-from calm.case.leg_result import LegResult, leg_result_of
+from calm.case.leg_result import LegResult
 from calm.case.memory import Forgetful, Memory
 from calm.case.parts import Origin, OtherEnvironment
 from calm.case.profilers import ProfilerTravel, profilers_of
@@ -37,8 +37,7 @@ from calm.case.result_tables import (
     documents,
 )
 from calm.case.strumming import Strumming, StrummingBand
-from calm.case.warnings import warnings_of
-from calm.errors import InputError, NoEquilibrium, Problem, UsageError
+from calm.errors import InputError, NoEquilibrium, Problem, UsageError, how_to_install
 from calm.files import MooringFile, Piece
 from calm.files.environment import Environment
 from calm.files.legs import FileLeg, nodes_of
@@ -66,11 +65,18 @@ _SKIN = 1e-3  # m above the surface, in which water turns into air
 
 @dataclass(frozen=True)
 class Design:
-    """A mooring, a tow or a net of legs.
+    """A mooring, a tow or a net of legs, as `calm.load` reads it from a file.
+
+    `solve` finds its equilibrium, `with_` gives a design with other values, and `environment` and
+    `legs` show what was read. A design is never changed::
+
+        design = calm.load("mooring.yaml")
+        longer = design.with_("wire 1", length="480 m")
+        print(longer.solve(environment="storm").top.knockdown)
 
     Attributes
     ----------
-    file : the file of the design
+    file : contents of the file, in SI units
     for_surface, memory : see `Leg`
     lines, given_water : replacements for the lines and the water of the file
     near : an equilibrium near which the search for that of several legs begins
@@ -98,7 +104,7 @@ class Design:
     def legs(self) -> tuple[Leg, ...]:
         """The legs in the order of the file."""
         keys = legs_of(self.file)
-        # each of several legs has the water depth at its own anchor
+        # each leg of a net has the water depth at its own anchor
         water = None if self.several else self.given_water
         return tuple(
             Leg(self.file.leg_alone(each), self.for_surface, self.memory, line, water)
@@ -153,7 +159,7 @@ class Design:
         """Water of an environment, with still air above the surface if a leg is held there."""
         if not self.several:
             return assemble_water(environment)
-        if isinstance(environment.seabed, SeabedGrid):  # its plane is that of one place
+        if isinstance(environment.seabed, SeabedGrid):  # its plane belongs to one position
             environment = replace(environment, seabed=None)
         water, ends = assemble_water(environment), [e for leg in self.file.legs for e in leg.ends]
         if all(end.held is None or end.held.depth >= 0.0 for end in ends):
@@ -174,28 +180,31 @@ class Design:
     def with_(
         self, label: str | None = None, /, environment: OtherEnvironment | None = None, **keys: Any
     ) -> Design:
-        """Return the design with some values of its file changed, as `Origin.changed`.
+        """Return a design with some values of the file changed; this design stays as it is.
+
+        Values are written as in the file, with their units: ``with_("wire 1", length="480 m")``,
+        ``with_(tow={"speed": "4 kn"})``,
+        ``with_(environment={"current": {"speed": "0.3 m/s", "toward": "90 deg"}})``. None removes
+        a key. Keys of a mapping are changed one by one.
 
         Parameters
         ----------
-        label : of the piece or clamp that has the keys; the keys are the file's where it is not
-            given: ``design.with_("wire 1", length="480 m")``,
-            ``design.with_(tow={"speed": "4 kn"})``
+        label : label of the piece or clamp whose keys are changed; without it, those of the file
         environment : name of one of its `environments`, an environment file, or keys of its own
 
         Raises
         ------
         InputError
-            With the mistakes that the values make.
+            The values are wrong, such as a number without its unit.
         UsageError
-            No piece has the label, or it was not loaded from a file.
+            No piece or clamp has the label, or the design was not loaded from a file.
         """
         if self.origin is None:
-            raise UsageError("what was not loaded from a file has no values to change")
+            raise UsageError("a design that was not loaded from a file has no values to change")
         origin = self.origin.changed(self.file, label, environment, keys)
         file = origin.read()
         if (file.tow is None) != (self.file.tow is None):
-            raise UsageError("a mooring does not become a tow, nor a tow a mooring")
+            raise UsageError("a mooring cannot be changed to a tow, or a tow to a mooring")
         return Design(file, origin=origin)
 
     def with_lines(self, lines: Sequence[Line], water: Water | None = None) -> Design:
@@ -247,8 +256,8 @@ class Design:
 
     @cached_property
     def meant(self) -> tuple[Leg, ...]:
-        """The legs with `for_surface`: a leg is meant for the surface if it floats there in still
-        water.
+        """Legs with `for_surface` set: a leg counts as a surface leg if it floats at the surface in
+        still water.
         """
         if not self.several:
             return self.legs
@@ -260,9 +269,16 @@ class Design:
         return tuple(replace(leg, for_surface=surface) for leg, surface in pairs)
 
     def solve(self, environment: OtherEnvironment | None = None) -> Result:
-        """Find the static equilibrium, in another of its environments where one is given.
+        """Find the static equilibrium.
 
-        NoEquilibrium: with status, message and advice, where there is none that passes every check.
+        Parameters
+        ----------
+        environment : name of one of its `environments`, an environment file, or keys as in `with_`
+
+        Raises
+        ------
+        NoEquilibrium
+            No equilibrium passes every check: `status`, `message` and `advice` say why.
         """
         if environment is not None:
             return self.with_(environment=environment).solve()
@@ -288,21 +304,20 @@ class Design:
             closure=found.closure,
             accuracy=found.accuracy,
             legs=(found,),
-            warnings=found.warnings,
         )
 
 
 def solved_alone(leg: Leg) -> LegResult:
-    """Solve a leg by itself, with its profilers at all their places; raises NoEquilibrium."""
+    """Solve a leg alone, with its profilers at all positions; raises NoEquilibrium."""
     solution = leg.equilibrium()
-    found = leg_result_of(leg, solution, leg.still_beside(solution))
-    return replace(found, profilers=profilers_of(leg), warnings=warnings_of(found, solution))
+    still = leg.still_beside(solution)
+    return LegResult(leg=leg, solution=solution, still=still, profilers=profilers_of(leg))
 
 
 def result_together(design: Design, found: NetSolution, still: Sequence[Solution | None]) -> Result:
-    """Make the result of several legs.
+    """Build the result of several legs.
 
-    NoEquilibrium: a leg lifts its anchor, or hangs into a slope.
+    Raises NoEquilibrium if a leg would lift its anchor or penetrate the slope.
 
     Parameters
     ----------
@@ -313,9 +328,7 @@ def result_together(design: Design, found: NetSolution, still: Sequence[Solution
         leg.refuse_a_lifted_anchor(solution)
         leg.refuse_in_the_slope(solution)
         meant = replace(leg, for_surface=bool((before or solution).afloat))
-        result = leg_result_of(meant, solution, before)
-        legs.append(replace(result, warnings=warnings_of(result, solution)))
-    anchors = [end for leg in legs for end in leg.ends if end.weight is not None]
+        legs.append(LegResult(leg=meant, solution=solution, still=before))
     places = zip(nodes_of(design.file.legs), found.nodes, found.imbalance, strict=True)
     return Result(
         design=design,
@@ -330,29 +343,19 @@ def result_together(design: Design, found: NetSolution, still: Sequence[Solution
             NodePlace(name, -float(at[2]), float(at[0]), float(at[1]), float(left))
             for name, at, left in places
         ),
-        warnings=(
-            *design.file.notices,
-            *(said for leg in legs for said in leg.warnings),
-            *(said for leg in legs if (said := _upside_down(leg))),
-            *(
-                f"The anchors of legs {one.leg} and {other.leg} stand in one place, and each is "
-                "judged for itself; where they are one anchor, join the legs at a node above it."
-                for one, other in combinations(anchors, 2)
-                if dist((one.x, one.y), (other.x, other.y)) < 1e-3
-            ),
-        ),
     )
 
 
 def _upside_down(result: LegResult) -> str:
-    """Warn of a leg with a free end that is listed from its lower to its upper end."""
+    """Return a warning if a leg with a free end is listed from its lower to its upper end."""
     leg, rows = result.leg, result.components
     top, bottom = float(rows.depth_top[0]), float(rows.depth_bottom[len(rows) - 2])
     if not (leg.top.free or leg.bottom.free) or top <= bottom:
         return ""
     return (
-        f"Leg {leg.name} is the other way round: its upper end is {say('length', top - bottom)} "
-        "deeper than its lower one. Legs are listed from their upper to their lower ends."
+        f"Leg {leg.name} is listed in reverse order: its first end is "
+        f"{say('length', top - bottom)} deeper than its last end. Legs are listed from their "
+        "upper to their lower ends."
     )
 
 
@@ -360,19 +363,19 @@ def _upside_down(result: LegResult) -> str:
 class Result:
     """A converged design. Lengths and depths [m], forces [N], angles [degrees].
 
-    x and y are east and north of the anchor or the tow point, for several legs of the origin in the
-    file. A result with one leg has the attributes of this leg too, such as `top` and `anchor`.
+    x and y are east and north of the anchor, the tow point, or for several legs the origin of the
+    file. A result with one leg also has the attributes of this leg, such as `top` and `anchor`.
 
     Attributes
     ----------
     design : the solved design
     status : ``converged``
     iterations, segments : number of marches, and of segments of the final shape
-    miss : greatest distance of an end from its place; for one leg the distance in height [m]
+    miss : largest distance of an end from its position; for one leg the distance in height [m]
     closure : relative force residual, recomputed from the final coordinates
     accuracy : error estimates of the solver
     legs : results of the legs
-    nodes : places of the nodes
+    nodes : positions of the nodes
     notebook_form, netcdf_form, plot_form : functions for HTML, NetCDF and pictures of a result, set
         by the packages above
     """
@@ -386,11 +389,27 @@ class Result:
     accuracy: Accuracy
     legs: tuple[LegResult, ...]
     nodes: tuple[NodePlace, ...] = ()
-    warnings: tuple[str, ...] = ()
 
     notebook_form: ClassVar[Callable[[Any], str] | None] = None
     netcdf_form: ClassVar[Callable[[Any], bytes] | None] = None
     plot_form: ClassVar[Callable[[Any, Any], Any] | None] = None
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """Warnings, those of the file first."""
+        if not self.several:
+            return self.leg.warnings
+        return (
+            *self.file.notices,
+            *(said for leg in self.legs for said in leg.warnings),
+            *(said for leg in self.legs if (said := _upside_down(leg))),
+            *(
+                f"The anchors of legs {one.leg} and {other.leg} are at the same position but are "
+                "checked separately. If they are one anchor, join the legs at a node above it."
+                for one, other in combinations(self.anchors, 2)
+                if dist((one.x, one.y), (other.x, other.y)) < 1e-3
+            ),
+        )
 
     @property
     def anchors(self) -> tuple[EndLoad, ...]:
@@ -449,7 +468,9 @@ class Result:
 
     @property
     def anchor(self) -> AnchorLoad:
-        """Load on the anchor of the leg."""
+        """Load on the anchor of the leg; UsageError for a tow."""
+        if self.leg.anchor is None:
+            raise UsageError(f"{self.name} has no anchor")
         return self.leg.anchor
 
     @property
@@ -529,14 +550,17 @@ class Result:
         """
         form = type(self).plot_form
         assert form is not None, "a design is read by calm.load"
-        return form(self, ax)
+        try:
+            return form(self, ax)
+        except ModuleNotFoundError as missing:
+            raise UsageError(how_to_install(missing) or str(missing)) from None
 
     def to_pandas(self) -> Any:
         """Return the components as a pandas data frame."""
         return self.components.to_pandas()
 
     def to_xarray(self) -> Any:
-        """The dataset that `calm run --netcdf` writes: components, clamps and shape, with units."""
+        """The dataset that `calm run -o FILE.nc` writes: components, clamps, shape, with units."""
         from io import BytesIO
 
         from xarray import load_dataset
@@ -546,12 +570,12 @@ class Result:
         return load_dataset(BytesIO(form(self)))
 
     def _repr_html_(self) -> str | None:
-        """The table of the line, for notebooks; None where nothing makes it."""
+        """HTML table of the line, for notebooks; None if the report package is not loaded."""
         form = type(self).notebook_form
         return None if form is None else form(self)
 
     def __repr__(self) -> str:
-        """Return the figures of its ends, of several legs also of the nodes; SI and degrees."""
+        """Summary of the ends, and for several legs of the nodes, in SI units and degrees."""
         if self.several:
             lines = [f"{self.name}: {self.type} of {len(self.legs)} legs, {self.status}"]
             lines += [f"node {one.name}: depth {one.depth:.6g}" for one in self.nodes]
@@ -575,7 +599,7 @@ class Result:
         return {"top": asdict(self.top), "anchor": asdict(self.anchor)}
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON object of the result format; None stands where a figure is unknown."""
+        """Return the JSON object of the result; None stands for unknown values."""
         from calm.version import __version__
 
         document = self.file.document
@@ -628,7 +652,7 @@ class Result:
 
 
 AnyResult: TypeAlias = Result | LegResult
-"""The result of a design, or of one of its legs."""
+"""Result of a design or of a single leg."""
 
 
 def load(
@@ -643,13 +667,13 @@ def load(
     ----------
     path : the YAML file
     environment : name of one of its `environments`, or an environment file
-    catalogs : catalogue files of your own, whose definitions come before the shipped ones
-    text : in place of the file's content; files that it names are still looked for beside the file
+    catalogs : additional catalogue files, whose definitions come before the shipped ones
+    text : text that replaces the file's content; files named in it are still relative to the file
 
     Raises
     ------
     InputError
-        With every mistake of the file, each with its line and column.
+        The file is invalid; all mistakes are listed, each with line and column.
     """
     return load_in(path, (environment,), catalogs, text)[0]
 
@@ -660,9 +684,10 @@ def load_in(
     catalogs: Sequence[str | Path] = (),
     text: str | None = None,
 ) -> list[Design]:
-    """Read a file as `load` does in several environments; None is its own and all that it names.
+    """Read a file as `load` does in several environments; None selects the default environment and
+    all environments of the file.
 
-    InputError: with the mistakes of all.
+    Raises InputError with the mistakes of all environments.
     """
     reader = MooringReader(path, catalogs=catalogs, text=text)
     asked, read = [*(environments or (None,))], []

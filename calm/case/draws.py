@@ -1,7 +1,7 @@
 """Draws of the inputs of a mooring that are uncertain, and the mooring in each draw.
 
-The draws are those of a scrambled Sobol' sequence, one number for each cause: all cables are too
-long by the same share, the current too fast by the same factor at all depths.
+The draws are a scrambled Sobol' sequence, with one number for each cause: all cables are too long
+by the same share, and the current is too fast by the same factor at all depths.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -16,7 +16,6 @@ from calm.case.memory import Forgetful
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Spread, Uncertainty
 from calm.physics.line import Floats, Line, Water
-from calm.physics.track import Track
 from calm.solve import Settings, Solution, solve_mooring
 from calm.solve.mooring import Nearby
 
@@ -33,7 +32,7 @@ _ANGLE = "direction"
 
 
 class Draw(NamedTuple):
-    """One draw of all causes: factors on what is given, and an angle [degrees]."""
+    """One draw of all causes: factors on the given values, and an angle [degrees]."""
 
     current: float = 1.0
     direction: float = 0.0
@@ -47,7 +46,7 @@ class Draw(NamedTuple):
 
 
 def checked_samples(samples: int) -> int:
-    """The number of samples, if it is one that can be drawn.
+    """Return the number of samples if it is valid: a power of two within limits.
 
     Raises
     ------
@@ -57,12 +56,14 @@ def checked_samples(samples: int) -> int:
         return samples
     near = min(max(FEWEST, 1 << max(samples - 1, 1).bit_length()), MOST)
     raise UsageError(
-        f"--samples: {samples} is not a power of two from {FEWEST} to {MOST}; take {near}"
+        f"--samples: {samples} is not a power of two from {FEWEST} to {MOST}; use {near}"
     )
 
 
 def normals_of(samples: int, seed: int) -> Floats:
-    """(samples, causes) standard normals, of a scrambled Sobol' sequence of a power of two."""
+    """Standard normal numbers (samples, causes) from a scrambled Sobol' sequence; `samples` is a
+    power of two.
+    """
     from scipy.special import ndtri
     from scipy.stats import qmc
 
@@ -72,10 +73,11 @@ def normals_of(samples: int, seed: int) -> Floats:
 
 
 def draws_of(uncertainty: Uncertainty, normals: Floats) -> list[Draw]:
-    """Return what standard normals (n, causes) stand for.
+    """Convert standard normal numbers (n, causes) to draws.
 
-    A deviation is that of a normal distribution about what is given. A pair is the 5 and the 95 %
-    of a normal distribution of an angle, of a lognormal one of a factor.
+    A deviation is the standard deviation of a normal distribution about the given value. A pair
+    gives the 5th and 95th percentiles of a normal distribution for an angle, and of a lognormal
+    distribution for a factor.
     """
     columns = [
         (_angles if name == _ANGLE else _factors)(getattr(uncertainty, name), normals[:, i])
@@ -100,7 +102,7 @@ def _factors(spread: Spread, normal: Floats) -> Floats:
 
 
 def drawn_line(line: Line, draw: Draw) -> Line:
-    """The line in a draw."""
+    """Return the line in a draw."""
     cable, rises = line.flexible, line.buoyancy > 0.0
     drag = np.where(cable, draw.cable_drag, draw.rigid_drag)
     lift = np.where(cable, draw.cable_weight, np.where(rises, draw.buoyancy, 1.0))
@@ -128,7 +130,7 @@ def drawn_line(line: Line, draw: Draw) -> Line:
 
 
 def drawn_water(water: Water, draw: Draw) -> Water:
-    """The water in a draw: its levels stay at their depths below the surface."""
+    """Return the water in a draw, with levels at the same depths below the surface."""
     turn = radians(draw.direction)
     east, north = draw.current * cos(turn), draw.current * sin(turn)
     return replace(
@@ -141,16 +143,15 @@ def drawn_water(water: Water, draw: Draw) -> Water:
 
 
 class Neighbours(Forgetful):
-    """Solves what differs little from a mooring from its equilibrium, or anew where that fails."""
+    """Solver for small changes of a mooring, from its equilibrium, or anew if that fails."""
 
     def __init__(self, leg: Leg) -> None:
         self._leg = leg
         self._moving = Nearby(leg.line, leg.water, leg.settings)
         self._still: Nearby | None = None
-        self._laid: tuple[Line, Track] | None = None
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """Return what the solver returns."""
+        """Return the result of the solver."""
         if solver is solve_mooring:
             solved: Any = self._solved
             return cast("T", solved(*given, **named))
@@ -160,15 +161,10 @@ class Neighbours(Forgetful):
         moving = water.moving or not self._leg.water.moving
         try:
             if moving:
-                return self._moving.solved(line, water, self._track(line))
-            return self._at_rest(line, settings).solved(line, water, self._track(line))
+                return self._moving.solved(line, water)
+            return self._at_rest(line, settings).solved(line, water)
         except NoEquilibrium:
             return solve_mooring(line, water, settings)
-
-    def _track(self, line: Line) -> Track:
-        if self._laid is None or self._laid[0] is not line:
-            self._laid = line, Track.of(line)
-        return self._laid[1]
 
     def _at_rest(self, line: Line, settings: Settings) -> Nearby:
         if self._still is None:
@@ -178,9 +174,9 @@ class Neighbours(Forgetful):
 
 
 def drawn(leg: Leg, draws: Iterable[Draw]) -> Iterator[Leg]:
-    """The line of a mooring in some draws, each solved from its equilibrium as given.
+    """Yield the leg of a mooring in each draw, solved from the original equilibrium.
 
-    NoEquilibrium: as given it has none.
+    Raises NoEquilibrium if the original mooring has no equilibrium.
     """
     neighbours = Neighbours(leg)
     for draw in draws:

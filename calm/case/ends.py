@@ -1,4 +1,4 @@
-"""Places of the ends of a leg, and the loads on their supports."""
+"""Positions of the ends of a leg, and the loads on their supports."""
 
 from __future__ import annotations
 
@@ -56,14 +56,15 @@ def accuracy_of(leg: Leg, solution: Solution) -> Accuracy:
     )
 
 
-def top_of(components: Components, solution: Solution, knockdown: float | None) -> Top:
-    """Upper end of a leg; its knockdown [m] is None without a unique shape in still water."""
-    riding = solution.riding
+def top_of(solution: Solution, still: Solution | None) -> Top:
+    """Upper end of a leg; `still` is None without a unique shape in still water."""
+    riding, upper = solution.riding, -1 if solution.line.towed else 0
+    x, y, z = solution.position[upper]
     return Top(
-        depth=float(components.depth_top[0]),
-        x=float(components.x_top[0]),
-        y=float(components.y_top[0]),
-        knockdown=knockdown,
+        depth=-float(z),
+        x=float(x),
+        y=float(y),
+        knockdown=None if still is None else float(still.position[upper, 2] - z),
         used_buoyancy=solution.buoyancy_used,
         reserve=solution.reserve,
         draft=None if riding is None or isnan(riding.draft) else riding.draft,

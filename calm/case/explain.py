@@ -1,4 +1,4 @@
-"""Explanation of how a mooring stands: what each drag causes, and what a change would do."""
+"""Explanation of a mooring's equilibrium: contribution of each drag, and effect of changes."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field, replace
@@ -17,18 +17,18 @@ from calm.files import Place
 from calm.files.mooring_file import refuse_tow
 from calm.files.pieces import clamps_in
 from calm.physics.line import Floats, Line, Water
-from calm.solve import expect_many
+from calm.solve import CompiledPart, expect_many
 
 SOLVES = 100.0
-"""About how many equilibria an explanation takes, by work."""
+"""Approximate number of equilibria per explanation, by computing time."""
 
 CHANGE = 0.1
-"""Share by which the buoyancy, the drag and the current are changed."""
+"""Relative change of buoyancy, drag and current."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """Hold what the drag of a piece or clamp causes: a row of `Causes`."""
+    """Contribution of the drag of a piece or clamp, a row of `Causes`."""
 
     index: int
     label: str
@@ -44,11 +44,12 @@ class Causes(ColumnTable[Cause]):
 
     Attributes
     ----------
-    index : (p,) of the piece, or of the piece it is clamped on
-    label : (p,)
-    clamped : (p,)
-    drag : (p,) horizontal force of the water on it [N]
-    knockdown, excursion, used_buoyancy : (p,) its share of that of the mooring [m], [m], [-]
+    index : (p,) index of the piece, or of the piece under the clamp
+    label : (p,) label
+    clamped : (p,) whether it is a clamp
+    drag : (p,) horizontal drag force [N]
+    knockdown, excursion, used_buoyancy : (p,) its contribution to these quantities of the mooring
+        [m], [m], [-]
     """
 
     record = Cause
@@ -56,7 +57,7 @@ class Causes(ColumnTable[Cause]):
 
 @dataclass(frozen=True)
 class WhatIf:
-    """A change by its name, and the figures it leads to, or why there are none."""
+    """A named change, and the resulting values or the reason why there is no equilibrium."""
 
     name: str
     figures: Figures | None = None
@@ -65,19 +66,19 @@ class WhatIf:
 
 @dataclass(frozen=True)
 class Explanation:
-    """Hold what causes the knockdown and excursion of a mooring, and what would change them.
+    """Causes of the knockdown and excursion of a mooring, and the effects of changes.
 
     Attributes
     ----------
-    label : of the piece or clamp explained
-    quantities : the columns of `causes` that have a meaning: knockdown and excursion; for a line
+    label : label of the piece or clamp explained
+    quantities : the meaningful columns of `causes`: knockdown and excursion; for a line
         without a unique shape in still water, excursion and the buoyancy in use
-    figures : of the mooring as given
-    without_drag : what of each quantity no drag causes
-    causes : the share of each drag in the rest; None where it is not known
-    miss : the worst error of the shares' sums before they were scaled, as a share of the whole
-    changes : what more buoyancy, less drag, more and less current would lead to
-    notes : what to keep in mind
+    figures : values of the original mooring
+    without_drag : part of each quantity that is not caused by drag
+    causes : contribution of each drag to the rest; None if unknown
+    miss : largest error of the sums of contributions before scaling, as a share of the total
+    changes : results for more buoyancy, less drag, and more and less current
+    notes : remarks for the user
     """
 
     label: str
@@ -90,7 +91,9 @@ class Explanation:
     notes: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """The object `explain` of the result format: SI, null where a figure is unknown."""
+        """Return the object `explain` of the JSON results, in SI units, with null for unknown
+        values.
+        """
         causes = None
         if self.causes is not None:
             names = ("index", "label", "clamped", "drag", *self.quantities)
@@ -120,19 +123,19 @@ def explain(result: Result, label: str | None = None) -> Explanation:
 
     Parameters
     ----------
-    result : of a mooring or a net
-    label : of the piece (its upper end) or clamp to explain; ``top``, the free end, when absent, of
-        a net that of the first leg that has one
+    result : result of a mooring or a net
+    label : label of the piece (its upper end) or clamp to explain; by default ``top``, the free
+        end, for a net that of the first leg with a free end
 
     Returns
     -------
-    Explanation : the shares are those of `calm.case.attribution`; the changes are solved anew,
-        with the settings of the result. A piece cut to fit keeps its length in them.
+    Explanation : contributions from `calm.case.attribution`; the changes are solved anew,
+        with the settings of the result. A fitted piece keeps its length.
 
     Raises
     ------
     UsageError
-        No part above the anchor is called so; it is a tow.
+        No part above the anchor has the label, or the design is a tow.
     """
     refuse_tow(result.file)
     mooring = result.design
@@ -143,6 +146,7 @@ def explain(result: Result, label: str | None = None) -> Explanation:
     except LookupError as error:
         raise UsageError(str(error.args[0])) from None
     expect_many(SOLVES)
+    expect_many(SOLVES, CompiledPart.NEARBY)
     figures = figures_of(result, part.place)
     quantities: tuple[str, ...] = ("knockdown", "excursion")
     surface = leg_at(result, part.place).type == "surface"
@@ -163,7 +167,7 @@ def explain(result: Result, label: str | None = None) -> Explanation:
         miss = float(np.abs(shares.miss[columns]).max()) if mooring.water.moving else 0.0
         for name, column in zip(quantities, columns, strict=True):
             without_drag[name] = 0.0 if name == "knockdown" else float(shares.start[column])
-        if miss > attribution.FAIR:
+        if miss > attribution.LARGEST_MISS:
             notes.append(
                 f"The shares are approximate: they do not grow steadily with the drag ({miss:.0%} "
                 "were scaled)."
@@ -181,7 +185,7 @@ def explain(result: Result, label: str | None = None) -> Explanation:
 
 
 _COLUMNS = ("knockdown", "excursion", "used_buoyancy")
-"""What the columns of an `Attribution` add up to."""
+"""Quantities in the columns of an `Attribution`."""
 
 
 def _notes(result: Result, quantities: tuple[str, ...], *, surface: bool) -> Iterator[str]:
@@ -205,7 +209,7 @@ def _notes(result: Result, quantities: tuple[str, ...], *, surface: bool) -> Ite
 
 
 def _shares(
-    result: Result, figures: Figures, stands: bool, place: Place
+    result: Result, figures: Figures, has_rest: bool, place: Place
 ) -> attribution.Attribution:
     design, point = result.design, _point(result, place)
     lines = [leg.line for leg in design.legs]
@@ -213,18 +217,18 @@ def _shares(
     start = None
     if design.several:
         near = attribution.of_a_net(design, point)
-        if stands:
+        if has_rest:
             bare = [attribution.with_drag(line, 0.0) for line in lines]
             start = near(bare)(0, bare[0])
         return attribution.attribute(lines, near, start, whole)
-    if stands:
+    if has_rest:
         assert figures.knockdown is not None
         start = np.array([figures.depth - figures.knockdown, 0.0, 1.0])
     return attribution.attribute(lines, attribution.of_a_line(design.water, point), start, whole)
 
 
 def _point(result: Result, place: Place) -> attribution.SolverPart:
-    """Leg, piece and clamp, or -1, by which the solver knows a part."""
+    """Indices of leg, piece and clamp (or -1) of a part in the solver."""
     leg = leg_at(result, place)
     pieces, own = leg.file.pieces, replace(place, clamp=-1)
     index = next(piece.index for piece in pieces if piece.place == own)
@@ -241,7 +245,7 @@ def _causes(result: Result, shares: attribution.Attribution) -> Causes:
         labels.append((clamps_in(pieces)[clamp] if clamp >= 0 else pieces[piece]).label)
     first = [leg.leg.keys.first for leg in legs]
     return Causes(
-        index=np.array([first[leg] + piece for leg, piece, _ in shares.parts], dtype=np.int64),
+        index=np.array([first[leg] + piece for leg, piece, _ in shares.parts], dtype=np.intp),
         label=labels,
         clamped=[clamp >= 0 for *_, clamp in shares.parts],
         drag=_drags(result, shares.parts),
@@ -252,7 +256,7 @@ def _causes(result: Result, shares: attribution.Attribution) -> Causes:
 
 
 def _drags(result: Result, parts: list[attribution.SolverPart]) -> Floats:
-    """(p,) size of the horizontal force of the water on each part [N]."""
+    """(p,) horizontal force of the water on each part [N]."""
     solutions = result.design.solutions
     found = []
     for leg, p, m in parts:
@@ -274,12 +278,12 @@ def _variations(mooring: Design) -> Iterator[tuple[str, Design]]:
 
 
 def _with(design: Design, changed: Callable[[Line], Line], water: Water | None = None) -> Design:
-    """Return the same design with lines or water that differ from its file."""
+    """Return the design with lines or water that differ from its file."""
     return design.with_lines([changed(leg.line) for leg in design.legs], water)
 
 
 def _with_buoyancy(line: Line, factor: float) -> Line:
-    """The line with the net force of everything buoyant in it multiplied."""
+    """Return the line with the net buoyancy of all buoyant items multiplied by a factor."""
     floating, floats = line.floating, np.flatnonzero(~line.flexible & (line.buoyancy > 0.0))
     if floating is not None and len(floats):
         more = (factor - 1.0) * float(line.buoyancy[floats[0]])

@@ -62,7 +62,7 @@ class Leg:
 
     @property
     def name(self) -> str:
-        """Name of the leg; for a mooring or a tow the name of the design."""
+        """Name of the leg, or for a mooring or a tow the name of the design."""
         return self.file.name
 
     @property
@@ -102,7 +102,7 @@ class Leg:
 
     @cached_property
     def water(self) -> Water:
-        """Current over the ground and density by level; water depth at the anchor."""
+        """Current over the ground and density by level, with the water depth at the anchor."""
         return self.given_water or assemble_water(self.file.environment)
 
     @property
@@ -128,7 +128,7 @@ class Leg:
     def line(self) -> Line:
         """Pieces above the anchor as arrays, a fitted piece at its cut length.
 
-        NoEquilibrium: no length fits.
+        Raises NoEquilibrium if no length fits.
         """
         if self.given_line is not None:
             return self.given_line
@@ -157,7 +157,7 @@ class Leg:
     def cut(self, file: MooringFile) -> MooringFile:
         """Return a file with the fitted piece at the cut length of this leg.
 
-        NoEquilibrium: no length fits.
+        Raises NoEquilibrium if no length fits.
         """
         pieces = tuple(
             piece
@@ -199,10 +199,10 @@ class Leg:
         return area_drag(max(volume, 0.0) ** (2.0 / 3.0), BLOCK_CD)
 
     def equilibrium(self, water: Water | None = None) -> Solution:
-        """Solve the leg by itself, in its own or in other water.
+        """Solve the leg alone, in its own or in other water.
 
-        NoEquilibrium: there is none that passes every check, or the leg lifts its anchor, lies on
-        the seabed in a heap, or hangs into a slope.
+        Raises NoEquilibrium if no equilibrium passes every check, or if the leg would lift its
+        anchor, have more than chain on the seabed, or penetrate a slope.
         """
         water = water or self.water
         with parts.naming_the_piece(self.file.pieces, towed=self.towed):
@@ -215,19 +215,19 @@ class Leg:
         return solution
 
     def refuse_a_lifted_anchor(self, solution: Solution) -> None:
-        """Refuse a leg that lifts its anchor."""
+        """Raise NoEquilibrium if the vertical load of a leg exceeds the weight of its anchor."""
         pull, weight = float(solution.force[-1, 2]), self.anchor_weight
         if pull > weight:
             line, its = "the line", "the anchor"
             if self.of_several:
                 line, its = f"leg {self.name}", "its anchor"
             raise Status.ANCHOR_LIFTS.because(
-                f"The vertical pull of {line} is {pull:.0f} N; {its} weighs {weight:.0f} N "
-                "in water."
+                f"The vertical load of {line} is {pull:.0f} N; the weight of {its} in water is "
+                f"{weight:.0f} N."
             )
 
     def _refuse_a_heap(self, solution: Solution) -> None:
-        """Refuse a sub-surface line with more than chain on the seabed."""
+        """Raise NoEquilibrium if a sub-surface line has a piece other than chain on the seabed."""
         if solution.surface:
             return
         pieces = self.file.pieces
@@ -236,7 +236,9 @@ class Leg:
                 raise self.heaped(pieces[lying].label)
 
     def heaped(self, label: str) -> NoEquilibrium:
-        """Explain the refusal of a sub-surface line with a piece other than chain on the seabed."""
+        """Return the exception for a sub-surface line with a piece other than chain on the
+        seabed.
+        """
         lift, length = standing_lift(self.line, self.water), np.cumsum(self.line.length)
         height = self.water.depth - self.line.anchor_height
         hung = float(np.interp(height, length, np.cumsum(lift)))
@@ -250,9 +252,10 @@ class Leg:
         )
 
     def refuse_in_the_slope(self, solution: Solution) -> None:
-        """Refuse a line that hangs into a seabed from a grid; the solver knows only its plane.
+        """Raise NoEquilibrium if a line would penetrate a seabed from a grid, since the solver only
+        knows its plane.
 
-        The tolerance is the greatest depth of the grounded part below the grid.
+        The tolerance is the largest depth of the grounded part below the grid.
         """
         depth = self.water.depth
         if self.file.environment.seabed is None:
@@ -265,12 +268,12 @@ class Leg:
             count = len(self.file.pieces) - 1
             piece = self.file.pieces[count - 1 - number if solution.line.towed else number]
             raise Status.GROUNDED.because(
-                f"{piece.label} comes {below[worst]:.2f} m below the sloping seabed.",
-                advice="Raise it, or move it down the slope.",
+                f"{piece.label} would be {below[worst]:.2f} m below the sloping seabed.",
+                advice="Raise it, or move the mooring down the slope.",
             )
 
     def solved(self, line: Line) -> Solution:
-        """Solve another line in place of that of the leg; raises NoEquilibrium."""
+        """Solve the leg with another line; raises NoEquilibrium."""
         if self.towed:
             return solve_tow(line, self.water, self.towing, self.settings)
         return solve_mooring(line, self.water, self.settings)
@@ -289,7 +292,7 @@ class Leg:
         line, floating = self.line, self.line.floating
         if floating is not None:
             line = replace(line, floating=replace(floating, wind=(0.0, 0.0)))
-        # a plumb line is exact with long segments
+        # long segments are exact for a plumb line
         settings = replace(self.settings, angle_step=max(self.settings.angle_step, COARSE_STEP))
         try:
             return self.memory.of(solve_mooring, line, self.water.still(), settings)

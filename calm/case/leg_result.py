@@ -22,6 +22,7 @@ from calm.case.result_tables import (
     TowPoint,
 )
 from calm.case.strumming import Strumming, StrummingBand, band_of, strumming_of
+from calm.case.warnings import warnings_of
 from calm.files import MooringFile
 from calm.files.pieces import clamps_down
 from calm.physics.line import Water
@@ -35,46 +36,23 @@ class LegResult:
 
     The components of a tow run from the ship down, and its shape begins at the free end.
 
+    Tables are computed when they are first read.
+
     Attributes
     ----------
     leg : the solved leg
-    type : ``subsurface``, ``surface`` or ``tow``
-    top : upper end
-    anchor : load on the anchor; NaN for a leg without an anchor, whose last component is a stand-in
-        without meaning
-    tow_point, body : both ends of a tow; None for other legs
-    ends : loads on the anchor and on other fixed ends
-    still_shape : shape in still water; None without a unique shape
+    solution : solution for its line
+    still : solution in still water; None without a unique shape
     profilers : profilers at their places; all other figures hold with them at their upper stops
-    iterations, segments : number of marches, and of segments of the final shape
-    miss : distance of the lower end from its place, in height [m]
-    closure : relative force residual, recomputed from the final coordinates
-    other : another equilibrium, if one was found
     """
 
     leg: Leg
-    type: str
-    iterations: int
-    segments: int
-    miss: float
-    closure: float
-    accuracy: Accuracy
-    top: Top
-    anchor: AnchorLoad
-    strumming: Strumming | None
-    components: Components
-    clamps: Clamps
-    shape: Shape
-    still_shape: Shape | None
-    ends: tuple[EndLoad, ...]
-    other: OtherEquilibrium | None = None
-    tow_point: TowPoint | None = None
-    body: TowedBody | None = None
+    solution: Solution
+    still: Solution | None
     profilers: tuple[ProfilerTravel, ...] = ()
-    warnings: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
-        """Return its name, and how many components it has."""
+        """Summary with name, type and number of components."""
         return f"LegResult({self.name!r}, {self.type}, {len(self.components)} components)"
 
     @property
@@ -88,6 +66,108 @@ class LegResult:
         return Status.CONVERGED.label
 
     @property
+    def type(self) -> str:
+        """Type of the leg: ``subsurface``, ``surface`` or ``tow``."""
+        if self.towed:
+            return "tow"
+        return "surface" if self.solution.surface else "subsurface"
+
+    @property
+    def iterations(self) -> int:
+        """Number of marches."""
+        return self.solution.marches
+
+    @property
+    def segments(self) -> int:
+        """Number of segments of the final shape."""
+        return self.solution.segments
+
+    @property
+    def miss(self) -> float:
+        """Distance of the lower end from its place, in height [m]."""
+        return self.solution.miss
+
+    @property
+    def closure(self) -> float:
+        """Relative force residual, recomputed from the final coordinates."""
+        return self.solution.closure
+
+    @property
+    def other(self) -> OtherEquilibrium | None:
+        """Another equilibrium, if one was found."""
+        return self.solution.other
+
+    @cached_property
+    def accuracy(self) -> Accuracy:
+        """Error estimates of the solver."""
+        return accuracy_of(self.leg, self.solution)
+
+    @cached_property
+    def top(self) -> Top:
+        """Upper end."""
+        return top_of(self.solution, self.still)
+
+    @cached_property
+    def anchor_load(self) -> AnchorLoad:
+        """Load on the anchor; NaN for a leg without an anchor."""
+        return anchor_load(self.leg, self.solution)
+
+    @cached_property
+    def tow_point(self) -> TowPoint | None:
+        """Load of a tow on the ship; None for other legs."""
+        return tow_point_of(self.solution) if self.towed else None
+
+    @cached_property
+    def body(self) -> TowedBody | None:
+        """Towed body; None for other legs."""
+        return body_of(self.solution) if self.towed else None
+
+    @cached_property
+    def ends(self) -> tuple[EndLoad, ...]:
+        """Loads on the anchor and on other fixed ends."""
+        return tuple(end_loads(self.leg, self.components, self.solution))
+
+    @cached_property
+    def strumming(self) -> Strumming | None:
+        """Strumming of the cables; None without a law of strumming."""
+        return strumming_of(self.file.solver, self.solution)
+
+    @cached_property
+    def components(self) -> Components:
+        """Pieces; for a tow from the ship down.
+
+        The last piece of a leg without an anchor is a stand-in without meaning.
+        """
+        pieces = self.file.pieces
+        if self.towed:
+            return components_of(pieces, self.solution, self.still)
+        above = components_of(pieces[:-1], self.solution, self.still)
+        return with_anchor(above, pieces[-1], self.water.depth)
+
+    @cached_property
+    def clamps(self) -> Clamps:
+        """Clamped instruments."""
+        pieces = self.file.pieces
+        if self.towed:
+            return clamps_of(pieces, self.solution, self.still)
+        clamps = clamps_of(pieces[:-1], self.solution, self.still)
+        for clamp in clamps_down(pieces[-1:]):
+            clamps = clamps.with_row(on_anchor(clamp, self.components[-1]))
+        return clamps
+
+    @cached_property
+    def shape(self) -> Shape:
+        """Shape, node by node, from the free end."""
+        return shape_of(self.solution)
+
+    @cached_property
+    def still_shape(self) -> Shape | None:
+        """Shape in still water; None without a unique shape."""
+        if self.still is self.solution:
+            return self.shape
+        return None if self.still is None else shape_of(self.still)
+
+    @property
     def file(self) -> MooringFile:
         """File of the leg alone."""
         return self.leg.file
@@ -96,6 +176,11 @@ class LegResult:
     def water(self) -> Water:
         """Water of the leg."""
         return self.leg.water
+
+    @property
+    def anchor(self) -> AnchorLoad | None:
+        """Load on the anchor; None for a leg without an anchor."""
+        return self.anchor_load if self.leg.anchored else None
 
     @property
     def towed(self) -> bool:
@@ -129,48 +214,14 @@ class LegResult:
         return {"depth": self.other.depth} if self.leg.towed else self.other._asdict()
 
     @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """Warnings, those of the file first."""
+        return warnings_of(self)
+
+    @cached_property
     def strumming_band(self) -> StrummingBand | None:
         """The line with more drag on its cables, solved on first use; None for a leg of a net."""
         if self.leg.of_several:
             return None
         still = self.still_shape
         return band_of(self.leg, None if still is None else float(still.depth[0]))
-
-
-def leg_result_of(leg: Leg, solution: Solution, still: Solution | None) -> LegResult:
-    """Make the result of a leg, without warnings and profilers.
-
-    Parameters
-    ----------
-    still : the line in still water; None without a unique shape
-    """
-    pieces = leg.file.pieces
-    above = pieces if leg.towed else pieces[:-1]
-    components, clamps = components_of(above, solution, still), clamps_of(above, solution, still)
-    if not leg.towed:
-        components = with_anchor(components, pieces[-1], leg.water.depth)
-        for clamp in clamps_down(pieces[-1:]):
-            clamps = clamps.with_row(on_anchor(clamp, components[-1]))
-    shape = shape_of(solution)
-    standing = "surface" if solution.surface else "subsurface"
-    knockdown = None if still is None else float(components.knockdown[0])
-    return LegResult(
-        leg=leg,
-        type="tow" if leg.towed else standing,
-        iterations=solution.marches,
-        segments=solution.segments,
-        miss=solution.miss,
-        closure=solution.closure,
-        accuracy=accuracy_of(leg, solution),
-        top=top_of(components, solution, knockdown),
-        anchor=anchor_load(leg, solution),
-        tow_point=tow_point_of(solution) if leg.towed else None,
-        body=body_of(solution) if leg.towed else None,
-        ends=tuple(end_loads(leg, components, solution)),
-        strumming=strumming_of(leg.file.solver, solution),
-        components=components,
-        clamps=clamps,
-        shape=shape,
-        still_shape=shape if still is solution else None if still is None else shape_of(still),
-        other=solution.other,
-    )

@@ -75,7 +75,7 @@ class LineFigures:
 
     @property
     def greatest_tension(self) -> Floats:
-        """(n,) greatest tension within each piece [N]."""
+        """(n,) maximum tension in each piece [N]."""
         tension = self.solution.tension
         within = np.maximum.reduceat(tension[:-1], self._first)
         greatest: Floats = np.maximum(within, tension[self._last])[self._ahead]
@@ -83,7 +83,7 @@ class LineFigures:
 
     @property
     def least_tension(self) -> Floats:
-        """(n,) least tension above the seabed [N]; NaN for a piece that lies on it entirely."""
+        """(n,) minimum tension above the seabed [N]; NaN for a piece entirely on the seabed."""
         tension = self.solution.tension
         hanging = np.where(np.arange(len(tension)) <= self.solution.hanging, tension, np.inf)
         within = np.minimum.reduceat(hanging[:-1], self._first)
@@ -94,8 +94,8 @@ class LineFigures:
     def tilt(self) -> Floats:
         """(n,) angle of the chord from the vertical [degrees].
 
-        A piece without length takes the angle of the pull; all pieces of a head, which is one rod,
-        take the angle of the rod.
+        A piece without length takes the angle of the tension; all pieces of a head, which is one
+        rod, take the angle of the rod.
         """
         solution, chord = self.solution, self.top - self.bottom
         pull = solution.force[self.upper] + solution.force[self.lower]
@@ -120,7 +120,7 @@ class LineFigures:
 
     @property
     def reynolds(self) -> Floats:
-        """(n,) greatest Reynolds number of speed and diameter; NaN without a diameter."""
+        """(n,) largest Reynolds number from speed and diameter; NaN for unknown diameters."""
         solution = self.solution
         middle = -0.5 * (solution.position[:-1] + solution.position[1:])[:, 2]
         speed = np.linalg.norm(solution.water.current_at(middle), axis=1)
@@ -154,13 +154,15 @@ class ClampFigures:
 
     @property
     def tension(self) -> Floats:
-        """(m,) greater of the tensions above and below the clamp [N]."""
+        """(m,) larger of the tensions above and below the clamp [N]."""
         tension = self.solution.tension
         return np.maximum(tension[self._elements], tension[self._elements + 1])
 
     @property
     def tilt(self) -> Floats:
-        """(m,) angle of the mean pull above and below; on a rigid piece its tilt [degrees]."""
+        """(m,) angle of the mean tension above and below the clamp, or on a rigid piece the tilt of
+        the piece [degrees].
+        """
         solution, elements = self.solution, self._elements
         pull = solution.force[elements] + solution.force[elements + 1]
         cable = solution.line.flexible[solution.element_piece[elements]]
@@ -171,7 +173,7 @@ class ClampFigures:
 
     @property
     def knockdown(self) -> Floats:
-        """(m,) [m]; NaN without the line in still water."""
+        """(m,) knockdown [m]; NaN without the line in still water."""
         if self.still is None:
             return np.full(len(self._elements), np.nan)
         before = self.still.position[np.flatnonzero(self.still.element_clamp >= 0)]
@@ -202,7 +204,8 @@ class NodeFigures:
         if self.solution.line.towed:
             chord = -chord
         lengthy = np.linalg.norm(chord, axis=1) > 0
-        # a point without length leans as the segment above it, the first ones as the one below
+        # a point without length takes the angle of the segment above, the first points that of the
+        # segment below
         last = np.maximum.accumulate(np.where(lengthy, np.arange(len(chord)), -1))
         first = int(np.argmax(lengthy))
         leaning = leaning_of(chord)[np.where(last >= 0, last, first)]
@@ -210,7 +213,7 @@ class NodeFigures:
 
 
 def leaning_of(vector: Floats) -> Floats:
-    """Angle of upward-pointing vectors (..., 3) from the vertical [degrees]; 0 for none."""
+    """Angle of vectors (..., 3) from the upward vertical [degrees]; 0 for a zero vector."""
     horizontal = np.hypot(vector[..., 0], vector[..., 1])
     tilt: Floats = np.degrees(np.arctan2(horizontal, vector[..., 2]))
     return np.where((horizontal > 0) | (vector[..., 2] != 0), tilt, 0.0)

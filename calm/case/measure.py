@@ -1,4 +1,4 @@
-"""Tables measured on a solution: the pieces, the clamps and the shape of a line."""
+"""Tables computed from a solution: the pieces, the clamps and the shape of a line."""
 
 from __future__ import annotations
 
@@ -26,40 +26,40 @@ T = TypeVar("T", Components, Clamps)
 def components_of(
     pieces: Sequence[Piece], solution: Solution, still: Solution | None = None
 ) -> Components:
-    """The pieces that are solved for, first-listed first.
+    """Build the table of the solved pieces, in file order.
 
     Parameters
     ----------
-    pieces : in the order of the file, an anchor left out
-    still : the same line in still water, for the knockdown
+    pieces : pieces in file order, without an anchor
+    still : solution in still water, for the knockdown
     """
     line = LineFigures(solution, still, pieces)
     return Components.made(pieces, lambda column: column.found and column.found(line))
 
 
 def clamps_of(pieces: Sequence[Piece], solution: Solution, still: Solution | None = None) -> Clamps:
-    """The clamped instruments, those on the first-listed piece first, down each piece."""
+    """Build the table of the clamped instruments, in file order, down each piece."""
     held = ClampFigures(pieces, solution, still)
     return Clamps.made(held.clamps, lambda column: column.found and column.found(held))
 
 
 def shape_of(solution: Solution) -> Shape:
-    """The line node by node."""
+    """Return the shape of the line, node by node."""
     nodes = NodeFigures(solution)
     return Shape(**{one.name: one.found(nodes) for one in Shape.columns() if one.found})
 
 
 def with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
-    """The components with the anchor, which stands upright below the line's end."""
+    """Append the anchor, upright below the line's end, to the components."""
     end = LineEnd(above[-1], anchor, depth)
     return Components.joined([above, _standing(Components, anchor, end)])
 
 
 def on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
-    """Make the row of a clamp on the anchor, which stands still with it."""
+    """Build the row of a clamp on the anchor, which does not move."""
     return _standing(Clamps, clamp, OnAnchor(clamp, anchor))[0]
 
 
 def _standing(table: type[T], part: Piece | Clamp, end: LineEnd | OnAnchor) -> T:
-    """Make the row of an anchor, or of a clamp on it, as a table."""
+    """Build the row of an anchor, or of a clamp on it, as a table."""
     return table.made([part], lambda column: np.array([column.at_anchor and column.at_anchor(end)]))

@@ -1,4 +1,4 @@
-"""Memory of what was solved before, for a line that is edited or stands in many environments."""
+"""Cache of solutions, for a line that is edited or solved in many environments."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from typing import Any, ParamSpec, TypeVar
 from calm.errors import NoEquilibrium
 
 MOST = 256
-"""How many outcomes are kept, the latest."""
+"""Number of latest outcomes kept."""
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
 
 class Memory:
-    """Outcomes of solvers by what they were given: the same digits are not solved twice.
+    """Cache of solver outcomes by their inputs, so that identical problems are solved only once.
 
-    A new label solves nothing anew, another current does not solve still water anew. Threads may
-    share it.
+    A new label does not require a new solution, and a new current does not require a new solution
+    in still water. Threads may share the cache.
     """
 
     def __init__(self) -> None:
@@ -33,12 +33,12 @@ class Memory:
         self._lock = Lock()
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
-        """Another process begins with nothing."""
+        """Pickle an empty cache."""
         return Memory, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """Return what a solver returns for what it is given, or the `NoEquilibrium` that it
-        raises.
+        """Return the outcome of a solver for its arguments, cached; a `NoEquilibrium` is raised
+        again.
         """
         key = _digits((solver.__module__, solver.__qualname__, given, named))
         with self._lock:
@@ -62,26 +62,26 @@ class Memory:
 
 
 class Forgetful(Memory):
-    """Keeps nothing: every line is solved."""
+    """A cache that keeps nothing: every line is solved."""
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
-        """Another process keeps nothing either."""
+        """Pickle without contents."""
         return Forgetful, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """Return what the solver returns."""
+        """Return the result of the solver."""
         return solver(*given, **named)
 
 
 class _Describing(pickle.Pickler):
-    """Writes down what it is given.
+    """Pickler that serialises the inputs of a solver to a key.
 
-    A record by its fields, without what it has computed since; a function, such as the curve of a
-    hull, by its name and what it encloses.
+    A dataclass is written by its fields, without cached properties; a function, such as the curve
+    of a hull, by its name and closure.
     """
 
     def reducer_override(self, thing: Any) -> Any:
-        """As `pickle.Pickler`."""
+        """See `pickle.Pickler`."""
         if is_dataclass(thing) and not isinstance(thing, type):
             values = [getattr(thing, name) for name in _names(type(thing))]
             return tuple, ((type(thing).__qualname__, values),)
@@ -93,12 +93,12 @@ class _Describing(pickle.Pickler):
 
 @cache
 def _names(record: type) -> tuple[str, ...]:
-    """The fields of a data class."""
+    """Names of the fields of a dataclass."""
     return tuple(each.name for each in fields(record))
 
 
 def _digits(given: object) -> bytes:
-    """All that a solver is given, digit by digit."""
+    """Return the serialised inputs of a solver."""
     written = io.BytesIO()
     _Describing(written).dump(given)
     return written.getvalue()

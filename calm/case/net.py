@@ -22,7 +22,7 @@ from calm.solve.net import NetSolution, solve_net
 
 
 def net_legs(legs: Sequence[Leg]) -> tuple[NetLeg, ...]:
-    """Legs as input of the solver."""
+    """Return the legs as input of the solver."""
     nodes = nodes_of([leg.keys for leg in legs])
     return tuple(
         NetLeg(leg.line, _end(leg.top, nodes, leg), _end(leg.bottom, nodes, leg)) for leg in legs
@@ -45,9 +45,9 @@ def _end(end: EndKeys, nodes: Mapping[str, int], leg: Leg) -> LegEnd:
 def solve_together(
     legs: Sequence[Leg], water: Water, settings: Settings, near: NetSolution | None
 ) -> NetSolution:
-    """Solve the legs of a net in some water, first near another solution of the net.
+    """Solve the legs of a net in given water, first near another solution of the net.
 
-    NoEquilibrium: there is none that passes every check.
+    Raises NoEquilibrium if no equilibrium passes every check.
     """
     solved_for = [piece for leg in legs for piece in leg.file.pieces[:-1]]
     laid, nodes = net_legs(legs), nodes_of([leg.keys for leg in legs])
@@ -64,7 +64,7 @@ def _why_not(legs: Sequence[Leg], laid: Sequence[NetLeg]) -> NoEquilibrium | Non
     """Explain a net that sinks, or whose fixed ends are farther apart than its legs are long.
 
     Pieces that may lie on the seabed count without their weight. The shortest path through the net
-    between two ends follows from the method of Floyd and Warshall.
+    between two ends is computed with the Floyd-Warshall method.
     """
     lift = 0.0
     for each in laid:

@@ -1,4 +1,4 @@
-"""Pieces and clamps by what a person calls them, and a file with some of their values changed."""
+"""Lookup of pieces and clamps by label, and files with changed values."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -21,26 +22,26 @@ from calm.solve import Solution
 from calm.whole_file import read_text
 
 TOP = "top"
-"""The free end of the line, whatever its label."""
+"""Name of the free end of the line, whatever its label."""
 
 
 def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
-    """The part meant by a text.
+    """Find the part with a given label.
 
-    LookupError: no part, or more than one, is called so; the message says what the parts are
-    called.
+    Raises LookupError, with the existing labels, if no part or more than one part matches.
     """
     found = all_parts(pieces, text)
     if len(found) > 1:
         listed = _listed([part.label for part in found])
-        raise LookupError(f"{len(found)} parts are called `{text}`; name one: {listed}")
+        raise LookupError(f"{len(found)} parts have the label `{text}`; select one: {listed}")
     return found[0]
 
 
 def all_parts(pieces: Sequence[Piece], text: str) -> tuple[Piece | Clamp, ...]:
-    """The parts meant by a text: the part of that label, or all whose label is that with a number.
+    """Find the parts with a given label: the part of that label, or all parts whose label is this
+    text with a number.
 
-    LookupError: no part is called so; the message offers the nearest label.
+    Raises LookupError, with the nearest label, if no part matches.
     """
     parts = parts_of(pieces)
     for part in parts:
@@ -52,7 +53,7 @@ def all_parts(pieces: Sequence[Piece], text: str) -> tuple[Piece | Clamp, ...]:
     found = tuple(part for part in parts if numbered.fullmatch(part.label))
     if not found:
         labels = [TOP, *(part.label for part in parts)]
-        raise LookupError(unknown(f"no part of the line is called `{text}`", text, labels))
+        raise LookupError(unknown(f"no part of the line has the label `{text}`", text, labels))
     return found
 
 
@@ -64,8 +65,8 @@ def _listed(labels: Sequence[str]) -> str:
 
 @contextmanager
 def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterator[None]:
-    """Adds the label of a piece to what the solver reports of it, which in a tow counts the pieces
-    from the other end.
+    """Context manager that adds the label of a piece to errors of the solver, which counts the
+    pieces of a tow from the other end.
     """
     try:
         yield
@@ -77,12 +78,14 @@ def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterato
 
 
 OtherEnvironment = str | Path | Mapping[str, Any]
-"""The name of one in the file, an environment file, or keys to change in the file's own."""
+"""Name of an environment in the file, path of an environment file, or keys to change in the default
+environment.
+"""
 
 
 @dataclass(frozen=True)
 class Origin:
-    """Tell what a mooring was read from; the names are those of `load`."""
+    """Source of a mooring; the names are those of `load`."""
 
     path: str | Path
     environment: str | Path | None
@@ -90,7 +93,7 @@ class Origin:
     text: str | None
 
     def read(self) -> MooringFile:
-        """Return the file with all it refers to, as `read_mooring` does."""
+        """Read the file and all files it refers to, see `read_mooring`."""
         return read_mooring(
             self.path, environment=self.environment, catalogs=self.catalogs, text=self.text
         )
@@ -102,14 +105,14 @@ class Origin:
         environment: OtherEnvironment | None,
         keys: Mapping[str, Any],
     ) -> Origin:
-        """Return the same with values put into the text, or in another environment.
+        """Return the source with values changed in the text, or with another environment.
 
         Parameters
         ----------
-        file : as it was read
-        label : of the piece or clamp that has the keys; None where they are those of the file
-        environment : None for its own; keys are those of its own
-        keys : names and values as the file writes them; None takes a key out; where the file has a
+        file : the file as read
+        label : label of the piece or clamp that has the keys; None for keys of the file
+        environment : None for the default environment; keys change the default environment
+        keys : names and values as in the file; None removes a key; if the file has a
             mapping under a name, its keys are changed one by one
 
         Raises
@@ -127,16 +130,30 @@ class Origin:
             inner = value if isinstance(value, Mapping) and not at else {None: value}
             for key, each in inner.items():
                 where = (*at, name) if key is None else (*at, name, key)
-                written = str(each) if isinstance(each, (int, float)) else each
-                draft = draft.put_at(where, written)
+                draft = draft.put_at(where, _written(each))
         named = None if isinstance(environment, Mapping) else environment
         return replace(self, text=draft.text, environment=named or self.environment)
+
+
+def _written(value: Any) -> Any:
+    """A value as the text of a file has it: numbers within lists and mappings are texts, too."""
+    if isinstance(value, Mapping):
+        return {key: _written(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_written(each) for each in value]
+    if isinstance(value, bool):
+        return str(value).lower()
+    return str(value) if isinstance(value, Real) else value
 
 
 def _place_of(file: MooringFile, label: str) -> Location:
     from calm.files.editing import LINE, clamps_of
 
     places = {part.label: part.place for part in parts_of(file.pieces)}
+    numbered = re.compile(rf"{re.escape(label)} \d+")  # as the pieces of a `count` are labelled
+    copies = [place for name, place in places.items() if numbered.fullmatch(name)]
+    if len({(place.item, place.clamp) for place in copies}) == 1:
+        places.setdefault(label, copies[0])
     if label not in places:
         raise UsageError(unknown(f"no piece or clamp is labelled `{label}`", label, places))
     place = places[label]
@@ -146,10 +163,9 @@ def _place_of(file: MooringFile, label: str) -> Location:
 
 
 def below_the_seabed(file: MooringFile, solution: Solution, depth: float) -> Floats:
-    """Return how far below the seabed of its file every node of a line is (k+1,) [m]; NaN off its
-    grid.
+    """Depth of every node of a line below the seabed of its file (k+1,) [m]; NaN outside its grid.
 
-    `depth`: of the water at the origin, or of a leg at its anchor [m].
+    `depth` is the water depth at the origin, or for a leg at its anchor [m].
     """
     seabed, place = file.environment.seabed, solution.position
     assert seabed is not None

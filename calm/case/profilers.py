@@ -14,14 +14,14 @@ from calm.files import Clamp, MooringFile, Place, Profiler
 from calm.files.pieces import clamps_in
 
 PLACES = 11
-"""Where on its way a profiler is solved for, its two stops among them."""
+"""Number of positions for which a profiler is solved, including its two stops."""
 
 
 @dataclass(frozen=True)
 class ProfilerPlace:
-    """Hold what a profiler finds at a place on its way: depth [m], tension [N], tilt [degrees].
+    """Depth [m], tension [N] and tilt [degrees] of the wire at a position of a profiler.
 
-    `at` is the distance from the top of its wire, without load [m].
+    `at` is the unstretched distance from the top of its wire [m].
     """
 
     at: float
@@ -32,10 +32,12 @@ class ProfilerPlace:
 
 @dataclass(frozen=True)
 class ProfilerTravel:
-    """Hold a profiler at its upper and its lower stop, and where its wire leans most.
+    """A profiler at its upper and lower stop, and at the position with the largest tilt of the
+    wire.
 
-    `distance` is between its stops, without load [m], `time` what a profile takes [s], `profiles`
-    how many its batteries last for; None where its speed or its endurance is not given.
+    `distance` is the unstretched distance between its stops [m], `time` the duration of a profile
+    [s], and `profiles` the number of profiles per battery set; None if its speed or its endurance
+    is unknown.
     """
 
     label: str
@@ -48,15 +50,15 @@ class ProfilerTravel:
 
 
 def profilers_of(leg: Leg) -> tuple[ProfilerTravel, ...]:
-    """Return every profiler of a line on its way; the others stay at their upper stops.
+    """Travel of every profiler of a line, with the other profilers at their upper stops.
 
-    NoEquilibrium: the line does not stand with a profiler at one of its `PLACES`.
+    Raises NoEquilibrium if there is no equilibrium with a profiler at one of its `PLACES`.
     """
     return tuple(_travel(leg, clamp) for clamp in profilers_in(leg))
 
 
 def profilers_in(leg: Leg) -> list[Clamp]:
-    """Return the profilers that travel on a line."""
+    """Profilers that travel on a line."""
     return [clamp for clamp in clamps_in(leg.file.pieces) if clamp.travel is not None]
 
 
@@ -95,12 +97,12 @@ def _found(leg: Leg, clamp: Clamp, at: float) -> ProfilerPlace:
 
 
 def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> MooringFile:
-    """Return a file whose profilers stay where they are, one of them at another place.
+    """Return a file with fixed profilers, one of them optionally at another position.
 
     Parameters
     ----------
-    place : of that profiler in the line; None where all stay
-    at : distance from the top of its wire, without load [m]
+    place : place of that profiler in the line; None if none is moved
+    at : unstretched distance from the top of its wire [m]
     """
 
     def stays(clamp: Clamp) -> Clamp:

@@ -1,9 +1,9 @@
-"""The registry of result columns, and the tables that hold them.
+"""Registry of result columns, and the tables of these columns.
 
 A table stores one array per column and makes records and data frames on demand. To add a column,
-add a field with its entry to the class of its rows; a computation longer than one line goes into
-`calm.case.line_figures`. `OF_ROWS`, `MOORED_ENDS` and `TOWED_ENDS` have the columns of outputs
-only.
+add a field with its entry to the class of its rows; put a computation longer than one line in
+`calm.case.line_figures`. `OF_ROWS`, `MOORED_ENDS` and `TOWED_ENDS` list columns that only outputs
+have.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ if TYPE_CHECKING:
 Row = TypeVar("Row")
 
 _OF_THE_FILE = "part"
-"""The column with the models of the file, left out of JSON and of a data frame."""
+"""Column with the models of the file, omitted in JSON and in data frames."""
 
 
 class Columnar:
-    """Columns by their names: `table.depth` has the `depth` of all rows."""
+    """Columns by their names: `table.depth` is the `depth` of all rows."""
 
     def __init__(self, **columns: Any) -> None:
         if sorted(columns) != sorted(self.names()):
@@ -59,21 +59,21 @@ class Columnar:
 
     @classmethod
     def names(cls) -> list[str]:
-        """Return the names of the columns, in their order."""
+        """Names of the columns, in their order."""
         raise NotImplementedError
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in self.names()}
 
     def with_columns(self, **columns: Any) -> Self:
-        """Return the same table with other columns in place of some of its own."""
+        """Return the table with some columns replaced."""
         return type(self)(**{**self.__getstate__(), **columns})
 
 
 class ColumnTable(Columnar, Generic[Row]):
-    """A table of rows that is kept by column.
+    """A table of rows that is stored by column.
 
-    A column is an array of numbers, or a list. Its names are those of the fields of `record`.
+    A column is an array of numbers, or a list. The column names are the fields of `record`.
     """
 
     record: ClassVar[type[Any]]
@@ -81,18 +81,18 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @classmethod
     def names(cls) -> list[str]:
-        """Return the names of the columns, in their order."""
+        """Names of the columns, in their order."""
         return [each.name for each in fields(cls.record)]
 
     @classmethod
     def columns(cls, output: Output | None = None) -> list[ResultColumn]:
-        """The entries of the columns, by default all, else those that an output shows."""
+        """Entries of the columns, by default all, else those shown in an output."""
         every = columns_of(cls.record)
         return [*every] if output is None else shown_in(every, output)
 
     @classmethod
     def made(cls, parts: Sequence[Any], value: Callable[[ResultColumn], Any]) -> Self:
-        """Make a table of pieces or clamps of a file, with its derived columns.
+        """Build a table of pieces or clamps of a file, with its derived columns.
 
         Parameters
         ----------
@@ -109,7 +109,7 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @classmethod
     def joined(cls, tables: Sequence[Self]) -> Self:
-        """Return tables one after another."""
+        """Concatenate tables."""
         columns = {name: [getattr(table, name) for table in tables] for name in cls.names()}
         whole = {
             name: [*chain(*parts)] if isinstance(parts[0], list) else np.concatenate(parts)
@@ -118,7 +118,7 @@ class ColumnTable(Columnar, Generic[Row]):
         return cls(**whole)
 
     def __repr__(self) -> str:
-        """Return how many rows there are, and the labels at both ends."""
+        """Summary with the number of rows and the labels at both ends."""
         shown = self.label if len(self) < 6 else [*self.label[:3], "…", self.label[-1]]
         return f"{type(self).__name__}({len(self)} rows: {', '.join(shown)})"
 
@@ -126,9 +126,9 @@ class ColumnTable(Columnar, Generic[Row]):
         return len(self.label)
 
     def __getitem__(self, row: int | str) -> Row:
-        """Return a row by its number or its label, as a record with the columns' names.
+        """Return a row by number or label, as a record with the names of the columns.
 
-        KeyError: no row has the label; the one most like it is named.
+        Raises KeyError, with the most similar label, if no row has the label.
         """
         if isinstance(row, int):
             return self._records[row]
@@ -141,9 +141,9 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @cached_property
     def _records(self) -> tuple[Row, ...]:
-        """The rows, which every rule of a design check goes through again."""
+        """Rows as records, cached for the rules of a design check."""
         columns = [getattr(self, name) for name in self.names()]
-        # whole columns become plain numbers faster than their numbers one by one
+        # converting whole columns to plain numbers is faster than element by element
         plain = [column if isinstance(column, list) else column.tolist() for column in columns]
         return tuple(map(self.record, *plain))
 
@@ -152,17 +152,17 @@ class ColumnTable(Columnar, Generic[Row]):
         return type(self)(**{name: part[:count] for name, part in self.__getstate__().items()})
 
     def with_row(self, row: Row) -> Self:
-        """Return the same table with one more row."""
+        """Return the table with one more row."""
         last = {name: [getattr(row, name)] for name in self.names()}
         return self.joined([self, type(self)(**last)])
 
     def to_dicts(self) -> list[dict[str, Any]]:
-        """The rows as dictionaries of plain numbers and text; None where unknown."""
+        """Rows as dictionaries of plain numbers and text; None stands for unknown values."""
         names = [name for name in self.names() if name != _OF_THE_FILE]
         return [{name: _known(getattr(row, name)) for name in names} for row in self]
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Return a pandas data frame with a row for each of its own."""
+        """Return a pandas data frame with one row per table row."""
         import pandas
 
         names = (name for name in self.names() if name != _OF_THE_FILE)
@@ -224,7 +224,7 @@ def _planned(part: Piece | Clamp) -> float:
 
 @dataclass(frozen=True, slots=True)
 class ComponentRow:
-    """A piece of a solved line: a row of `Components`, which says what the figures are."""
+    """A piece of a solved line, a row of `Components`, which describes the values."""
 
     part: Piece = column("the piece of the file", of_part=lambda piece: piece, in_repr=False)
     index: int = column(
@@ -283,7 +283,7 @@ class ComponentRow:
         of_part=lambda piece: _planned(piece),
     )
     x_top: float = column(
-        f"{_EAST}, of the upper end",
+        f"{_EAST}, at the upper end",
         _IN_BATCHES,
         title="east, upper end",
         unit="m",
@@ -291,7 +291,7 @@ class ComponentRow:
         at_anchor=lambda end: end.above.x_bottom,
     )
     y_top: float = column(
-        f"{_NORTH}, of the upper end",
+        f"{_NORTH}, at the upper end",
         _IN_BATCHES,
         title="north, upper end",
         unit="m",
@@ -299,7 +299,7 @@ class ComponentRow:
         at_anchor=lambda end: end.above.y_bottom,
     )
     x_bottom: float = column(
-        "offset to the east, of the lower end",
+        "offset to the east, at the lower end",
         FILES,
         title="east, lower end",
         unit="m",
@@ -307,7 +307,7 @@ class ComponentRow:
         at_anchor=lambda end: end.above.x_bottom,
     )
     y_bottom: float = column(
-        "offset to the north, of the lower end",
+        "offset to the north, at the lower end",
         FILES,
         title="north, lower end",
         unit="m",
@@ -333,15 +333,15 @@ class ComponentRow:
         at_anchor=lambda end: end.above.tension_bottom,
     )
     tension: float = column(
-        "greatest tension in the piece",
+        "maximum tension in the piece",
         LINE_TABLES | Output.BUILDER,
         place=10,
         found=lambda line: line.greatest_tension,
         at_anchor=lambda end: end.above.tension_bottom,
     )
     least_tension: float = column(
-        "least tension above the seabed; unknown for a piece that lies on it entirely",
-        title="least tension",
+        "minimum tension above the seabed; unknown for a piece entirely on the seabed",
+        title="minimum tension",
         unit="N",
         decimals=0,
         found=lambda line: line.least_tension,
@@ -362,7 +362,7 @@ class ComponentRow:
         at_anchor=lambda end: 0.0,
     )
     safety_factor: float = column(
-        "breaking load over the greatest tension",
+        "breaking load over the maximum tension",
         FILES | LINE_TABLES,
         place=11,
         derived=lambda rows: (
@@ -371,12 +371,12 @@ class ComponentRow:
         ),
     )
     utilisation: float = column(
-        "greatest tension over the working load",
+        "maximum tension over the working load",
         FILES,
         derived=lambda rows: rows.tension / catalogue_figures(rows.part, "working_load"),
     )
     reynolds: float = column(
-        "greatest Reynolds number of speed and diameter",
+        "largest Reynolds number from speed and diameter",
         Output.JSON,
         title="Reynolds number",
         unit="",
@@ -387,7 +387,7 @@ class ComponentRow:
 
     @property
     def place(self) -> Place:
-        """Return which piece it is."""
+        """Place of the piece in the file."""
         return self.part.place
 
     @property
@@ -398,7 +398,7 @@ class ComponentRow:
 
 @dataclass(frozen=True, slots=True)
 class ClampRow:
-    """An instrument clamped on a solved line: a row of `Clamps`."""
+    """An instrument clamped on a solved line, a row of `Clamps`."""
 
     prefix: ClassVar[str] = "clamp_"
 
@@ -427,13 +427,13 @@ class ClampRow:
         of_part=lambda clamp: _planned(clamp),
     )
     x: float = column(
-        f"{_EAST}, of the clamped instrument",
+        f"{_EAST}, at the clamped instrument",
         _IN_BATCHES,
         found=lambda held: held.position[:, 0],
         at_anchor=lambda on: on.anchor.x_bottom,
     )
     y: float = column(
-        f"{_NORTH}, of the clamped instrument",
+        f"{_NORTH}, at the clamped instrument",
         _IN_BATCHES,
         found=lambda held: held.position[:, 1],
         at_anchor=lambda on: on.anchor.y_bottom,
@@ -459,12 +459,12 @@ class ClampRow:
 
     @property
     def place(self) -> Place:
-        """Return which clamp it is."""
+        """Place of the clamp in the file."""
         return self.part.place
 
     @property
     def upper(self) -> tuple[float, float, float]:
-        """Depth, east and north of where it sits [m]."""
+        """Depth, east and north of the clamp [m]."""
         return self.depth, self.x, self.y
 
 
@@ -496,23 +496,24 @@ OF_ROWS = tuple(
          {"place": 5}),
         ("offset", "horizontal distance of the upper end from the anchor",
          Output.MOORING_TABLE, _offset, {"place": 7}),
-        ("serial", "serial number, where the file gives one", Output.JSON,
+        ("serial", "serial number, if specified in the file", Output.JSON,
          lambda row, _: row.part.serial, {}),
-        ("leg", "name of the leg, of a net", Output.JSON | Output.CSV, _leg, {}),
+        ("leg", "name of the leg in a net", Output.JSON | Output.CSV, _leg, {}),
     )
 )  # fmt: skip
-"""Columns of pieces and clamps that no table stores: outputs compute them row by row. JSON omits a
+"""Columns of pieces and clamps that are not stored: outputs compute them row by row. JSON omits a
 column that is None.
 """
 
 
 class Components(ColumnTable[ComponentRow]):
-    """The n pieces of the line in file order; NaN where a figure is unknown.
+    """The n pieces of the line in file order. NaN stands for unknown values.
 
-    Those of a mooring from the free end down, the anchor last; those of a tow from the ship. The
-    columns are the fields of `ComponentRow`, (n,) each: `part`, `use`, `label`, `kind` and `role`
-    are lists, lengths, depths and offsets are in m, tensions in N, `tilt` in degrees; x and y are
-    east and north of the anchor or the tow point, depths + down. `knockdown` is NaN in a tow.
+    The pieces of a mooring are listed from the free end down, with the anchor last, those of a tow
+    from the ship. The columns are the fields of `ComponentRow`, (n,) each: `part`, `use`, `label`,
+    `kind` and `role` are lists; lengths, depths and offsets are in m, tensions in N, and `tilt` in
+    degrees; x and y are east and north of the anchor or the tow point, and depths are positive
+    down. `knockdown` is NaN in a tow.
     """
 
     record = ComponentRow
@@ -521,16 +522,16 @@ class Components(ColumnTable[ComponentRow]):
 class Clamps(ColumnTable[ClampRow]):
     """The m instruments clamped on the line, in file order.
 
-    The columns are the fields of `ClampRow`, (m,) each. `tension` is the greater of those above and
-    below the clamp [N], `tilt` that of the pull in the line, of the sum of those above and below;
-    on a rigid piece that of the piece [degrees].
+    The columns are the fields of `ClampRow`, (m,) each. `tension` is the larger of the tensions
+    above and below the clamp [N]. `tilt` is the angle of the sum of these tensions, or on a rigid
+    piece the tilt of the piece [degrees].
     """
 
     record = ClampRow
 
 
 def documents(table: Components | Clamps, file: MooringFile) -> list[dict[str, Any]]:
-    """The rows as JSON objects; None for unknown figures."""
+    """Rows as JSON objects; None stands for unknown values."""
     own, beside = table.columns(Output.JSON), shown_in(OF_ROWS, Output.JSON)
     rows = []
     for row in table:
@@ -541,20 +542,21 @@ def documents(table: Components | Clamps, file: MooringFile) -> list[dict[str, A
 
 
 def table_columns(output: Output) -> list[ResultColumn]:
-    """The columns of a table for people, from the left; for the builder in the order of entry."""
+    """Columns of a printed table, from left to right, or of the builder in the order of entry."""
     shown = shown_in((*OF_ROWS, *Components.columns()), output)
     return shown if output == Output.BUILDER else sorted(shown, key=lambda one: one.place)
 
 
 @dataclass(frozen=True, repr=False)
 class Shape:
-    """The line node by node, free end first; a clamp's point twice (above, below).
+    """Shape of the line, node by node, free end first, with the point of a clamp twice (above,
+    below).
 
     Attributes
     ----------
-    depth, x, y : (k,) [m]
-    tension : (k,) [N]
-    tilt : (k,) of the segment that ends there [degrees]
+    depth, x, y : (k,) depth, east and north [m]
+    tension : (k,) tension [N]
+    tilt : (k,) angle of the segment that ends at the node [degrees]
     """
 
     prefix: ClassVar[str] = "shape_"
@@ -566,30 +568,30 @@ class Shape:
         attributes=_LEVEL,
     )
     x: Floats = column(
-        f"{_EAST}, of the line",
+        f"{_EAST}, at the node",
         _OF_NODES,
         found=lambda nodes: nodes.position[:, 0],
     )
     y: Floats = column(
-        f"{_NORTH}, of the line",
+        f"{_NORTH}, at the node",
         _OF_NODES,
         found=lambda nodes: nodes.position[:, 1],
     )
     tension: Floats = column("tension of the line", _OF_NODES, found=lambda nodes: nodes.tension)
     tilt: Floats = column(
-        "angle of the segment that ends there from the vertical",
+        "angle of the segment that ends at the node from the vertical",
         _OF_NODES,
         found=lambda nodes: nodes.tilt,
     )
 
     @classmethod
     def columns(cls, output: Output | None = None) -> list[ResultColumn]:
-        """The entries of the columns, by default all, else those that an output shows."""
+        """Entries of the columns, by default all, else those shown in an output."""
         every = columns_of(cls)
         return [*every] if output is None else shown_in(every, output)
 
     def __repr__(self) -> str:
-        """Return how many nodes there are."""
+        """Summary with the number of nodes."""
         return f"Shape({len(self.depth)} nodes)"
 
     def to_dict(self) -> dict[str, list[float]]:
@@ -597,7 +599,7 @@ class Shape:
         return {one.name: getattr(self, one.name).tolist() for one in self.columns(Output.JSON)}
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Return a pandas data frame with a row a node."""
+        """Return a pandas data frame with one row per node."""
         import pandas
 
         return pandas.DataFrame(vars(self))
@@ -607,37 +609,37 @@ class Shape:
         return _dataset(vars(self), self.columns(), "node")
 
 
-# The ends of lines. `calm.case` computes them where it makes these records; all fields are in JSON.
+# Ends of lines. `calm.case` fills these records; all fields are in JSON.
 
 _AN_END = Output.JSON | Output.NET_TABLE
 
 
 @dataclass(frozen=True)
 class Accuracy:
-    """Error estimates of the solver; None where a result, such as a tow, has no anchor."""
+    """Error estimates of the solver; None for results without an anchor, such as a tow."""
 
-    depth: float = column("worst error expected of any depth or offset", Output.JSON)
-    tension: float = column("worst error expected of any tension", Output.JSON)
+    depth: float = column("estimate of the largest error of any depth or offset", Output.JSON)
+    tension: float = column("estimate of the largest error of any tension", Output.JSON)
     anchor: float | None = column(
-        "worst error expected of the vertical and horizontal pull on the anchor",
+        "estimate of the largest error of the vertical and horizontal anchor load",
         Output.JSON,
-        title="pull on the anchor",
+        title="anchor load",
         unit="N",
         decimals=0,
         default=None,
     )
     required_weight: float | None = column(
-        "error expected of the weight in water that the anchor needs", Output.JSON, default=None
+        "estimate of the error of the anchor's required weight in water", Output.JSON, default=None
     )
 
 
 @dataclass(frozen=True)
 class Top:
-    """The free end of a line; None for figures that it lacks."""
+    """The free end of a line, with None for unavailable values."""
 
     depth: float = column("depth of the free end", Output.JSON)
-    x: float = column(f"{_EAST}, of the free end", Output.JSON)
-    y: float = column(f"{_NORTH}, of the free end", Output.JSON)
+    x: float = column(f"{_EAST}, at the free end", Output.JSON)
+    y: float = column(f"{_NORTH}, at the free end", Output.JSON)
     knockdown: float | None = column(
         "depth of the free end less its depth in still water", Output.JSON
     )
@@ -691,25 +693,25 @@ class TowedBody:
 
 @dataclass(frozen=True)
 class EndLoad:
-    """The load of a leg on its anchor, or on what holds its end; held ends lack the last four."""
+    """Load of a leg on its anchor or other support; the last four values exist for anchors only."""
 
     leg: str = column("name of the leg", Output.JSON)
-    tension: float = column("tension of the leg at its end", _AN_END, title="pull", place=1)
-    vertical: float = column("upward pull of the leg", _AN_END, title="up", place=2)
-    horizontal: float = column("horizontal pull of the leg", _AN_END, title="sideways", place=3)
+    tension: float = column("tension of the leg at its end", _AN_END, title="tension", place=1)
+    vertical: float = column("upward pull of the leg", _AN_END, title="vertical", place=2)
+    horizontal: float = column("horizontal pull of the leg", _AN_END, title="horizontal", place=3)
     angle: float = column("angle of the pull from the vertical", Output.JSON)
     x: float = column("offset of the end to the east of the origin", _AN_END, place=5)
     y: float = column("offset of the end to the north of the origin", _AN_END, place=6)
     depth: float = column("depth of the end", _AN_END, place=4)
     required_weight: float | None = column(
-        "weight in water that the anchor needs", _AN_END, title="needs", place=7, default=None
+        "weight in water that the anchor needs", _AN_END, title="required", place=7, default=None
     )
     weight: float | None = column("weight of the anchor in water", Output.JSON, default=None)
     grounded_length: float = column(
         "unstretched length of the leg on the seabed", Output.JSON, default=0.0
     )
     slack_length: float = column(
-        "surplus length on the seabed, beyond the way to the anchor",
+        "length on the seabed in excess of the distance to the anchor",
         Output.JSON,
         title="slack length",
         unit="m",
@@ -726,7 +728,7 @@ class NodePlace:
     x: float = column("offset of the node to the east of the origin", _AN_END)
     y: float = column("offset of the node to the north of the origin", _AN_END)
     imbalance: float = column(
-        "remaining sum of the pulls at the node",
+        "remaining sum of the forces at the node",
         Output.JSON,
         title="imbalance",
         unit="N",
@@ -744,7 +746,7 @@ ENDS: Mapping[str, type[Any]] = {
 """Records of a single line by their names in JSON and of the result in Python."""
 
 NET_ENDS: Mapping[str, type[Any]] = {"anchors": EndLoad, "held": EndLoad, "nodes": NodePlace}
-"""Records of a net, each name for several of them."""
+"""Records of a net; each name refers to several records."""
 
 
 def _free(line: Any) -> float:
@@ -767,14 +769,14 @@ MOORED_ENDS = (
         QUANTITIES["vertical"],
         "upward pull of the line on the anchor",
         _OF_ENDS,
-        found=lambda line: line.anchor.vertical,
+        found=lambda line: line.anchor_load.vertical,
     ),
     ResultColumn(
         "anchor_horizontal",
         QUANTITIES["horizontal"],
         "horizontal pull of the line on the anchor",
         _OF_ENDS,
-        found=lambda line: line.anchor.horizontal,
+        found=lambda line: line.anchor_load.horizontal,
     ),
     ResultColumn(
         "used_buoyancy",
@@ -786,7 +788,7 @@ MOORED_ENDS = (
     ResultColumn(
         "other_used_buoyancy",
         QUANTITIES["used_buoyancy"],
-        "the same share in another equilibrium, if one was found",
+        "share of the buoyancy in use in another equilibrium, if one was found",
         _OF_ENDS,
         found=lambda line: _free(line) * line.other_used_buoyancy,
     ),
@@ -827,24 +829,24 @@ TOWED_ENDS = (
 
 
 class WithClamps(Protocol):
-    """Describe a result as far as its pieces and clamps go."""
+    """A result with pieces and clamps."""
 
     @property
     def components(self) -> Components:
-        """Return the pieces."""
+        """Pieces of the line."""
 
     @property
     def clamps(self) -> Clamps:
-        """Return what is clamped on them."""
+        """Instruments clamped on the pieces."""
 
 
 def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
-    """Return every row of a result by the place of its piece or clamp."""
+    """Rows of a result by the place of the piece or clamp."""
     return {row.place: row for row in (*result.components, *result.clamps)}
 
 
 def rows_down(result: WithClamps) -> Iterator[tuple[ComponentRow, list[ClampRow]]]:
-    """Yield the pieces of a result, each with what is clamped on it; no stand-in for an anchor."""
+    """Yield the pieces of a result, each with its clamps, without placeholders for anchors."""
     on: dict[int, list[ClampRow]] = {}
     for clamp in result.clamps:
         on.setdefault(clamp.index, []).append(clamp)

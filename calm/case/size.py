@@ -16,29 +16,30 @@ from calm.solve.least_change import LeastChange
 from calm.units import with_unit
 
 MET, MET_ALREADY, NOT_MET = "met", "met-already", "not-met"
-"""The statuses of a sizing."""
+"""Statuses of a sizing."""
 
 _NOTHING = 1e-6
-"""A change of the target's quantity, as a share of it, that counts as none."""
+"""Relative change of the target's quantity that counts as none."""
 SOLVES = 60.0
-"""About how many equilibria an answer takes: three for each value tried."""
+"""Approximate number of equilibria per answer, three for each value tried."""
 
 _EXACT = 1e-7
-"""Error of an `=` target that counts as met, as a share of the limit or of the first distance from
-it."""
+"""Error of an `=` target that counts as met, as a share of the limit or of the initial distance to
+the limit.
+"""
 
 
 @dataclass(frozen=True)
 class Trial:
-    """The mooring with one value of what is changed.
+    """The mooring with one value of the changed number.
 
     Attributes
     ----------
-    value : of what is changed, in the unit of the adjustment
-    measured : the target's quantity, SI and degrees; None without an equilibrium
+    value : the changed value, in the unit of the adjustment
+    measured : the target's quantity, in SI units and degrees; None without an equilibrium
     result : the solved mooring, or None
-    failure : why there is none
-    place : of the part whose depth and excursion are told; the top of a single line
+    failure : why there is no equilibrium
+    place : place of the part whose depth and excursion are reported; by default the top of the line
     """
 
     value: float
@@ -49,7 +50,7 @@ class Trial:
 
     @property
     def figures(self) -> Figures | None:
-        """Return the figures of the line and its top, of a net those of the part aimed at."""
+        """Values of the line and its top, or in a net of the target's part."""
         return None if self.result is None else figures_of(self.result, self.place)
 
 
@@ -59,14 +60,14 @@ class Sizing:
 
     Attributes
     ----------
-    target, change : what was wanted, and what might be changed for it
-    range : of the change, least and greatest
+    target, change : the target, and the value that may be changed
+    range : smallest and largest value of the change
     status : ``met``, ``met-already`` (nothing to change) or ``not-met``
-    before, after : the mooring as given, and with the smallest change that meets the target, solved
-        with the settings of its file; `after` is None where the target is not met
-    message, advice : why it is not met, and what to do
-    steady : whether the quantity only rose or only fell over the values tried
-    solves : how many equilibria were sought
+    before, after : the original mooring, and the mooring with the smallest change that meets the
+        target, solved with the settings of its file; `after` is None if the target is not met
+    message, advice : reason why the target is not met, and advice
+    steady : whether the quantity is monotonic over the values tried
+    solves : number of equilibria computed
     """
 
     target: Target
@@ -82,7 +83,7 @@ class Sizing:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Return what to keep in mind with the answer."""
+        """Remarks on the answer."""
         notes = [self.change.note] if self.change.note and self.status == MET else []
         if not self.steady:
             notes.append(
@@ -92,7 +93,7 @@ class Sizing:
         return tuple(notes)
 
     def to_dict(self) -> dict[str, Any]:
-        """A JSON object: SI and degrees, null where a figure is unknown."""
+        """Return the JSON object, in SI units and degrees, with null for unknown values."""
         from calm.version import __version__
 
         document: dict[str, Any] = {
@@ -132,19 +133,19 @@ def size(
 ) -> Sizing:
     """Find the smallest change of a mooring that meets a target.
 
-    Every value tried is solved as `Design.solve` does, a piece cut to fit being cut anew.
+    Every value tried is solved as in `Design.solve`, with fitted pieces fitted anew.
 
     Parameters
     ----------
     target : e.g. ``knockdown(top) <= 20 m``, see `calm.case.targets`
     change : e.g. ``top float.buoyancy``, see `calm.case.adjustment`
-    between : the range of the change, each end with its unit; by default a buoyancy goes from 0
-        to a hundred times what it is, a length to twice the water depth, a count to 1000
+    between : range of the change, each end with its unit; by default from 0 to a hundred times a
+        buoyancy, to twice the water depth for a length, and to 1000 for a count
 
     Raises
     ------
     UsageError
-        Target, change or range cannot be understood; all their mistakes at once. It is a tow.
+        Target, change or range are invalid (all mistakes are reported), or the design is a tow.
     """
     refuse_tow(mooring.file)
     wanted, adjustment, limits = _understood(mooring, target, change, between)
@@ -227,7 +228,7 @@ def _understood(
 def _why_not(
     search: LeastChange, target: Target, change: Adjustment, at: Callable[[float], Trial]
 ) -> tuple[str, str]:
-    """Return why no value was found, and what to do."""
+    """Return the reason why no value was found, and advice."""
     least = search.least
     span = f"from {with_unit(search.low, change.unit)} to {with_unit(search.high, change.unit)}"
     if least is None:
@@ -238,20 +239,18 @@ def _why_not(
                 f"{target.quantity}."
             )
             return message, "Choose another quantity, such as the excursion."
-        message = f"The mooring has no equilibrium for any {change.text} {span}. As it is:"
+        message = f"The mooring has no equilibrium for any {change.text} {span}. Present value:"
         return f"{message} {failure.status}: {failure.message}", failure.advice
     best = at(least)
     assert best.measured is not None
     nearest, where = with_unit(best.measured, target.unit), with_unit(least, change.unit)
     as_it_is = at(change.now).measured
     if as_it_is is not None and abs(best.measured - as_it_is) <= _NOTHING * abs(as_it_is):
-        message = (
-            f"The present value comes nearest, with {nearest}; {change.text} was tried {span}."
-        )
+        message = f"The present value is closest, with {nearest}; {change.text} was tried {span}."
     else:
-        message = f"The nearest is {nearest}, with {change.text} at {where}; tried {span}."
+        message = f"The closest is {nearest}, with {change.text} at {where}; tried {span}."
     for neighbour, side in zip(search.neighbours(least), ("Below", "Above"), strict=True):
         failure = at(neighbour).failure
         if failure is not None:
             message += f" {side} that: {failure.status}: {failure.message}"
-    return message, "Ask for less, change another part, or allow more with --between."
+    return message, "Relax the target, change another part, or extend the range with --between."

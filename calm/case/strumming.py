@@ -17,10 +17,10 @@ from calm.solve.audit import amplification, flow_across
 
 @dataclass(frozen=True)
 class Strumming:
-    """Describe how the cables strum: the frequency [Hz], and the range of their Cn.
+    """Strumming of the cables: frequency [Hz], and range of their Cn.
 
-    `frequency` is that at which all of a towed cable vibrates; of a mooring, the highest at which
-    any cable sheds its vortices.
+    `frequency` is the common frequency of a towed cable; for a mooring it is the highest shedding
+    frequency of its cables.
     """
 
     frequency: float
@@ -29,7 +29,9 @@ class Strumming:
 
 
 def strumming_of(solver: Solver, solution: Solution) -> Strumming | None:
-    """Frequency and range of Cn over the cables; None where none strums or is asked to."""
+    """Frequency and range of Cn over the cables; None without a law of strumming or without
+    cables.
+    """
     line, piece = solution.line, solution.element_piece
     cables = (line.diameter[piece] > 0.0) & (solution.element_clamp < 0) & (solution.cut > 0.0)
     if solver.strumming is None or not cables.any():
@@ -45,20 +47,20 @@ def strumming_of(solver: Solver, solution: Solution) -> Strumming | None:
 
 
 FACTOR = 1.5
-"""Factor on the Cn of every cable: about what is measured on mooring lines that strum."""
+"""Factor on the Cn of every cable, about the measured value on strumming mooring lines."""
 
 
 @dataclass(frozen=True)
 class StrummingBand:
-    """Hold the same line with Cn × `factor` on all its cables, None where that has no equilibrium.
+    """Results for the line with Cn × `factor` on all its cables; None if there is no equilibrium.
 
     Attributes
     ----------
-    factor : [-]
-    status : of that line
-    depth : of the top of a mooring, or of a towed body [m]
-    knockdown : of the top of a mooring, where still water has a shape of its own [m]
-    tension : on the anchor or the ship [N]
+    factor : factor on Cn [-]
+    status : status of that line
+    depth : depth of the top of a mooring, or of a towed body [m]
+    knockdown : knockdown of the top of a mooring, if it has a unique shape in still water [m]
+    tension : tension at the anchor or the ship [N]
     """
 
     factor: float
@@ -69,9 +71,10 @@ class StrummingBand:
 
 
 def band_of(leg: Leg, still_depth: float | None = None) -> StrummingBand | None:
-    """The band of a line, of a mooring that is `still_depth` deep in still water [m].
+    """Compute the strumming band of a line; `still_depth` is the depth of a mooring's top in still
+    water [m].
 
-    None where nothing can strum or a law of strumming is already in use.
+    None if no cable can strum, or if the file has a law of strumming.
     """
     line, cables = leg.line, leg.line.diameter > 0.0
     if leg.file.solver.strumming is not None or not (line.normal_drag[cables] > 0.0).any():

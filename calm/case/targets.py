@@ -1,4 +1,4 @@
-"""Targets that a mooring is to reach, as a person writes them: ``knockdown(CTD) <= 20 m``."""
+"""Targets for a mooring in text form, such as ``knockdown(CTD) <= 20 m``."""
 
 import re
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ QUANTITIES = {
     "tension": "force",
     "required_weight": "force",
 }
-"""What can be a target, and its dimension; the last is of the anchor."""
+"""Quantities of a target, with their dimensions; the last refers to the anchor."""
 
 RELATIONS = {"<=": "<=", "≤": "<=", ">=": ">=", "≥": ">=", "=": "=", "==": "="}
 
@@ -34,7 +34,7 @@ _EXAMPLE = "knockdown(top) <= 20 m"
 
 
 def pointed(option: str, text: str, column: int, message: str) -> UsageError:
-    """A mistake in an option, with a caret under where it is."""
+    """Return the error for an option, with a caret under the mistake."""
     return UsageError(f"{option}: {message}\n  {text}\n  {' ' * column}^")
 
 
@@ -44,12 +44,12 @@ class Target:
 
     Attributes
     ----------
-    text : as it was written
+    text : the original text
     quantity : one of `QUANTITIES`
-    label, place : of the part; None for the top of the line, and for the anchor's required weight,
-        of which `label` is the leg in a net
+    label, place : label and place of the part; None for the top of the line, and for the anchor's
+        required weight, for which `label` is the leg in a net
     relation : ``<=``, ``>=`` or ``=``
-    limit : SI, degrees
+    limit : limit, in SI units or degrees
     """
 
     text: str
@@ -65,7 +65,7 @@ class Target:
         return DIMENSIONS[QUANTITIES[self.quantity]].unit
 
     def value(self, result: Result) -> float | None:
-        """The quantity in a result; None for a knockdown that has no meaning."""
+        """The quantity in a result; None for an undefined knockdown."""
         if self.quantity == "required_weight":
             (anchor,) = (one for one in result.anchors if self.label in (None, one.leg))
             return anchor.required_weight
@@ -79,23 +79,23 @@ class Target:
 
 
 def parse_target(text: str, file: MooringFile) -> Target:
-    """Read a target, e.g. ``tilt(current meter 2) <= 5 deg`` or ``required_weight <= 8 kN``.
+    """Parse a target, e.g. ``tilt(current meter 2) <= 5 deg`` or ``required_weight <= 8 kN``.
 
     Parameters
     ----------
-    text : a quantity, the part of the line in brackets (``top``, when not given), ``<=``, ``>=``
+    text : a quantity, the part of the line in brackets (by default ``top``), ``<=``, ``>=``
         or ``=``, and a limit with its unit
-    file : in which labels are looked up; the required weight in a net is of the anchor of a leg,
-        named in the brackets where there are several: ``required_weight(stem) <= 8 kN``
+    file : mooring in which labels are looked up; in a net the required weight is that of a leg's
+        anchor, named in brackets if there are several: ``required_weight(stem) <= 8 kN``
 
     Raises
     ------
     UsageError
-        With a caret under what is wrong, and the nearest right thing.
+        The text is invalid; the message points to the mistake and suggests a correction.
     """
     text = " ".join(text.split())
     found = _FORM.fullmatch(text)
-    assert found is not None  # the form fits any text of one line
+    assert found is not None  # the pattern matches any text of one line
 
     def mistake(group: str, message: str) -> UsageError:
         return pointed("--target", text, found.start(group), message)
@@ -125,7 +125,7 @@ def parse_target(text: str, file: MooringFile) -> Target:
         except LookupError as error:
             raise mistake("label", str(error.args[0])) from None
     elif file.legs and quantity != "required_weight":
-        raise mistake("quantity", f"a net has no one top; name a piece: `{quantity}(LABEL)`")
+        raise mistake("quantity", f"a net has no single top; add a piece: `{quantity}(LABEL)`")
     try:
         limit = parse_quantity(found["limit"], QUANTITIES[quantity])
     except QuantityError as error:
@@ -136,10 +136,11 @@ def parse_target(text: str, file: MooringFile) -> Target:
 
 
 def spot_of(result: Result, place: Place | None = None) -> dict[str, Any]:
-    """Return depth, excursion and knockdown [m], tilt [degrees] and tension [N] of a part.
+    """Depth, excursion and knockdown [m], tilt [degrees] and tension [N] of a part.
 
-    Of a piece they are those of its upper end, and the tension is the greatest in it; the knockdown
-    is None where still water has no unique shape. Without a place it is the top of the line.
+    For a piece, they refer to its upper end, and the tension is the maximum in the piece. The
+    knockdown is None if the line has no unique shape in still water. The default place is the top
+    of the line.
     """
     row: ComponentRow | ClampRow = result.components[0]
     if place is not None:
@@ -160,9 +161,9 @@ class Figures:
 
     Attributes
     ----------
-    depth, knockdown, excursion : of the line's top or another part of it
+    depth, knockdown, excursion : values at the line's top or at another part
     used_buoyancy : share in use of the buoyancy at the surface, 1 below it
-    tension, vertical, horizontal, required_weight : of the anchor; None where there is none
+    tension, vertical, horizontal, required_weight : anchor load; None without an anchor
     """
 
     depth: float
@@ -176,9 +177,10 @@ class Figures:
 
 
 def figures_of(result: Result, place: Place | None = None) -> Figures:
-    """The figures of a result; those of the line are of the part at a place, by default the top.
+    """Summary values of a result; values of the line refer to the part at a place, by default the
+    top.
 
-    Of several anchors it is the one that needs the most weight.
+    With several anchors, the anchor is the one with the largest required weight.
     """
     spot, leg = spot_of(result, place), leg_at(result, place)
     anchor = max(result.anchors, key=lambda one: one.required_weight or 0.0, default=None)
@@ -190,7 +192,7 @@ def figures_of(result: Result, place: Place | None = None) -> Figures:
 
 
 def leg_at(result: Result, place: Place | None = None) -> LegResult:
-    """The leg that the part at a place is in, by default the first; a single line is one."""
+    """The leg with the part at a place, by default the first leg."""
     for leg in result.legs:
         if place is None or any(part.place == place for part in parts_of(leg.leg.pieces)):
             return leg

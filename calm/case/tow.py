@@ -9,20 +9,21 @@ from calm.case.design import Design, Result
 from calm.errors import NoEquilibrium, or_why_not
 
 SOLVES = 3.0
-"""About how many equilibria one speed takes."""
+"""Approximate number of equilibria per speed."""
 
 
 def at_speed(tow: Design, speed: float) -> Design:
-    """Return a tow at another speed of the ship [m/s]; a fitted cable keeps its length."""
+    """Return a tow at another ship speed [m/s]; a fitted cable keeps its length."""
     assert tow.file.tow is not None
     keys = tow.file.tow.model_copy(update={"speed": speed})
     return Design(replace(tow.file, tow=keys), lines=(tow.line,))
 
 
 def sweep(tow: Design, speeds: Iterable[float]) -> list[Result | NoEquilibrium]:
-    """Return the result at each speed of the ship [m/s], > 0, or the reason why there is none.
+    """Solve a tow at several ship speeds [m/s], > 0; each item is a result or the reason why there
+    is none.
 
-    Speeds are taken one at a time; the tow's own only decides the length of a cable that is fitted.
-    NoEquilibrium: no length of that reaches its depth at the tow's own speed.
+    Speeds are solved one at a time; the tow's own speed only determines the length of a fitted
+    cable. Raises NoEquilibrium if no length of this cable reaches its depth at the tow's own speed.
     """
     return [or_why_not(at_speed(tow, speed).solve) for speed in speeds]

@@ -1,7 +1,7 @@
-"""Uncertainty of the figures of a mooring, which is solved for many draws of its inputs.
+"""Uncertainty of the results of a mooring, from solutions for many draws of its inputs.
 
-Every sample is solved on the cuts of the mooring as given, or anew where that finds no equilibrium
-of the same kind, and passes every check of a solution.
+Every sample is solved on the cuts of the original mooring, or anew if this finds no equilibrium of
+the same kind, and must pass every check of a solution.
 """
 
 from __future__ import annotations
@@ -20,22 +20,21 @@ from calm.case.design import Result
 from calm.case.draws import CAUSES, SAMPLES, Draw, checked_samples, drawn, draws_of, normals_of
 from calm.case.ends import anchor_load
 from calm.case.leg import Leg
-from calm.case.line_figures import LineFigures
-from calm.case.measure import clamps_of
+from calm.case.line_figures import ClampFigures, LineFigures
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats
-from calm.solve import expect_many
+from calm.solve import CompiledPart, expect_many
 
 BLOCK = 128
-"""Samples that one process solves at a time."""
+"""Number of samples that a process solves at a time."""
 
 LEVELS = (5.0, 50.0, 95.0)
-"""Percentiles that are given."""
+"""Percentiles of the results."""
 
 
 @dataclass(frozen=True)
 class Contribution:
-    """The share of the variance of a quantity that a cause explains, alone and with others."""
+    """Share of the variance of a quantity that a cause explains, alone and with other causes."""
 
     cause: str
     quantity: str
@@ -45,20 +44,24 @@ class Contribution:
 
 @dataclass(frozen=True)
 class Uncertain:
-    """Describe how sure the figures of a mooring are. Percentiles are in the order of `LEVELS`.
+    """Uncertainty of the results of a mooring, as percentiles in the order of `LEVELS`.
 
     Attributes
     ----------
-    result : of the mooring as given
-    samples, seed : of the sequence
-    failures : samples without equilibrium, by status; all other figures are of the rest
-    depth_top, knockdown, tilt, tension : (3, p) of the p pieces, the anchor last; knockdown is
-        NaN where the line has no unique shape in still water [m], [m], [degrees], [N]
-    offset : (3, p) of the top of each piece from the anchor, in the direction of the free end [m]
-    clamps : (3, 4, m) depth, knockdown, tilt and tension of the m clamps above the anchor, as those
-    anchor_tension, required_weight : (3,) [N]
-    contributions : to the top's knockdown, or afloat to its excursion; none where it does not vary
-    unexplained : share of that variance that the fit of the indices does not explain
+    result : result of the original mooring
+    samples, seed : size and seed of the sequence
+    failures : number of samples without equilibrium, by status; all other values are for the
+        remaining samples
+    depth_top, knockdown, tilt, tension : (3, p) values of the p pieces, the anchor last; knockdown
+        is NaN if the line has no unique shape in still water [m], [m], [degrees], [N]
+    offset : (3, p) offset of the top of each piece from the anchor, in the direction of the free
+        end [m]
+    clamps : (3, 4, m) depth, knockdown, tilt and tension of the m clamps above the anchor, in the
+        same units
+    anchor_tension, required_weight : (3,) anchor tension and required anchor weight [N]
+    contributions : contributions to the top's knockdown, or at the surface to its excursion; empty
+        if it does not vary
+    unexplained : share of this variance that the fit of the indices does not explain
     """
 
     result: Result
@@ -83,12 +86,14 @@ class Uncertain:
 
     @property
     def clamped(self) -> list[tuple[int, str]]:
-        """The component and the label of each clamp."""
+        """Component index and label of each clamp."""
         given = self.result.clamps
         return list(zip(given.index, given.label, strict=True))[: self.clamps.shape[2]]
 
     def to_dict(self) -> dict[str, Any]:
-        """The object `uncertainty` of the result format: SI, null where a figure is unknown."""
+        """Return the object `uncertainty` of the JSON results, in SI units, with null for unknown
+        values.
+        """
         columns = ("depth_top", "knockdown", "tilt", "tension")
         clamps = [
             {"index": int(index), "label": label}
@@ -118,7 +123,7 @@ def _known(values: Floats) -> list[float] | None:
 
 
 Mapped = Callable[[Callable[[Any], Any], Sequence[Any]], Iterable[Any]]
-"""Applies a function to every task, in their order: `map`, or several processes."""
+"""Function that applies a function to all tasks in order: `map`, or several processes."""
 
 
 def uncertain(
@@ -128,27 +133,27 @@ def uncertain(
     mapped: Mapped = map,
     normals: Callable[[], Floats] | None = None,
 ) -> Uncertain:
-    """Return how sure the figures of a solved mooring are.
+    """Compute the uncertainty of a solved mooring.
 
     Parameters
     ----------
-    result : of a mooring; what its file says under `uncertainty` is drawn
+    result : result of a mooring; the draws follow `uncertainty` in its file
     samples : a power of two from `FEWEST` to `MOST`
-    seed : of the scrambling; the same seed gives the same figures
-    mapped : applies the solver to blocks of samples
-    normals : returns `normals_of(samples, seed)`, where another process computes it
+    seed : seed of the scrambling; the same seed gives the same results
+    mapped : function that applies the solver to blocks of samples
+    normals : function that returns `normals_of(samples, seed)`, if another process computes it
 
     Raises
     ------
     UsageError
-        The number of samples is no such number; it is a tow, or has several legs.
+        The number of samples is invalid, or the design is a tow or has several legs.
     NoEquilibrium
         No sample has an equilibrium.
     """
     leg = result.design.moored
     checked_samples(samples)
-    expect_many(samples)
-    _figures(leg, [Draw()])  # fetches what is compiled, once for the processes that are forked
+    expect_many(samples, CompiledPart.NEARBY)
+    _figures(leg, [Draw()])  # loads compiled code once, before processes are forked
     normal = normals_of(samples, seed) if normals is None else normals()
     draws = draws_of(leg.file.uncertainty, normal)
     blocks = [draws[first : first + BLOCK] for first in range(0, samples, BLOCK)]
@@ -187,7 +192,7 @@ def uncertain(
 def _figures(
     leg: Leg, draws: Sequence[Draw]
 ) -> list[tuple[Floats, tuple[float, float]] | NoEquilibrium]:
-    """Return (5, p + m) figures of the pieces and clamps, and those of the anchor, draw by draw."""
+    """Values (5, p + m) of the pieces and clamps, and values of the anchor, draw by draw."""
     figures: list[tuple[Floats, tuple[float, float]] | NoEquilibrium] = []
     for one in drawn(leg, draws):
         try:
@@ -207,13 +212,14 @@ def _figures_of(leg: Leg) -> tuple[Floats, tuple[float, float]]:
     offset = (x * x[0] + y * y[0]) / excursion if excursion else np.zeros(len(x))
     pieces = np.stack([-up, rows.knockdown, rows.tilt, tension, offset])
     anchor = [-rows.bottom[-1, 2], 0.0, 0.0, load.tension, 0.0]
-    held = clamps_of(leg.file.pieces[:-1], solution, still)
-    clamps = np.stack([held.depth, held.knockdown, held.tilt, held.tension, 0.0 * held.depth])
+    held = ClampFigures(leg.file.pieces[:-1], solution, still)
+    depth = -held.position[:, 2]
+    clamps = np.stack([depth, held.knockdown, held.tilt, held.tension, 0.0 * depth])
     return np.column_stack([pieces, anchor, clamps]), (load.tension, load.required_weight)
 
 
 def _contributions(quantity: str, indices: Indices | None) -> tuple[Contribution, ...]:
-    """The greatest first."""
+    """Contributions in decreasing order."""
     if indices is None:
         return ()
     found = [
@@ -224,20 +230,20 @@ def _contributions(quantity: str, indices: Indices | None) -> tuple[Contribution
 
 
 ORDER = 3
-"""Order of the terms of one input; those of two have the order 2, and there are none of three."""
+"""Highest order of the terms of one input. Products of two inputs are also included."""
 FEWEST = 4
-"""Samples for each coefficient, at least."""
+"""Smallest number of samples per coefficient."""
 
 
 @dataclass(frozen=True)
 class Indices:
-    """Shares of the variance of a figure.
+    """Shares of the variance of a quantity.
 
     Attributes
     ----------
-    first : (k,) what each input causes by itself
-    total : (k,) what it has a part in
-    unexplained : what no term of the fit explains
+    first : (k,) first-order index of each input
+    total : (k,) total index of each input
+    unexplained : share that no term of the fit explains
     """
 
     first: Floats
@@ -246,22 +252,22 @@ class Indices:
 
 
 def sobol_indices(normals: Floats, values: Floats) -> Indices | None:
-    """Return the Sobol' indices of a figure from samples of it, by a fit of Hermite polynomials.
+    """Estimate Sobol' indices from samples of a quantity, by a fit of Hermite polynomials.
 
-    A figure y of independent standard normal inputs z is written y = Σ c_a ψ_a(z), ψ_a products of
-    normalised Hermite polynomials. These are orthonormal, so that c_a² is the part of the variance
-    that the term adds: all terms of one input alone give its first-order index, all terms that it
-    is in its total index. The coefficients are found by least squares (Sudret, Reliability
-    Engineering and System Safety 93, 2008, 964-979).
+    A quantity y of independent standard normal inputs z is written y = Σ c_a ψ_a(z), with ψ_a
+    products of normalised Hermite polynomials. These are orthonormal, so c_a² is the contribution
+    of a term to the variance. The sum over all terms of one input alone gives its first-order
+    index, and the sum over all terms that contain the input its total index. The coefficients are
+    found by least squares (Sudret, Reliability Engineering and System Safety 93, 2008, 964-979).
 
     Parameters
     ----------
     normals : (n, k) independent standard normal inputs
-    values : (n,) the figure at them
+    values : (n,) values of the quantity for these inputs
 
     Returns
     -------
-    Indices, or None where there are too few samples, or the figure does not vary
+    Indices, or None if there are too few samples or the quantity does not vary.
     """
     count, inputs = normals.shape
     powers = [(i, order) for i in range(inputs) for order in range(1, ORDER + 1)]

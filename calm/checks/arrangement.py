@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from math import cos, radians, sin
 
@@ -38,6 +39,9 @@ _NO_RELEASE = re.compile(r"\b(shackle|swivel|sling|chain|rope|wire|thimble|pear[
 _TWICE = re.compile(r"\b(double|dual|pair|twin|tandem|two|releases)\b")
 _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
 
+
+GRAPPLED = 100.0
+"""Depth of water down to which a line is dived or grappled for if its release fails [m]."""
 
 LEAST_BELOW_RELEASE = 1.0
 """How far above its anchor a release should stand [m]."""
@@ -81,7 +85,8 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         )
         doubts.append((piece, message, "Hang it higher, on a rope or chain."))
     said = _words(piece.use, piece.component.name, piece.label)
-    if sum(component.role == "release" for component in above) == 1 and not _TWICE.search(said):
+    alone = sum(component.role == "release" for component in above) == 1
+    if alone and leg.water.depth > GRAPPLED and not _TWICE.search(said):
         message = f"{piece.label} is the only release: if it fails, nothing else frees the line."
         doubts.append((piece, message, "Use two in parallel, and call them a `pair`."))
     for index, one in enumerate(pieces[:release]):
@@ -89,7 +94,8 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
             message = f"Nothing above release {one.label} floats: once released, nothing comes up."
             doubts.append((one, message, "Put it below what floats, or give it another role."))
     for one in below:
-        if net_buoyancy(one.component, leg.water.gravity) > 0.0:
+        floats = net_buoyancy(one.component, leg.water.gravity) > 0.0
+        if floats and not isinstance(one.component, Flexible):
             message = f"{one.label} floats, but below the release: it stays on the anchor."
             doubts.append((one, message, "Put it above the release, or use one that sinks."))
     for part, message, remedy in doubts:
@@ -114,27 +120,29 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
 
 @rule("swivel", once=True)
 def swivel(handling: Handling) -> Iterator[Verdict]:
-    """A swivel between every wire that bears torque and a float that leans and turns with it.
+    """A swivel at an end of every wire that bears torque, if a float that leans holds that end.
 
     A wire rope that is not torque-balanced turns under load and back as the load goes, and a float
-    in the current holds it: it kinks. Chain and synthetic rope between them bear no torque.
+    in the current holds it: it kinks. A swivel at either end lets it turn, as do chain and
+    synthetic rope, which bear no torque.
     """
     pieces = handling.leg.file.pieces
     for index, piece in enumerate(pieces):
         if not _bears_torque(piece.component):
             continue
-        for way in (pieces[:index][::-1], pieces[index + 1 :]):
-            held = _held_by(way)
-            if held is None:
-                continue
-            beside, has_swivel = held
-            ends = f"{piece.label} is not torque-balanced and ends at {beside.label}"
-            if has_swivel:
-                yield verdict_on(piece, State.PASS, f"{ends}, with a swivel between them.")
-            else:
-                message = f"{ends}, which leans in the current, without a swivel between them."
-                remedy = "Put a swivel there, or take wire that is `torque_balanced`."
-                yield verdict_on(piece, State.WARN, message, remedy)
+        ways = (pieces[:index][::-1], pieces[index + 1 :])
+        ends = [held for way in ways if (held := _held_by(way)) is not None]
+        if not ends:
+            continue
+        turning = next((beside for beside, has_swivel in ends if has_swivel), None)
+        beside = turning or ends[0][0]
+        told = f"{piece.label} is not torque-balanced and ends at {beside.label}"
+        if turning is not None:
+            yield verdict_on(piece, State.PASS, f"{told}, with a swivel between them.")
+        else:
+            message = f"{told}, which leans in the current, without a swivel between them."
+            remedy = "Put a swivel there, or take wire that is `torque_balanced`."
+            yield verdict_on(piece, State.WARN, message, remedy)
 
 
 def _bears_torque(component: Component) -> bool:
@@ -199,22 +207,33 @@ def _span(clamp: Clamp, middle: float) -> tuple[float, float, Clamp]:
 
 @rule("metals", once=True)
 def metals(handling: Handling) -> Iterator[Verdict]:
-    """Metals far apart in the galvanic series that touch, wherever both materials are known."""
+    """Metals far apart in the galvanic series that touch, wherever both materials are known.
+
+    Pieces and clamps that are `insulated` touch nothing. The jaws of clamps for instruments are of
+    plastic, so a clamp touches its line only where its component says `insulated: false`.
+    """
     warned: set[str] = set()
     for base, noble, volts in unlike_metals(handling.leg.file.pieces):
-        if base.label not in warned:
+        if base.label not in warned and not (_is_insulated(base) or _is_insulated(noble)):
             warned.add(base.label)
             message = (
                 f"{base.label} ({base.component.material}) touches {noble.label} "
                 f"({noble.component.material}), {volts:.2f} V nobler in sea water, and corrodes."
             )
-            remedy = "Insulate them from each other, or give an anode."
-            margin = GREATEST_DIFFERENCE - volts
-            yield verdict_on(base, State.WARN, message, remedy, volts, GREATEST_DIFFERENCE, margin)
+            remedy = "Insulate them from each other and set `insulated: true`, or fit an anode."
+            yield at_most(base, volts, GREATEST_DIFFERENCE, message, remedy, State.WARN)
+
+
+def _is_insulated(part: Piece | Clamp) -> bool:
+    insulated = part.component.insulated
+    return isinstance(part, Clamp) if insulated is None else insulated
 
 
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
-    """Return what touches far apart in the galvanic series: base, noble, and how far [V]."""
+    """Return neighbours far apart in the galvanic series: base, noble, and how far [V].
+
+    Those of them that are `insulated` are among them: what insulates them is to be fitted.
+    """
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
         said = _words(piece.use, piece.component.name, piece.component.material)
@@ -264,11 +283,12 @@ def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
         lift = _lift(part, handling.leg, density)
         pulls = []
         if isinstance(launch, Launch):
-            pulls.append((abs(lift + drag * launch.greatest_speed**2), " in the fall"))
+            pulls.append((abs(lift + drag * launch.greatest_speed**2), " in the fall", "L"))
         if isinstance(rise, Recovery) and part.index <= rise.released:
-            pulls.append((abs(lift - drag * rise.rise_speed**2), " in the rise"))
+            pulls.append((abs(lift - drag * rise.rise_speed**2), " in the rise", "R"))
         if pulls:
-            yield _verdict(part, *max(pulls))
+            pull, when, case = max(pulls)
+            yield replace(_verdict(part, pull, when), case=case)
 
 
 PROFILER_WIRE = 6.35e-3, 9.53e-3
@@ -365,4 +385,4 @@ def _verdict(part: JudgedPart, pull: float, when: str) -> Verdict:
     if breaking is not None:
         message = f"{pulls}; it breaks at {say('tension', breaking)}."
         return at_most(part, pull, breaking, message, _HOLDS)
-    return verdict_on(part, State.PASS, f"{pulls}; its `grip` is not given.", value=pull)
+    return verdict_on(part, State.NOT_JUDGED, f"{pulls}; its `grip` is not given.", value=pull)

@@ -27,8 +27,10 @@ from calm.checks import (
     arrangement,
     catalogue_rules,
     handling,
+    joints,
     planned,
     posture,
+    serials_and_dates,
     situations,
     strength,
 )
@@ -42,7 +44,9 @@ from calm.checks.assessment import (
     estimated_result,
 )
 from calm.checks.criterion import limits_used
-from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, worst_of_each_rule
+from calm.checks.drag_range import drag_coefficient
+from calm.checks.environments import environment
+from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, governing
 from calm.checks.inventory import inventory_of
 from calm.checks.missing import is_lacking, missing, with_missing
 from calm.checks.posture import left_out_of_a_leg, reaches_the_surface
@@ -54,7 +58,7 @@ from calm.errors import NoEquilibrium, or_why_not
 from calm.files import MooringFile, Place
 from calm.files.pieces import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
-from calm.solve import expect_many
+from calm.solve import CompiledPart, expect_many
 
 
 def judged_stand(
@@ -66,8 +70,9 @@ def judged_stand(
 ) -> MooringInEnvironment:
     """Judge a leg in all its situations.
 
-    The stand lists all findings as given, and findings of other situations with a worse state. A
-    failure only of strumming cables is a warning, since the cables may not strum.
+    The stand lists all findings as given, and findings of other situations with a worse state; as
+    tighter, those of other situations with a greater utilisation. A failure only of strumming
+    cables is a warning, since the cables may not strum; of what fails without that, it is none.
 
     Parameters
     ----------
@@ -78,9 +83,10 @@ def judged_stand(
     if not leg.of_several:
         given += _findings_in_waves(situations[0], name, environment, day)
     states = {_of(finding): finding.state.severity for finding in given}
+    failed = {_of(finding) for finding in given if finding.state is State.FAIL}
     others = [
         replace(one, state=State.WARN)
-        if one.situation == STRUMMING and one.state is State.FAIL
+        if one.situation == STRUMMING and one.state is State.FAIL and _of(one) not in failed
         else one
         for findings in changed
         for one in findings
@@ -91,11 +97,24 @@ def judged_stand(
     others = [one for one in others if _of(one) not in lacked or one.state is State.FAIL]
     graver = [each for each in others if each.state.severity > states.get(_of(each), -1)]
     listed = (*given, *graver)
-    worst = worst_of_each_rule((*listed, *others))
-    shown = {id(finding) for finding in listed}
-    tighter = tuple(finding for finding in worst if id(finding) not in shown)
+    tighter = tuple(_tighter(listed, others))
     accepted = tuple(one for one in (*given, *others) if one.accept is not None)
     return MooringInEnvironment(environment, leg, situations, listed, tighter, accepted, lacking)
+
+
+def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[Finding]:
+    """Of each rule and part, the other finding with a greater utilisation than those listed."""
+    known: dict[tuple[str, Place | None], float] = {}
+    for one in listed:
+        used = one.utilisation
+        known[_of(one)] = max(known.get(_of(one), -1.0), -1.0 if used is None else used)
+    groups: dict[tuple[str, Place | None], list[Finding]] = {}
+    for one in others:
+        groups.setdefault(_of(one), []).append(one)
+    for key, found in groups.items():
+        one = governing(found)
+        if one.utilisation is not None and one.utilisation > known.get(key, -1.0):
+            yield one
 
 
 def assessment_of(
@@ -107,18 +126,23 @@ def assessment_of(
     ----------
     day : on which accepts count or have ended; today unless given
     """
+    stands = with_cases(stands)
     first = next((stand for stand in stands if stand.result is not None), stands[0])
     handling = _handled(first)
     acceptance = Acceptance.of_file(first.leg.file, day)
     standing = [stand.leg for stand in stands if stand.result is not None]
     findings = list(findings_of_currents(standing, name, acceptance)) if standing else []
+    results = [stand.result for stand in stands if stand.result is not None]
+    findings += findings_of_drag(results, name, acceptance)
     for each in ONCE:
         verdicts = each.judge(handling)
         findings += acceptance.findings(each, verdicts, name, first.environment, each.situation)
+    findings = cased(findings, stands)
     lacking = [one for stand in stands for one in stand.lacking]
     findings = with_missing((*lacking, *findings), acceptance.parts, name, first.environment)
     if first.result is not None and not moving(stand.leg for stand in stands):
-        findings.insert(0, equilibrium.find(situations.STILL_ONLY, name, first.environment))
+        still = equilibrium.find(situations.STILL_ONLY, name, first.environment)
+        findings.insert(0, replace(still, case=situations.case_of(1, AS_GIVEN)))
     return Assessment(
         name=name,
         stands=tuple(stands),
@@ -135,13 +159,75 @@ def assessment_of(
     )
 
 
+def with_cases(stands: Sequence[MooringInEnvironment]) -> tuple[MooringInEnvironment, ...]:
+    """The stands, their findings with the codes of their load cases."""
+    numbers = _numbers(stands)
+
+    def coded(found: Iterable[Finding]) -> tuple[Finding, ...]:
+        return tuple(
+            replace(
+                one,
+                case=one.case
+                or situations.case_of(numbers[one.environment], one.situation)
+                + "w" * (one.rule in _WAVE_RULES),
+            )
+            for one in found
+        )
+
+    return tuple(
+        replace(
+            stand,
+            findings=coded(stand.findings),
+            tighter=coded(stand.tighter),
+            accepted=coded(stand.accepted),
+            lacking=coded(stand.lacking),
+        )
+        for stand in stands
+    )
+
+
+def cased(findings: Iterable[Finding], stands: Sequence[MooringInEnvironment]) -> list[Finding]:
+    """What is judged once of a mooring, that on the currents with the code of its environment."""
+    numbers = _numbers(stands)
+    return [
+        replace(one, case=situations.case_of(numbers[one.environment], AS_GIVEN))
+        if one.rule in (currents.name, drag_coefficient.name)
+        else one
+        for one in findings
+    ]
+
+
+def _numbers(stands: Sequence[MooringInEnvironment]) -> dict[str, int]:
+    """The numbers of environments in their order, by their names and those of their stands."""
+    numbers: dict[str, int] = {}
+    for stand in stands:
+        number = numbers.setdefault(
+            stand.leg.file.environment.name or OWN, len({*numbers.values()}) + 1
+        )
+        numbers.setdefault(stand.environment, number)
+    return numbers
+
+
 def findings_of_currents(
     legs: Sequence[Leg], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
-    """Return what the rule of the currents finds in the environments of a mooring of a name."""
-    for leg, verdict in currents.judge(legs):
-        environment = leg.file.environment.name or OWN
-        yield acceptance.of(currents.find(verdict, name, environment))
+    """What the rules of the environments find in those of a mooring of a name."""
+    for each in OF_ENVIRONMENTS:
+        for leg, verdict in each.judge(legs):
+            yield acceptance.of(each.find(verdict, name, leg.file.environment.name or OWN))
+
+
+OF_ENVIRONMENTS = (currents, environment)
+"""What is judged of all environments of a mooring together."""
+
+
+def findings_of_drag(
+    results: Sequence[LegResult], name: str, acceptance: Acceptance
+) -> Iterator[Finding]:
+    """Return what is found of drag coefficients in the environments of a mooring of a name."""
+    for result, verdict in drag_coefficient.judge(results):
+        environment = result.file.environment.name or OWN
+        yield acceptance.of(drag_coefficient.find(verdict, name, environment))
 
 
 def moving(legs: Iterable[Leg]) -> bool:
@@ -227,7 +313,17 @@ def _handled(stand: MooringInEnvironment) -> Handling:
     return Handling(leg, failure, failure, breaks_of(leg), losses_of(leg))
 
 
-_MODULES = (arrangement, catalogue_rules, handling, planned, posture, situations, strength)
+_MODULES = (
+    arrangement,
+    catalogue_rules,
+    handling,
+    joints,
+    planned,
+    posture,
+    serials_and_dates,
+    situations,
+    strength,
+)
 
 
 _ORDER = list(TEXTS)
@@ -251,7 +347,11 @@ STANDING = _judging(once=False)
 ONCE = _judging(once=True)
 """What is judged once of a mooring: its breaks, its launch and its recovery."""
 
-RULES = {each.name: each for each in (equilibrium, currents, missing, *STANDING, *IN_WAVES, *ONCE)}
+_WAVE_RULES = {each.name for each in IN_WAVES}
+
+_WHOLE = equilibrium, *OF_ENVIRONMENTS, drag_coefficient, missing
+
+RULES = {each.name: each for each in (*_WHOLE, *STANDING, *IN_WAVES, *ONCE)}
 """Every rule by its name."""
 
 
@@ -277,7 +377,7 @@ def with_probabilities(
         The number of samples is not a power of two, or none that is solved.
     """
     normals = normals_of(checked_samples(samples), seed)
-    expect_many(samples * len(assessment.stands))
+    expect_many(samples * len(assessment.stands), CompiledPart.NEARBY)
     draws = draws_of(assessment.file.uncertainty, normals)
     stands = tuple(_stand(stand, draws, mapped) for stand in assessment.stands)
     first = next((stand for stand in assessment.stands if stand.result is not None), None)

@@ -11,7 +11,18 @@ from typing import TypeVar
 
 from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
-from calm.checks.finding import AS_GIVEN, Finding, Lack, Rule, State, Verdict, worst_state
+from calm.checks.finding import (
+    AS_GIVEN,
+    Conclusion,
+    Finding,
+    Lack,
+    Rule,
+    State,
+    Verdict,
+    conclusion_of,
+    governing,
+    worst_state,
+)
 from calm.checks.inventory import InventoryItem
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss, Recovery
@@ -20,12 +31,16 @@ from calm.errors import NoEquilibrium
 from calm.files import Accept, Clamp, MooringFile, Piece
 from calm.files.check_limits import LimitKey
 from calm.files.pieces import parts_of
-from calm.files.rule_texts import RULES
+from calm.files.rule_texts import LOADED, RULES
+from calm.quantities import say
 
 _Part = TypeVar("_Part", Piece, Clamp)
 
 MISSING = "missing"
 """The rule of figures that components do not give."""
+
+EXAMPLE = "EXAMPLE"
+"""By whom an example accepts: a report that rests on it is a draft."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +65,7 @@ class MooringInEnvironment:
     leg : of the design in it, which has as many of these as legs
     situations : what was solved, the first as given
     findings : all as given, and of the other situations those whose state is worse
-    tighter : of each rule the finding of another situation that leaves less margin than all those
+    tighter : of each rule and part the finding of another situation with a greater utilisation
     accepted : of every situation, whether it is listed or not
     lacking : of every situation, what rules cannot judge for want of a figure; not in `findings`
     """
@@ -122,17 +137,34 @@ class Assessment:
         worst = worst_state(finding.state for finding in self.all_findings())
         return State.PASS if worst in (State.ACCEPTED, State.NOT_JUDGED) else worst
 
+    @property
+    def verdict(self) -> Conclusion:
+        """What all findings come to."""
+        return conclusion_of(self.every_finding())
+
+    @property
+    def draft(self) -> bool:
+        """Whether it rests on an acceptance of an example, which nobody has signed."""
+        return any(
+            one.accept is not None and one.accept.by == EXAMPLE for one in self.accepted_findings()
+        )
+
+    def every_finding(self) -> Iterator[Finding]:
+        """Return all findings, with those of other situations that have a greater utilisation."""
+        yield from self.all_findings()
+        yield from self.tighter_findings()
+
     def accepted_findings(self) -> list[Finding]:
-        """Return what is accepted, once for each rule and component, in the order of the rules."""
+        """Return what is accepted, the governing finding of each rule and component."""
         every = (*(one for stand in self.stands for one in stand.accepted), *self.findings)
-        once: dict[tuple[str, str | None], Finding] = {}
+        found: dict[tuple[str, str | None], list[Finding]] = {}
         for finding in every:
             if finding.accept is not None:
-                once.setdefault((finding.rule, finding.component), finding)
-        return list(once.values())
+                found.setdefault((finding.rule, finding.component), []).append(finding)
+        return [governing(each) for each in found.values()]
 
     def tighter_findings(self) -> Iterator[Finding]:
-        """Of every environment, where another situation leaves less margin."""
+        """Of every environment, where another situation has a greater utilisation."""
         for stand in self.stands:
             yield from stand.tighter
 
@@ -180,7 +212,7 @@ class Acceptance:
         for accept in self.accepts:
             covers = any(accept.covers(rule, finding.component) for rule in rules)
             if covers and accept.counts_on(self.day):
-                return replace(finding, state=State.ACCEPTED, accept=accept)
+                return _accepted(finding, accept)
         return finding
 
     def findings(
@@ -227,6 +259,24 @@ class Acceptance:
                 yield f"{what} ended on {accept.until}: it no longer counts"
             elif accept not in used:
                 yield f"{what} is not needed: nothing there fails or is unknown"
+
+
+def _accepted(finding: Finding, accept: Accept) -> Finding:
+    """The finding as accepted, unless its tension is greater than the load that is accepted.
+
+    That load is the limit of what has none of its own.
+    """
+    accepted = replace(finding, state=State.ACCEPTED, accept=accept, unaccepted=finding.state)
+    load, tension = accept.load, finding.value
+    if load is None or tension is None or finding.rule not in LOADED:
+        return accepted
+    if tension > load:
+        message = (
+            f"{finding.message} It is accepted up to {say('tension', load)} only, "
+            f"in line {accept.line}."
+        )
+        return replace(finding, message=message)
+    return accepted if finding.limit is not None else replace(accepted, limit=load, sense="<=")
 
 
 def estimated(leg: Leg) -> Leg:

@@ -6,11 +6,20 @@ Only figures that a definition gives are judged; a missing one is no fault, exce
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain
-from math import pi, sqrt
+from math import inf, pi, sqrt
 
 from calm.assemble import drag_of, mass_in_air
 from calm.checks.assessment import Handling
 from calm.checks.criterion import said
+from calm.checks.figure_bounds import (
+    contradicted_material,
+    density_out_of_bounds,
+    doubtful_figures,
+    drag_out_of_bounds,
+    load_out_of_bounds,
+    rope_section,
+    wet_weight_out_of_bounds,
+)
 from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
 from calm.checks.posture import JUDGED_ROLES
 from calm.errors import nearest
@@ -23,6 +32,7 @@ from calm.files.rigid import Shaped
 from calm.physics import materials
 from calm.physics.materials import LEAD_DENSITY, MATERIAL_NAMES, STEEL_DENSITY, materials_in
 from calm.physics.seawater import REFERENCE_DENSITY
+from calm.quantities import say
 
 ROUNDING = 1.05
 """Excess that rounded figures of a data sheet may show: 5 %, or 1.7 % of a sphere's diameter."""
@@ -46,12 +56,6 @@ STEEL_MODULUS = 210e9
 SOFTEST_WIRE = 0.05
 """Share of a steel bar's stiffness that a wire has at least; those of the catalogue have 0.17."""
 
-GREATEST_STRENGTH = 4e9
-"""Greatest tensile strength of any fibre or wire of a cable [Pa]."""
-
-STRONGEST_STEEL = 2e9
-"""Greatest tensile strength of the two bars of a chain [Pa]; those of grade 120 have 1.2e9."""
-
 STRONGEST_METAL = 350e3
 """Greatest strength of a metal over its density, that of titanium alloys [Pa/(kg/m³)]. Links and
 shackles of the catalogue bear 45e3 by their mass and length at most."""
@@ -59,8 +63,13 @@ shackles of the catalogue bear 45e3 by their mass and length at most."""
 HOLLOW = 0.5
 """Least density of what joins pieces, as a share of its material's; those known have 0.85."""
 
-SLOWEST_ANCHOR = 0.3
-"""Least speed at which an anchor alone falls, by its weight and `kt` [m/s]; those known 1.2."""
+ANCHOR_SPEEDS = 0.3, 15.0
+"""Least and greatest speed at which an anchor alone falls, by its weight and `kt` [m/s]; those
+known 1.2 to 5.6, a block of 5 t of steel 12."""
+
+LEAST_LIFT = 0.1
+"""Least buoyancy of a float, as a share of the water that a sphere of its diameter displaces; those
+of the catalogue have 0.23, glass in a wide hard hat, or more."""
 
 DEEPEST_WATER = 11000.0
 """Greatest depth of the ocean, in round figures [m]."""
@@ -92,7 +101,9 @@ def check_catalogue(
                 _sources(definition),
                 impossible(definition) if isinstance(definition, Component) else (),
                 _late_warning(definition),
+                doubtful_figures(definition),
                 _of_unknown_material(definition),
+                contradicted_material(definition),
             )
         findings += [CatalogueFinding(identifier, message) for message in messages]
         if definition.prefer is not None:
@@ -126,7 +137,10 @@ def _sources(component: Component | Outline) -> Iterator[str]:
 def impossible(component: Component) -> Iterator[str]:
     """Yield what no component of its kind, size and material can be, bear or weigh."""
     mass, volume, rating = component.mass, component.displaced_volume, component.depth_rating
-    if mass is not None and volume is not None and mass > ROUNDING * LEAD_DENSITY * volume:
+    heavy = [*wet_weight_out_of_bounds(component)]
+    yield from heavy
+    dense = mass is not None and volume is not None and mass > ROUNDING * LEAD_DENSITY * volume
+    if dense and not heavy:
         yield f"has a mass of {mass:.4g} kg in {volume:.3g} m³, denser than lead"
     net = component.net_buoyancy
     if component.role == "float" and net < 0.0:
@@ -139,13 +153,18 @@ def impossible(component: Component) -> Iterator[str]:
         yield from _of_a_rope(component)
     elif isinstance(component, Chain) and component.density is None:
         steel = (STEEL_DENSITY - CATALOGUE_DENSITY) * STANDARD_GRAVITY
-        bars = -component.net_buoyancy / (steel * _section(component))
+        bars = -component.net_buoyancy / (steel * rope_section(component))
         if not 2.0 <= bars <= 5.0:  # open links weigh three to four bars, long ones two and a half
             yield f"weighs as much as {bars:.2g} steel bars of its diameter; a steel chain 2 to 5"
     elif (envelope := _envelope(component)) is not None:
         lift = CATALOGUE_DENSITY * STANDARD_GRAVITY * envelope
         if component.net_buoyancy > lift:
             yield f"lifts {component.net_buoyancy:.4g} N; water of its size weighs {lift:.4g} N"
+        elif isinstance(component, Sphere) and 0.0 < net < LEAST_LIFT * lift:
+            yield (
+                f"lifts {say('tension', net)} with a diameter of {component.diameter:g} m; a "
+                f"float of that size lifts {say('tension', LEAST_LIFT * lift)} at least"
+            )
         elif mass is not None and _displaced(component, mass) > ROUNDING * lift:
             yield (
                 f"weighs {mass:.4g} kg and has {component.net_buoyancy:.4g} N in water: with that "
@@ -162,24 +181,22 @@ def impossible(component: Component) -> Iterator[str]:
         )
     if isinstance(component, Anchor) and component.kt:
         speed = sqrt(-net / component.kt)
-        if speed < SLOWEST_ANCHOR:
-            yield f"falls at {speed:.2g} m/s by its weight and `kt`; no anchor is so slow"
+        slowest, fastest = ANCHOR_SPEEDS
+        if not slowest <= speed <= fastest:
+            way = "slow" if speed < slowest else "fast"
+            yield f"falls at {speed:.2g} m/s by its weight and `kt`; no anchor is so {way}"
     yield from _of_a_load(component)
     yield from _drags_out_of_range(component)
 
 
 def _of_a_load(component: Component) -> Iterator[str]:
-    """Yield a load greater than what any piece of its kind, size and mass bears."""
-    load = max(component.breaking_load or 0.0, component.working_load or 0.0)
-    if isinstance(component, Flexible):
-        strength = 2.0 * STRONGEST_STEEL if isinstance(component, Chain) else GREATEST_STRENGTH
-        most, size = strength * _section(component), "diameter"
-    elif component.mass is None or not component.length or materials.fibre_of(component.material):
-        return
-    else:
-        most, size = STRONGEST_METAL * component.mass / component.length, "mass and length"
-    if load > most:
-        yield f"bears {load:.4g} N; no {component.kind} of its {size} bears more than {most:.4g} N"
+    """Yield a load that no piece of its kind, size and mass has."""
+    most, size = inf, ""
+    if not isinstance(component, Flexible) and not materials.fibre_of(component.material):
+        mass, length = component.mass, component.length
+        if mass is not None and length:
+            most, size = STRONGEST_METAL * mass / length, "mass and length"
+    yield from load_out_of_bounds(component, most, size)
 
 
 def _displaced(component: Component, mass: float) -> float:
@@ -193,7 +210,7 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
     Its weight is held against a solid bar: of its `density`, else of that of its `material` where
     that is known, else of steel.
     """
-    section = _section(rope)
+    section = rope_section(rope)
     density = rope.density or materials.density_of(rope.material) or STEEL_DENSITY
     bar = ROPE_ROUNDING * density * section
     weight = max(bar - CATALOGUE_DENSITY * section, 0.0) * STANDARD_GRAVITY
@@ -217,6 +234,8 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
             f"weighs {rope.mass:.4g} kg/m and has {net:.4g} N/m in water: with that it displaces a "
             f"small part of what its diameter does, {lift / ROPE_ROUNDING:.4g} N/m"
         )
+    else:
+        yield from density_out_of_bounds(rope)
     known = [] if rope.stiffness is None else [rope.stiffness]
     if rope.elongation and rope.breaking_load:
         known = [at * rope.breaking_load / strain for at, strain in rope.elongation if strain]
@@ -227,17 +246,6 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
             yield f"{has} {max(known):.4g} N; a steel bar of its diameter {stiff:.4g} N"
         elif rope.material and wire and known[-1] < least:
             yield f"{has} {known[-1]:.4g} N; a wire of its diameter {least:.4g} N at least"
-
-
-LEAST_DRAG = {"sphere": 0.06, "cylinder": 0.2, "cable": 0.05, "chain": 1.0}
-"""Least coefficient of drag across each kind, past the crisis of drag in smooth flow.
-
-Of spheres 0.06 (Katz, Automotive Aerodynamics, figure 6.19), of cylinders 0.2 (Roshko 1961, Journal
-of Fluid Mechanics 10, 345-356), of cables the 0.05 of a streamlined section around them.
-"""
-
-MOST_DRAG = 10.0
-"""No piece of a mooring has a greater coefficient, whatever vibrates."""
 
 
 LEAST_BODY_DRAG = 0.02
@@ -259,18 +267,7 @@ def _drags_out_of_range(component: Component) -> Iterator[str]:
                 f"has a drag coefficient times area of {area:.2g} m² across it; a streamlined body "
                 f"of its {volume:.2g} m³ has {least:.2g} m²"
             )
-    name = "cx" if isinstance(component, Sphere) else "cn"
-    value, least = getattr(component, name, None), LEAST_DRAG.get(component.kind)
-    if value == 0.0 and isinstance(component, Flexible):
-        yield "has no drag across it (`cn: 0`)"
-    elif value and least is not None and not least <= value <= MOST_DRAG:
-        kind = f"a {component.kind} has {least:g} at least, {MOST_DRAG:g} at most"
-        yield f"has `{name}: {value:g}`; {kind}"
-
-
-def _section(component: Flexible) -> float:
-    """Return the area of a bar of its diameter [m²]."""
-    return pi / 4 * component.diameter**2
+    yield from drag_out_of_bounds(component)
 
 
 def _late_warning(component: Component | Outline) -> Iterator[str]:
@@ -317,7 +314,9 @@ def figures(handling: Handling) -> Iterator[Verdict]:
         for state, found in (
             (State.FAIL, impossible),
             (State.WARN, _late_warning),
+            (State.WARN, doubtful_figures),
             (State.UNKNOWN, _of_unknown_material),
+            (State.UNKNOWN, contradicted_material),
         ):
             for fault in found(part.component):
                 if (part.use, fault) not in named:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, isfinite
 from typing import Any
 
 from calm.case.design import Design, Result
@@ -11,7 +11,7 @@ from calm.case.result_tables import ComponentRow, rows_by_place
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.design_check import check
-from calm.checks.finding import State, worst_of_each_rule
+from calm.checks.finding import State, by_rule, governing, worst_state
 from calm.checks.inventory import total_of
 from calm.errors import NoEquilibrium, or_why_not
 from calm.files import Flexible
@@ -71,7 +71,7 @@ class Comparison:
             "added": list(found.added),
             "removed": list(found.removed),
             "figures": [
-                {"name": one.name, "from": one.before, "to": one.after}
+                {"name": one.name, "from": _finite(one.before), "to": _finite(one.after)}
                 | ({} if one.states is None else {"states": list(one.states)})
                 for one in self.figures
             ],
@@ -146,7 +146,7 @@ def _figures_of_leg(result: LegResult) -> _Figures:
             "body.tension": ("pull on the body", "tension", body.tension),
             "tow_point.tension": ("pull on the tow point", "tension", point.tension),
         }
-    top, anchor = result.top, result.anchor
+    top, anchor = result.top, result.anchor_load
     found: _Figures = {
         "top.depth": ("depth of the top", "depth", top.depth),
         "top.knockdown": ("knockdown of the top", "knockdown", top.knockdown),
@@ -205,28 +205,30 @@ def _parts(found: Differences, designs: tuple[_Solved, _Solved]) -> Iterator[Com
 
 
 def _margins(designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
-    """The worst that each rule finds in each design."""
+    """What governs each rule in each design: its utilisation, or its margin where it has none."""
     judged = [assessment for _, assessment in designs if assessment is not None]
     if len(judged) < 2:
         return
-    worst = [
-        {
-            one.rule: one
-            for one in worst_of_each_rule(
-                (*assessment.all_findings(), *assessment.tighter_findings())
-            )
-        }
-        for assessment in judged
-    ]
+    found = [by_rule(assessment.every_finding()) for assessment in judged]
     for rule in RULES.values():
-        sides = [each.get(rule.name) for each in worst]
-        if {one.state for one in sides if one} - {State.NOT_JUDGED}:
-            before, after = (
-                (one.margin, one.state) if one else (None, State.PASS) for one in sides
-            )
-            title, states = f"margin: {rule.title}", (before[1], after[1])
-            name = f"margin.{rule.name}"
-            yield Compared(name, title, rule.quantity, before[0], after[0], states)
+        sides = [each.get(rule.name, ()) for each in found]
+        states = [worst_state(one.state for one in each) for each in sides]
+        if not {one.state for each in sides for one in each} - {State.NOT_JUDGED}:
+            continue
+        leads = [governing(each) if each else None for each in sides]
+        if any(one is not None and one.utilisation is not None for one in leads):
+            before, after = (None if one is None else one.utilisation for one in leads)
+            what, quantity = "utilisation", "utilisation"
+        else:
+            before, after = (None if one is None else one.margin for one in leads)
+            what, quantity = "margin", rule.quantity
+        name, title = f"{what}.{rule.name}", f"{what}: {rule.title}"
+        yield Compared(name, title, quantity, before, after, (states[0], states[1]))
+
+
+def _finite(value: Number | str) -> Number | str:
+    """A figure as JSON has it: None for a utilisation without any capacity."""
+    return None if isinstance(value, float) and not isfinite(value) else value
 
 
 def _change(change: Change) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from math import hypot, isnan, nan
 from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
 from calm.case.strumming import FACTOR
-from calm.checks.finding import Rule, State, Verdict, rule, unknown, verdict_on
+from calm.checks.finding import Rule, State, Verdict, at_most, rule, unknown
 from calm.files import Component, MooringFile, Place, StrummingFactor
 from calm.files.check_limits import Checks, LimitKey, limit_keys
 from calm.files.pieces import clamps_down
@@ -76,6 +76,7 @@ class Criterion:
     source : of the limit; "" for that of the rule
     lacks : key of the component that is missing if there is no limit
     stated : value and limit as people state them, of the same margin, where not these
+    stated_least : whether the stated value may not fall short of the stated limit
     """
 
     part: JudgedPart
@@ -88,6 +89,7 @@ class Criterion:
     source: str = ""
     lacks: str = ""
     stated: Callable[[float, LegResult], tuple[float, float]] | None = None
+    stated_least: bool = False
 
     def verdict(self, result: LegResult) -> Verdict | None:
         """On the part in a result; None where there is nothing to judge."""
@@ -99,18 +101,21 @@ class Criterion:
             lacks = self.lacks if self.limit is None else ""
             known = None if isnan(value) else value
             return unknown(self.part, message, remedy, known, lacks=lacks)
-        margin = value - self.limit if self.least else self.limit - value
-        state, said = (State.PASS, None) if margin >= 0.0 else (self.beyond, remedy)
-        shown, limit = (value, self.limit) if self.stated is None else self.stated(value, result)
-        return verdict_on(self.part, state, message, said, shown, limit, margin, self.source)
+        shown, limit, least = value, self.limit, self.least
+        if self.stated is not None:
+            shown, limit = self.stated(value, result)
+            least = self.stated_least
+        return at_most(
+            self.part, shown, limit, message, remedy, self.beyond, self.source, least=least
+        )
 
 
 def verdicts(criteria: Iterable[Criterion], result: LegResult) -> Iterator[Verdict]:
-    """The gravest verdict on each part, from criteria that follow one another part by part."""
+    """The worst verdict on each part, from criteria that follow one another part by part."""
     for _, group in groupby(criteria, key=lambda criterion: criterion.part):
         found = [verdict for each in group if (verdict := each.verdict(result)) is not None]
         if found:
-            yield max(found, key=lambda verdict: verdict.state.severity)
+            yield min(found, key=lambda verdict: verdict.rank)
 
 
 def criteria(
@@ -158,10 +163,10 @@ READINGS: dict[str, Callable[[LegResult, JudgedPart], float]] = {
     "top_depth": lambda result, _: result.top.depth,
     "knockdown": lambda result, _: nan if result.top.knockdown is None else result.top.knockdown,
     "offset": lambda result, _: _offset(result),
-    "required_weight": lambda result, _: result.anchor.required_weight,
-    "vertical": lambda result, _: result.anchor.vertical,
+    "required_weight": lambda result, _: result.anchor_load.required_weight,
+    "vertical": lambda result, _: result.anchor_load.vertical,
     "slide": lambda result, _: (
-        result.anchor.horizontal + result.anchor.friction * result.anchor.vertical
+        result.anchor_load.horizontal + result.anchor_load.friction * result.anchor_load.vertical
     ),
     "reserve": lambda result, _: (
         1.0 - result.top.used_buoyancy if result.type == "surface" else 0.0

@@ -25,9 +25,11 @@ from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN
 from calm.checks.handling import backup
 from calm.checks.inventory import inventory_of
+from calm.checks.joints import joints
 from calm.checks.leg_graph import LegGraph
 from calm.checks.missing import with_missing
 from calm.checks.planned import planned_depth, planned_parts
+from calm.checks.serials_and_dates import serials_and_dates
 from calm.errors import NoEquilibrium
 from calm.files.legs import stand_in_anchor
 from calm.files.mooring_file import refuse_tow
@@ -107,6 +109,7 @@ def assessment_of(
     """
     if not stands[0].leg.of_several:
         return assess.assessment_of(name, stands, day)
+    stands = assess.with_cases(stands)
     own: dict[str, MooringInEnvironment] = {}
     for stand in stands:
         if stand.result is not None:
@@ -119,28 +122,29 @@ def assessment_of(
     breaks, losses = graph.breaks(whole), graph.losses(whole)
     handling = Handling(estimated(whole), _NOT_SOLVED, _NOT_SOLVED, breaks, losses)
     first = whole.file.environment.name or OWN
-    once = [(hardware, hardware.judge(handling), first), (figures, figures.judge(handling), first)]
+    once = [(each, each.judge(handling), first) for each in (hardware, figures, serials_and_dates)]
     if graph.anchored:
         once.append((release_present, graph.release_verdicts(), first))
         once.append((backup, backup.judge(handling), first))
     for stand in own.values():
         alone = Handling(estimated(stand.leg), _NOT_SOLVED, _NOT_SOLVED, ())
         once += [(each, each.judge(alone), stand.environment)
-                 for each in (swivel, clamp_place, metals)]  # fmt: skip
+                 for each in (joints, swivel, clamp_place, metals)]  # fmt: skip
     for result in [each for each in found if planned_parts(each)] or found[:1]:
         alone = Handling(estimated(result.leg), _NOT_SOLVED, _NOT_SOLVED, (), result=result)
         once.append((planned_depth, planned_depth.judge(alone), first))
     waters = {stand.leg.file.environment.name: stand.leg for stand in stands}
     findings = list(assess.findings_of_currents(list(waters.values()), name, acceptance))
+    findings += assess.findings_of_drag(found, name, acceptance)
     for rule, verdicts, environment in once:
         findings += acceptance.findings(rule, verdicts, name, environment)
+    findings = assess.cased(findings, stands)
     lacking = [one for stand in stands for one in stand.lacking]
     findings = with_missing((*lacking, *findings), acceptance.parts, name, first)
     fast = (float(np.hypot(each.water.u, each.water.v).max()) for each in waters.values())
     if found and max(fast) < situations.LEAST_CURRENT:
-        findings.insert(
-            0, situations.equilibrium.find(situations.STILL_ONLY, name, first, AS_GIVEN)
-        )
+        still = situations.equilibrium.find(situations.STILL_ONLY, name, first)
+        findings.insert(0, replace(still, case=situations.case_of(1, AS_GIVEN)))
     surface = bool(whole.for_surface)
     accepted = [*(one for stand in stands for one in stand.accepted), *findings]
     return Assessment(

@@ -11,6 +11,7 @@ from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss, Recovery
 from calm.checks.strength import lesser_load, passes_load_on, wanted_load
+from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import LinePart
 from calm.quantities import QUANTITIES, say
@@ -23,17 +24,27 @@ FAST_RISE_SPEED = 3.0
 """A rise faster than this is warned of: the floats leap beside the ship, the line loops [m/s]."""
 
 
-@rule("backup", once=True)
+def is_hauled_in(handling: Handling) -> bool:
+    """Whether a line without a release is hauled in from its float at the surface, anchor and all.
+
+    Nothing of it rises by itself.
+    """
+    return handling.leg.file.release is None and reaches_the_surface(handling.leg)
+
+
+@rule("backup", once=True, case="B")
 def backup(handling: Handling) -> Iterator[Verdict]:
     """Net buoyancy of what holds the release after the worst break, or the worst loss of a float.
 
     Breaks are those above the back-up floats; lost is any one buoyant element. It should be a tenth
-    of the weight it lifts, and 250 N.
+    of the weight it lifts, and raise it at `minimum_rise_speed`. A compact line below a single
+    float has no back-up. A surface mooring without floats below its buoy has none either, and is
+    hauled in by it.
     """
     if handling.leg.file.release is None:
-        if reaches_the_surface(handling.leg):
+        if is_hauled_in(handling):
             message = "Without a release the line is hauled in; what is below a break stays there."
-            yield verdict_on(None, State.PASS, message)
+            yield verdict_on(None, State.NOT_JUDGED, message)
             return
         yield unknown(
             None,
@@ -55,7 +66,12 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     else:
         part = handling.leg.file.pieces[worst.break_after]
         after = f"After a break below {worst.label}"
-    alone = not breaks and len(handling.losses) == 1
+    if not breaks and len(handling.losses) == 1:
+        message = f"{handling.losses[0].label} alone brings up the line: it has no back-up."
+        remedy = "Divide the buoyancy among several floats if it has to come up without one."
+        yield verdict_on(handling.losses[0], State.NOT_JUDGED, message, remedy)
+        return
+    hauled_in = reaches_the_surface(handling.leg) and len(handling.losses) == 1
     yield at_least(
         part,
         worst.margin,
@@ -63,12 +79,12 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         f"{after} the part that holds the release has a buoyancy of "
         f"{say('tension', worst.margin)}; {say('tension', worst.required)} would raise it.",
         f"Add {say('tension', worst.required - worst.margin)} of buoyancy above the release.",
-        State.WARN if alone else State.FAIL,
-        source=cited(handling.leg.file, "backup_margin"),
+        State.WARN if hauled_in else State.FAIL,
+        source=cited(handling.leg.file, "backup_margin", "minimum_rise_speed"),
     )
 
 
-@rule("launch-strength", once=True)
+@rule("launch-strength", once=True, case="L")
 def launch_strength(handling: Handling) -> Iterator[Verdict]:
     """Tension of every piece as the line falls behind its anchor.
 
@@ -108,7 +124,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         yield at_most(piece, tension, limit, message, remedy, source=source)
 
 
-@rule("launch-speed", once=True)
+@rule("launch-speed", once=True, case="L")
 def launch_speed(handling: Handling) -> Iterator[Verdict]:
     """Judge the speed of the anchor as it meets the seabed."""
     launch = handling.launch
@@ -136,9 +152,13 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         yield unknown(anchor, message, "Give the anchor's `kt`.", speed, lacks="kt")
 
 
-@rule("recovery", once=True)
+@rule("recovery", once=True, case="R")
 def recovery(handling: Handling) -> Iterator[Verdict]:
-    """Terminal speed of the line as it rises without its anchor."""
+    """Terminal speed of the line as it rises without its anchor, unless it is hauled in."""
+    if is_hauled_in(handling):
+        message = "Without a release the line is hauled in with its anchor: nothing rises."
+        yield verdict_on(None, State.NOT_JUDGED, message)
+        return
     rise, limit = handling.recovery, handling.leg.file.checks.minimum_rise_speed
     if isinstance(rise, NoEquilibrium):
         yield _unsolved("rise", rise)
@@ -158,11 +178,15 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     source = cited(handling.leg.file, "minimum_rise_speed")
     verdict = at_least(lowest, rise.rise_speed, limit, message, remedy, source=source)
     if verdict.state is State.PASS and rise.rise_speed < USUAL_RISE_SPEED:
-        verdict = replace(verdict, state=State.WARN, remedy=remedy)
+        verdict = at_least(
+            lowest, rise.rise_speed, USUAL_RISE_SPEED, message, remedy, State.WARN, source
+        )
     elif rise.rise_speed > FAST_RISE_SPEED:
-        message += f" Beyond {FAST_RISE_SPEED:g} m/s floats leap and the line below them loops."
+        message += f" Beyond {FAST_RISE_SPEED:g} m/s floats may breach and the line may loop."
         remedy = "Remove buoyancy, or keep the ship clear."
-        verdict = replace(verdict, state=State.WARN, message=message, remedy=remedy)
+        verdict = at_most(
+            lowest, rise.rise_speed, FAST_RISE_SPEED, message, remedy, State.WARN, source
+        )
     yield verdict
 
 
@@ -171,27 +195,26 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
     """Return whether the line doubles back on itself as it falls or rises."""
     fall, rise = "In the fall the parts above overtake", "In the rise the parts below overtake"
     lower = "Pay the line out under tension, or lower the anchor."
-    for motion, what, remedy in (
-        (handling.launch, fall, lower),
-        (handling.recovery, rise, "Put more of the buoyancy at the top."),
-    ):
+    motions: list[tuple[Launch | Recovery | NoEquilibrium, str, str, str]]
+    motions = [(handling.launch, fall, lower, "L")]
+    if not is_hauled_in(handling):
+        up = "Put more of the buoyancy at the top."
+        motions.append((handling.recovery, rise, up, "R"))
+    for motion, what, remedy, case in motions:
         if not isinstance(motion, NoEquilibrium) and motion.tangles:
             pieces = [handling.leg.file.pieces[piece] for piece in motion.tangles]
             named = ", ".join(piece.label for piece in pieces[:3])
             more = f" and {len(pieces) - 3} more" if len(pieces) > 3 else ""
             message = f"{what} {named}{more}: the line doubles back and may tangle."
-            yield verdict_on(pieces[0], State.WARN, message, remedy)
+            yield replace(verdict_on(pieces[0], State.WARN, message, remedy), case=case)
 
 
 def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
     """Of a line whose float is at the surface: whether its lower end comes up by itself."""
     if isnan(arrival):
         depth = say("depth", float(rise.hangs_at[rise.released]))
-        message = (
-            f"Released, {lowest.label} does not come up: it hangs from the float, down to {depth}."
-        )
-        remedy = "Haul it in; mind its weight."
-        return verdict_on(lowest, State.WARN, message, remedy)
+        message = f"Once free, {lowest.label} hangs from the float, down to {depth}: haul it in."
+        return verdict_on(lowest, State.PASS, message)
     minutes = arrival / 60.0
     message = f"Released, {lowest.label} comes up after {minutes:.0f} minutes."
     return verdict_on(lowest, State.PASS, message, value=rise.rise_speed)

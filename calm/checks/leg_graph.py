@@ -8,7 +8,15 @@ import numpy as np
 from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
 from calm.checks.finding import State, Verdict, unknown, verdict_on
-from calm.checks.recovery import Break, Loss, lifts_of, losses_among, required_margin
+from calm.checks.recovery import (
+    SHORT_LEAD,
+    Break,
+    Loss,
+    drags_of,
+    lifts_of,
+    losses_among,
+    required_margin,
+)
 from calm.files import Flexible, Piece
 from calm.physics.line import Floats
 
@@ -26,7 +34,7 @@ class LegGraph:
     def __init__(self, legs: Sequence[LegResult]) -> None:
         self.pieces: list[Piece] = []
         self.chains: list[list[Hashable]] = []
-        lifts: list[Floats] = []
+        columns: list[Floats] = []
         for leg in legs:
             own, above = leg.leg, leg.leg.pieces
             upper, lower = (
@@ -38,9 +46,11 @@ class LegGraph:
                 chain[-2:] = [_SEABED]
             self.pieces += above
             self.chains.append(chain)
-            force = lifts_of(own.line, own.water, leg)  # an anchor lifts nothing
-            lifts.append(np.append(force, 0.0)[: len(above)])
-        self.lifts = np.concatenate(lifts) if lifts else np.zeros(0)
+            force = lifts_of(own.line, own.water, leg)
+            figures = np.stack([force, drags_of(own.line, above), own.line.length])
+            # an anchor lifts nothing
+            columns.append(np.pad(figures, ((0, 0), (0, 1)))[:, : len(above)])
+        self.lifts, self.drags, self.lengths = np.hstack([np.zeros((3, 0)), *columns])
         self.opened = {
             (number, at)
             for number, chain in enumerate(self.chains)
@@ -118,20 +128,26 @@ class LegGraph:
     def _margin(self, part: list[int], whole: Leg) -> tuple[float, float, float]:
         lift = self.lifts[part]
         weight = float(-lift[lift < 0.0].sum())
-        return float(lift.sum()), weight, required_margin(whole, weight)
+        drag = float(self.drags[part].sum())
+        return float(lift.sum()), weight, required_margin(whole, weight, drag)
 
     def _beyond_help(self, chain: Sequence[Hashable], at: int, part: list[int]) -> bool:
-        """Return whether it parts the cluster of all floats that are left, or what leads from it to
-        the release: as of a single line.
+        """Return whether it parts the cluster of all floats that are left, or a short lead from it
+        to the release: as of a single line.
         """
         floats = {one for one in part if self._floats(one)}
         if not floats:
-            return all(self._is(one, "connector", "chain", "release") for one in part)
+            above = takewhile(self._leads, reversed(chain[: at + 1]))
+            lead = {one for one in (*above, *part) if isinstance(one, int)}
+            return float(self.lengths[sorted(lead)].sum()) <= SHORT_LEAD
         below = list(takewhile(self._in_a_cluster, chain[at:]))
         return floats <= set(below[1:])
 
     def _in_a_cluster(self, one: Hashable) -> bool:
         return isinstance(one, int) and (self._floats(one) or self._is(one, "connector", "chain"))
+
+    def _leads(self, one: Hashable) -> bool:
+        return isinstance(one, int) and not self._floats(one)
 
     def _floats(self, one: int) -> bool:
         return bool(self.lifts[one] > 0.0) and not self._is(one, "cable")
@@ -146,7 +162,10 @@ class LegGraph:
             loss
             for part in self._rising(())
             for loss in losses_among(
-                whole, [whole.file.pieces[one] for one in part], self.lifts[part]
+                whole,
+                [whole.file.pieces[one] for one in part],
+                self.lifts[part],
+                float(self.drags[part].sum()),
             )
         )
 

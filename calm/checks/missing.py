@@ -16,6 +16,7 @@ _INSTEAD = {
     "working_load": ("breaking_load",),
     "breaking_load": ("working_load",),
     "stiffness": ("elongation",),
+    "weight": ("density",),
 }
 
 

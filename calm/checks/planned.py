@@ -66,7 +66,7 @@ def _counted(handling: Handling) -> Iterator[Verdict]:
         yield from (one for one in _judge(handling) if one.place is None)
 
 
-planned_depth = replace(rule("planned-depth", once=True)(_judge), counted=_counted)
+planned_depth = replace(rule("planned-depth", once=True, case="0")(_judge), counted=_counted)
 
 
 def _judged(result: LegResult) -> tuple[list[PlannedPart], list[Verdict]]:
@@ -131,7 +131,7 @@ def _all_alike(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) 
     if {_hangs_from_above(result, part) for part in parts} == {True}:
         remedy = f"Check the lengths above {parts[0].row.label}, and `top_depth` if it is given."
     return verdict_on(
-        None, worst.state, message, remedy, worst.value, worst.limit, worst.margin, worst.source
+        None, worst.state, message, remedy, worst.value, worst.limit, worst.sense, worst.source
     )
 
 

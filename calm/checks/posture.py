@@ -98,12 +98,14 @@ def _doubtful_words(
 def depth_rating(leg: Leg) -> Iterator[Criterion]:
     """Depth in the current, and a margin, against the rating of floats and instruments.
 
-    A float that is knocked down below its rating is crushed, and the line with it.
+    A float that is knocked down below its rating is crushed, and the line with it. A surface float
+    has no rating; `freeboard` and `reserve` judge one that is pulled under.
     """
     margin, source = leg.file.checks.rating_margin, cited(leg.file, "rating_margin")
     for part in parts_of(leg):
         rating = part.component.depth_rating
-        if rating is None and part.component.role not in JUDGED_ROLES:
+        afloat = part.index == 0 and part.clamp is None and reaches_the_surface(leg)
+        if rating is None and (afloat or part.component.role not in JUDGED_ROLES):
             continue
         limit = None if rating is None else rating - min(margin, MOST_OF_A_RATING * rating)
         words = partial(_rating_words, part, limit)
@@ -195,11 +197,16 @@ _SHELF = 200.0
 """
 
 
+_POLAR = 60.0
+"""Latitude from which no fish bite is asked after [°]: the bites are those of warm seas."""
+
+
 @rule("fish-bite")
 def fish_bite(result: LegResult) -> Iterator[Verdict]:
     """Judge the least depth of every synthetic rope against that down to which fish bite."""
-    limit = result.file.checks.fishbite_depth
-    if result.leg.water.depth <= _SHELF:
+    limit, position = result.file.checks.fishbite_depth, result.file.position
+    polar = position is not None and abs(position.latitude) >= _POLAR
+    if result.leg.water.depth <= _SHELF or polar:
         return
     for piece, row in zip(result.file.pieces, result.components, strict=True):
         if is_synthetic(piece.component):
@@ -326,7 +333,7 @@ def watch_circle(result: LegResult) -> Iterator[Verdict]:
     top = result.file.pieces[0]
     message = f"The watch circle has a radius of {say('offset', radius)}"
     if limit is None:
-        yield verdict_on(top, State.PASS, f"{message}.", value=radius)
+        yield verdict_on(top, State.NOT_JUDGED, f"{message}.", value=radius)
         return
     message += f"; {say('offset', limit)} is allowed."
     yield at_most(top, radius, limit, message, "Shorten the line.")
@@ -340,4 +347,4 @@ def scope(result: LegResult) -> Iterator[Verdict]:
     depth = result.leg.water.depth
     ratio = float(result.components.cut_length.sum()) / depth
     message = f"The line is {ratio:.3f} times as long as the water is deep."
-    yield verdict_on(None, State.PASS, message, value=ratio)
+    yield verdict_on(None, State.NOT_JUDGED, message, value=ratio)

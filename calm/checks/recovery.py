@@ -16,8 +16,7 @@ Back-up buoyancy is what brings up the release when the line breaks above it.
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from itertools import islice
-from math import ceil, isnan, nan
+from math import isnan, nan
 from typing import Any
 
 import numpy as np
@@ -32,11 +31,8 @@ from calm.physics.line import Floats, Line, Water
 from calm.physics.materials import materials_in
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.physics.track import head_count
-from calm.solve import FreeMotion, Settings, part_of, solve_rise
+from calm.solve import FreeMotion, Settings, part_of, plumb_speed, solve_rise
 from calm.solve.solution import standing_lift
-
-MOST_SOLVED = 48
-"""Buoyant pieces whose rise is solved one by one; of more, some rise as the one before them."""
 
 
 @dataclass(frozen=True)
@@ -107,13 +103,12 @@ class Recovery:
         ]
 
 
-def recovery_of(leg: Leg, result: LegResult, *, first_only: bool = False) -> Recovery:
+def recovery_of(leg: Leg, result: LegResult) -> Recovery:
     """The recovery of a mooring from where it stands.
 
     Parameters
     ----------
     result : of the mooring; tells where it stands and how long its pieces are
-    first_only : follow the first float alone: one solve in place of one for each
 
     Raises
     ------
@@ -136,8 +131,7 @@ def recovery_of(leg: Leg, result: LegResult, *, first_only: bool = False) -> Rec
     if not speed > 0.0:
         return at_rest
     length = result.components.length[: released + 1]
-    risen = _risers(line, water.still(), length, lifts, top, speed, leg.settings)
-    risers = dict(islice(risen, 1 if first_only else None))
+    risers = dict(_risers(line, water, length, lifts, top, speed))
     arrival = none.copy()
     head = head_count(line)
     for piece, time in risers.items():
@@ -179,32 +173,24 @@ def _rise(line: Line, water: Water, top: float, settings: Settings) -> tuple[Fre
 
 
 def _risers(
-    line: Line,
-    water: Water,
-    length: Floats,
-    lifts: Floats,
-    top: float,
-    speed: float,
-    settings: Settings,
+    line: Line, water: Water, length: Floats, lifts: Floats, top: float, speed: float
 ) -> Iterator[tuple[int, float]]:
     """The pieces that come up by themselves, and when [s].
 
     They have stretched lengths [m] and net forces [N], (n,); the line's upper end stands at `top`
-    [m] and has a speed at first [m/s]. The water is without current.
+    [m] and has a speed at first [m/s]. What is below a float that is up rises plumb, as in still
+    water.
     """
     time, up, count = 0.0, 0, len(length)
-    rising = np.flatnonzero(lifts > 0.0).tolist()
-    apart = ceil(len(rising) / MOST_SOLVED)
-    for number, piece in enumerate(rising):
+    for piece in np.flatnonzero(lifts > 0.0).tolist():
         # a rope is up when its lower end is, a rigid piece when its upper end is
         way = float(length[up : piece + bool(line.flexible[piece])].sum())
         if up == 0:
             way = top if piece < head_count(line) else top + way
         elif not lifts[up:].sum() > 0.0:
             return
-        elif way > 0.0 and number % apart == 0:
-            rest = solve_rise(part_of(line, up, count), water, 0.0, settings)
-            speed = float(rest.velocity[2])
+        elif way > 0.0:
+            speed = plumb_speed(part_of(line, up, count), water, 0.0)
             if not speed > 0.0:
                 return
         time += way / speed
@@ -212,8 +198,12 @@ def _risers(
         up = piece + 1
 
 
-LEAST_MARGIN = 250.0
-"""Net buoyancy that is asked for after any break, however little hangs on it [N]."""
+SHORT_LEAD = 50.0
+"""Length of what may lead from the lowest floats to the release without being judged [m].
+
+The floats there are the back-up of what is above them. A line whose only floats stand so near to
+its release, as a bottom lander or a short line below one float, is brought up by them alone.
+"""
 
 
 @dataclass(frozen=True)
@@ -260,16 +250,28 @@ class Loss:
     place: Place
 
 
-def _lift_to_the_release(leg: Leg) -> Floats:
-    """(n,) net force [N] of each piece down to the lowest release, where the line stands upright.
+def _down_to_the_release(leg: Leg) -> tuple[Floats, Floats]:
+    """(n,) net force [N] of each piece down to the lowest release, where the line stands upright,
+    and its drag in a rise [N/(m/s)²].
 
     None of a line without a release, or one that no length fits.
     """
     release = leg.file.release
     if release is not None:
         with suppress(NoEquilibrium):
-            return standing_lift(leg.line, leg.water)[: release + 1]
-    return np.zeros(0)
+            lift = standing_lift(leg.line, leg.water)[: release + 1]
+            return lift, drags_of(leg.line, leg.file.pieces)[: release + 1]
+    return np.zeros(0), np.zeros(0)
+
+
+def drags_of(line: Line, pieces: Sequence[Piece]) -> Floats:
+    """(n,) drag of each piece of a line with its clamps in a rise [N/(m/s)²].
+
+    Parameters
+    ----------
+    pieces : those of the line, with or without its anchor
+    """
+    return with_axial_clamps(line, pieces[: len(line.length)]).plumb_drag
 
 
 def losses_of(leg: Leg) -> tuple[Loss, ...]:
@@ -279,12 +281,14 @@ def losses_of(leg: Leg) -> tuple[Loss, ...]:
     density is known, weighs what that does in water; another is taken to be gone, and a cable is
     not lost. The others lift what they do where the line stands upright.
     """
-    lift = _lift_to_the_release(leg)
-    return losses_among(leg, leg.file.pieces[: lift.size], lift)
+    lift, drag = _down_to_the_release(leg)
+    return losses_among(leg, leg.file.pieces[: lift.size], lift, float(drag.sum()))
 
 
-def losses_among(leg: Leg, pieces: Sequence[Piece], lift: Floats) -> tuple[Loss, ...]:
-    """The same of the pieces of a mooring that come up together, with their net forces [N]."""
+def losses_among(leg: Leg, pieces: Sequence[Piece], lift: Floats, drag: float) -> tuple[Loss, ...]:
+    """The same of the pieces of a mooring that come up together, with their net forces [N] and the
+    drag of all of them [N/(m/s)²].
+    """
     gravity = leg.water.gravity
     weight = float(-lift[lift < 0.0].sum())
     losses = []
@@ -301,7 +305,7 @@ def losses_among(leg: Leg, pieces: Sequence[Piece], lift: Floats) -> tuple[Loss,
                     label=part.label,
                     margin=float(lift.sum()) - lifted - sunk,
                     weight_lifted=weight + sunk,
-                    required=required_margin(leg, weight + sunk),
+                    required=required_margin(leg, weight + sunk, drag),
                     place=part.place,
                 )
             )
@@ -317,9 +321,12 @@ def _weight_when_flooded(component: Component, gravity: float) -> float:
     return component.mass * gravity * (1.0 - CATALOGUE_DENSITY / density)
 
 
-def required_margin(leg: Leg, weight: float) -> float:
-    """Net buoyancy asked for after a break that leaves a weight in water to lift [N]."""
-    return max(leg.file.checks.backup_margin * weight, LEAST_MARGIN)
+def required_margin(leg: Leg, weight: float, drag: float) -> float:
+    """Net buoyancy required after a break that leaves a weight in water [N] to lift, with a drag
+    [N/(m/s)²]: a share of the weight, and at least what lets it rise at `minimum_rise_speed` [N].
+    """
+    checks = leg.file.checks
+    return max(checks.backup_margin * weight, drag * checks.minimum_rise_speed**2)
 
 
 def breaks_of(leg: Leg) -> tuple[Break, ...]:
@@ -330,18 +337,19 @@ def breaks_of(leg: Leg) -> tuple[Break, ...]:
     There are none of a line without a release, or one that no length fits.
 
     Floats that follow one another, with at most connectors and chain between them, are a cluster.
-    What breaks inside the lowest one, or in the connectors and chain that lead from it to the
-    release, leaves the release on the seabed in any design, and is not judged. Where that is the
+    What breaks inside the lowest one, or in what leads from it to the release over `SHORT_LEAD` at
+    most, leaves the release on the seabed in any design, and is not judged. Where that is the
     whole line, chain parts clusters too; one that is compact even so is judged by its losses alone.
     """
-    lift = _lift_to_the_release(leg)
+    lift, drag = _down_to_the_release(leg)
     if not lift.size:
         return ()
     release = lift.size - 1
     above = leg.file.pieces[:release]
-    beyond_help = _beyond_help(above, lift[:release], "connector", "chain")
+    lengths = leg.line.length[:release]
+    beyond_help = _beyond_help(above, lift[:release], lengths, "connector", "chain")
     if len(beyond_help) == release:
-        beyond_help = _beyond_help(above, lift[:release], "connector")
+        beyond_help = _beyond_help(above, lift[:release], lengths, "connector")
     judged = set(range(release)) - set(beyond_help)
     breaks = []
     for piece in leg.file.pieces[:release]:
@@ -353,7 +361,7 @@ def breaks_of(leg: Leg) -> tuple[Break, ...]:
                 label=piece.label,
                 margin=float(left.sum()),
                 weight_lifted=weight,
-                required=required_margin(leg, weight),
+                required=required_margin(leg, weight, float(drag[piece.index + 1 :].sum())),
                 judged=piece.index in judged,
                 loose=float(lift[: piece.index + 1].sum()),
             )
@@ -361,11 +369,11 @@ def breaks_of(leg: Leg) -> tuple[Break, ...]:
     return tuple(breaks)
 
 
-def _beyond_help(above: Sequence[Piece], lift: Floats, *between: str) -> range:
-    """The breaks inside the lowest cluster of floats, and below it down to a cable or instrument.
+def _beyond_help(above: Sequence[Piece], lift: Floats, length: Floats, *between: str) -> range:
+    """The breaks inside the lowest cluster of floats, and of a short lead below it.
 
-    The pieces are those above the release, with their net forces [N]; kinds and roles of what may
-    stand `between` the floats of a cluster count.
+    The pieces are those above the release, with their net forces [N] and lengths [m]; kinds and
+    roles of what may stand `between` the floats of a cluster count.
     """
     floats = [
         force > 0.0 and not _is(piece, "cable") for piece, force in zip(above, lift, strict=True)
@@ -376,8 +384,8 @@ def _beyond_help(above: Sequence[Piece], lift: Floats, *between: str) -> range:
     first = end
     while first and (floats[first - 1] or _is(above[first - 1], *between)):
         first -= 1
-    leads_to_the_release = all(_is(one, "connector", "chain", "release") for one in above[end:])
-    return range(first, len(above) if leads_to_the_release else end - 1)
+    short = float(length[end:].sum()) <= SHORT_LEAD
+    return range(first, len(above) if short else end - 1)
 
 
 def _is(piece: Piece, *what: str) -> bool:

@@ -28,16 +28,37 @@ from calm.files.logbook import DeployedItem
 from calm.physics.line import Water
 from calm.quantities import say
 from calm.records.current_file import strongest_of
-from calm.records.current_terms import left_out
 from calm.records.grids import kilometres_from
+from calm.records.value_tests import left_out
 from calm.solve import Status
 
 STILL, STILL_LOW = "still water", "still low water"
 HIGH, LOW = "high water", "low water"
-SOLVES = 6.0
-"""About how many equilibria one mooring in one environment takes."""
+SOLVES = 3.0
+"""About how many lines are solved for one mooring in one environment."""
 
 FOULED, STRUMMING, DEPLOYED = "fouling", "strumming", "as deployed"
+
+_SUFFIXES = {
+    AS_GIVEN: "", STRUMMING: "s", FOULED: "g", HIGH: "h", LOW: "l", DEPLOYED: "d",
+}  # fmt: skip
+_AT_STOP, _AT_LEAN = "at its lower stop", "where its wire leans most"
+
+
+def case_of(environment: int, situation: str) -> str:
+    """The code of a load case.
+
+    Parameters
+    ----------
+    environment : its number in the order of the file, from 1
+    situation : what is changed in it: strumming s, growth g, high and low water h and l, as
+        deployed d, a profiler at its lower stop p or where its wire leans most q; still water is 0
+    """
+    if situation in (STILL, STILL_LOW):
+        return "0" if situation == STILL else "0l"
+    suffix = _SUFFIXES.get(situation) or ("p" if situation.endswith(_AT_STOP) else "q")
+    return f"{environment}{'' if situation == AS_GIVEN else suffix}"
+
 
 _NO_CURRENT = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
@@ -102,10 +123,10 @@ def _changed(
     for name, other in in_other_waters(file, design.water):
         yield name, changed(other)
     for clamp, travel in zip(profilers_in(leg), first.profilers, strict=True):
-        yield f"{clamp.label} at its lower stop", changed(held(file, clamp.place, travel.lower.at))
+        yield f"{clamp.label} {_AT_STOP}", changed(held(file, clamp.place, travel.lower.at))
         if travel.worst not in (travel.upper, travel.lower):
             leaning = changed(held(file, clamp.place, travel.worst.at))
-            yield f"{clamp.label} where its wire leans most", leaning
+            yield f"{clamp.label} {_AT_LEAN}", leaning
     fouling = design.environment.fouling
     if fouling is not None:
         own = changed(file).legs
@@ -202,7 +223,7 @@ def differs(designed: MooringFile, deployed: MooringFile) -> bool:
     )
 
 
-@rule("as-deployed", once=True)
+@rule("as-deployed", once=True, case="d")
 def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     """Return how far the top of the upright line is from where it was designed to be.
 
@@ -325,13 +346,14 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
     strongest = max(range(len(speeds)), key=speeds.__getitem__)
     speed = speeds[strongest]
     for leg, recorded in _records(legs):
-        if speed < SHARE_OF_ITS_RECORD * recorded:
+        limit = SHARE_OF_ITS_RECORD * recorded
+        if speed < limit:
             message = (
                 f"The record that this current is taken from reaches {say('speed', recorded)}; "
                 f"the strongest current judged is {say('speed', speed)}."
             )
             remedy = "Add an environment with that current, or solve the record with `calm batch`."
-            yield leg, verdict_on(None, State.WARN, message, remedy, speed, recorded)
+            yield leg, at_least(None, speed, limit, message, remedy, State.WARN)
     if speed < LEAST_CURRENT:
         return
     message = f"The strongest current judged is {say('speed', speed)}"

@@ -12,6 +12,7 @@ from calm.checks.criterion import Criterion, JudgedPart, cited, criteria, pieces
 from calm.checks.finding import State, Verdict, at_least, rule
 from calm.checks.inventory import anchor_dry_mass
 from calm.checks.posture import reaches_the_surface
+from calm.checks.recovery import SHORT_LEAD
 from calm.files import Cable, Component, Flexible, MooringFile, Piece, SafetyFactors
 from calm.files.mooring_file import legs_of
 from calm.quantities import say
@@ -166,16 +167,26 @@ def _release_words(
 
 @rule("strength-steps")
 def strength_steps(result: LegResult) -> Iterator[Verdict]:
-    """Every weak link: a piece that bears less than half of what the cables on both its sides do.
+    """Every weak link: a piece that is good for less than half of what the cables on both its sides
+    are, and bears more than half of that.
 
     A line whose strength jumps carries weight for nothing, and parts at its weak link. Where there
     is none, the piece nearest to one is reported. Chain is left out of the comparison: it is
-    heavier than its load asks for, against wear.
+    heavier than its load asks for, against wear; and so is what has only the low bound of an
+    estimate, which says nothing of how strong it is beside others.
     """
     factors, surface = result.file.checks.safety_factor, reaches_the_surface(result.leg)
-    loads = [allowable_load(piece.component, factors, surface) for piece in result.file.pieces[:-1]]
+    loads = [
+        None if _is_estimated(one.component) else allowable_load(one.component, factors, surface)
+        for one in result.file.pieces[:-1]
+    ]
     steps = sorted(_steps(result, loads), key=lambda step: (step[0], step[1].label))
-    weak = [step for step in steps if step[0] < WEAK_LINK]
+    pull = result.components.tension
+    weak = [
+        step for step in steps if step[0] < WEAK_LINK and pull[step[1].index] > WEAK_LINK * step[2]
+    ]
+    if not weak:
+        steps = [step for step in steps if step[0] >= WEAK_LINK]
     for _, piece, load, cables in weak or steps[:1]:
         yield at_least(
             piece,
@@ -186,6 +197,15 @@ def strength_steps(result: LegResult) -> Iterator[Verdict]:
             "Match its strength to that of the cables next to it.",
             State.WARN,
         )
+
+
+def _is_estimated(component: Component) -> bool:
+    """Whether a load of a component, as it is judged, is the low bound of an estimate."""
+    return any(
+        getattr(component, one.quantity) in (one.low, one.low_in_waves)
+        for one in component.estimate or ()
+        if one.quantity in ("working_load", "breaking_load")
+    )
 
 
 def _steps(
@@ -210,10 +230,13 @@ def slack(leg: Leg) -> Iterator[Criterion]:
 
     A line that falls slack wears, kinks and snatches. Mooring groups ask for some 500 to 1000 N
     above the release at slack water; no rule is published, so 500 N of wire and 300 N of rope are
-    the defaults. A piece with ``slack: allowed`` is not judged, nor what lies on the seabed.
+    the defaults. A piece with ``slack: allowed`` is not judged, nor what lies on the seabed. A line
+    that is short down to its release (`SHORT_LEAD`) is as taut as its floats pull: it is judged by
+    a limit of the design alone.
     """
     file = leg.file
     lowest = len(file.pieces) - 1 if file.release is None else file.release
+    short = file.release is not None and float(leg.line.length[:lowest].sum()) <= SHORT_LEAD
     for part in pieces_of(leg)[:lowest]:
         if not isinstance(part.component, Cable) or part.component.slack == "allowed":
             continue
@@ -221,6 +244,8 @@ def slack(leg: Leg) -> Iterator[Criterion]:
         limit = getattr(file.checks.minimum_tension, name)
         words = partial(_words, part, limit, name)
         source = cited(file, f"minimum_tension.{name}")
+        if short and not source:
+            continue
         yield Criterion(part, "least_tension", limit, words, least=True, silent=True, source=source)
 
 
@@ -256,7 +281,8 @@ def anchor_weight(leg: Leg) -> Iterator[Criterion]:
         words,
         source=cited(leg.file, "anchor_factor", "anchor_friction"),
         lacks="weight",
-        stated=lambda required, result: (result.anchor.weight, required),
+        stated=lambda required, result: (result.anchor_load.weight, required),
+        stated_least=True,
     )
 
 
@@ -289,16 +315,18 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
 
     def held(result: LegResult) -> float:
         assert weight is not None
-        return friction * (weight / factor - result.anchor.vertical)
+        return friction * (weight / factor - result.anchor_load.vertical)
 
     def words(_: float, result: LegResult) -> tuple[str, str]:
-        pulls = f"The horizontal pull of the line is {say('tension', result.anchor.horizontal)}"
+        pulls = (
+            f"The horizontal pull of the line is {say('tension', result.anchor_load.horizontal)}"
+        )
         if weight is None:
             return f"{pulls}; the anchor's weight in water is not known.", _WHAT_IS_IT
         return (
             f"{pulls}; friction of {friction:.4g}{down} holds "
             f"{say('tension', max(held(result), 0.0))}.",
-            _heavier(leg, result.anchor.required_weight),
+            _heavier(leg, result.anchor_load.required_weight),
         )
 
     yield Criterion(
@@ -308,7 +336,7 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
         words,
         source=cited(leg.file, "anchor_factor", "anchor_friction"),
         lacks="weight",
-        stated=lambda _, result: (result.anchor.horizontal, held(result)),
+        stated=lambda _, result: (result.anchor_load.horizontal, held(result)),
     )
 
 

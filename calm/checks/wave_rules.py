@@ -8,7 +8,7 @@ from typing import Literal
 
 from calm.case.leg import Leg
 from calm.checks.criterion import cited
-from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import lesser_load, passes_load_on, wanted_load
 from calm.errors import UsageError
@@ -101,10 +101,9 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
         return
     given, checks = leg.file.environment.waves, leg.file.checks
     if given is None or given.scatter is None:
-        message = "Its fatigue life is not known: one sea is not a wave climate."
-        yield unknown(
-            None, message, "Give `waves: {scatter: FILE}`, seas with their shares of the time."
-        )
+        message = "One sea is not a wave climate: no fatigue life follows from it."
+        remedy = "Give `waves: {scatter: FILE}`, seas with their shares of the time."
+        yield verdict_on(None, State.NOT_JUDGED, message, remedy)
         return
     limit = checks.fatigue_factor * checks.service_time
     source = cited(leg.file, "fatigue_factor", "service_time")
@@ -139,7 +138,7 @@ def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
     message = f"{verdict.message} {' '.join(waves.warnings)}"
     return replace(
         verdict, state=State.UNKNOWN, message=message, remedy="Give the rope's `stiffness`.",
-        limit=None, margin=None,
+        limit=None, sense=None,
     )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from calm.cli import options
-from calm.cli.outputs import ExitCode, narrate, show_parts
+from calm.cli.outputs import ExitCode, narrate, narrate_card, show_parts
 from calm.cli.progress import ProgressTeller, grouped
 from calm.errors import UsageError
 
@@ -97,6 +97,8 @@ def batch(
     with stopped_by_a_signal(teller) as progress:
         terms = Terms(seabed, place, turned)
         with open_record(currents, terms, period, every) as record:
+            for card in record.cards:
+                narrate_card(card)
             for notice in (*mooring.file.notices, *record.notes):
                 if notice not in RULES:
                     narrate(f"{currents}: {notice}")

@@ -141,12 +141,11 @@ def draw(
         above.
     """
     from calm.drawing.picture import check_format, image
-    from calm.drawing.plot import figure_svg, require_matplotlib
+    from calm.drawing.plot import figure_svg
     from calm.report.chart_page import draw_chart
     from calm.report.folder import check_destination, write_file
 
     check_format(output)
-    require_matplotlib("calm chart draw")
     check_destination(output)
     (drag_over_weight,) = options.quantities(k=(k, "number")).values()
     write_file(output, image(figure_svg(draw_chart(drag_over_weight, lower_end)), output.suffix))

@@ -6,14 +6,14 @@ import os
 from collections.abc import Callable, Sequence
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
 from calm.cli import options
-from calm.cli.judging import DrawnSection, drawn_section, judge, load_ahead
+from calm.cli.judging import Drawing, DrawnSection, drawn_section, judge, load_ahead
 from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate, show
-from calm.cli.reading import DesignFile, read_designs
+from calm.cli.reading import DesignFile, names_of_files, read_designs
 from calm.errors import InputError, Problem, UsageError
 
 if TYPE_CHECKING:
@@ -29,13 +29,15 @@ def check(
     catalog: options.CatalogFiles = None,
     json: OutputPath = None,
     report: Path | None = None,
+    page: Literal["a4", "letter"] = "a4",
+    full: bool = False,
     against: Path | None = None,
+    all_findings: bool = False,
     missing: bool = False,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     allow_unknown: bool = False,
     uncertainty: bool = False,
     samples: options.Samples = 2048,
-    seed: options.Seed = 0,
     workers: int | None = None,
     units: options.Units = None,
 ) -> ExitCode:
@@ -44,8 +46,8 @@ def check(
     Each mooring is solved as given, in still water, with cables that strum and,
     where its file asks for it, at high and low water and with growth; then launched
     anchor last, released, and broken at each connection. The exit code is 0 when
-    every finding is a pass, a warning or accepted, 1 when a rule fails or lacks a
-    figure, 3 when a mooring has no equilibrium.
+    nothing fails and nothing is incomplete, 1 when a rule fails or lacks a figure,
+    3 when a mooring has no equilibrium.
 
     Parameters
     ----------
@@ -53,11 +55,19 @@ def check(
         An environment named in the files, or an environment file. Repeatable. By default, every
         environment of each file.
     json
-        Write every finding as JSON, - to print it.
+        Write the findings as JSON, - to print it: what governs each rule, what does not pass,
+        and what uses half of its limit or more.
     report
-        Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder.
+        Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder:
+        of one mooring six pages and more, of several one matrix and a page of each.
+    page
+        The paper of the report.
+    full
+        Write all the pages of each of several moorings too, as PDF files of their own.
     against
         An earlier design, with which the report compares the mooring; needs --report.
+    all_findings
+        Write every finding in the JSON and in checks.csv, of every piece in every situation.
     missing
         Print, in place of the findings, a block of YAML to complete: the figures that
         each component lacks, with the rules that need them.
@@ -83,16 +93,20 @@ def check(
     """
     outputs = Outputs(tuple(files), json)
     options.from_one(workers=workers)
+    if full and report is None:
+        raise UsageError("--full writes the pages of each mooring beside the --report")
     if against is not None and (report is None or len(files) > 1):
         raise UsageError("--against compares one mooring with an earlier design in its --report")
     _check_missing(missing, output, files, (json, report))
-    draws = options.draws_of(uncertainty, samples, seed)
+    draws = options.draws_of(uncertainty, samples)
     if report is not None:
         given = [*files, *map(Path, environment or ()), *(catalog or ()), *filter(None, [against])]
         _check_report(report, json, given)
-    drawn = report is not None and against is None  # one that is compared is drawn with that
+    drawing = Drawing(len(files) == 1, full and len(files) > 1, page)
+    # one that is compared is drawn with that
+    drawn = drawing if report is not None and against is None else None
     count = len(files) * len(environment or [None])
-    ready = partial(load_ahead, count, drawn)
+    ready = partial(load_ahead, count, drawn is not None)
     designs, tows, earlier = _read(files, environment, catalog or [], workers, against, ready)
     if tows:
         narrate(f"not checked, because they are tows: {', '.join(map(str, tows))}")
@@ -101,25 +115,27 @@ def check(
         from calm.files.legs import NET_SURE
 
         raise UsageError(f"--uncertainty is for {NET_SURE}: {nets[0]}")
+    own = names_of_files(designs, report, ["report"]) if drawing.full and report else []
     options.show_units(units, [one.file for design in designs for one in design.moorings])
     judged = judge(designs, workers, drawn, draws)
     assessments = [each.assessment for each in judged]
     for design, assessment in zip(designs, assessments, strict=True):
         of_files = (notice for one in design.moorings for notice in one.file.notices)
+        found = {finding.message for finding in assessment.all_findings()}
         for notice in dict.fromkeys((*of_files, *assessment.notices)):
-            narrate(f"{design.path}: {notice}")
+            if notice not in found:
+                narrate(f"{design.path}: {notice}")
     drawings = [each.drawn for each in judged if each.drawn is not None]
     if earlier is not None:
         from calm.checks.comparison import comparison_of
-        from calm.report.check_report import mooring_section
 
         names = str(against), str(designs[0].path)
         compared = comparison_of(names, earlier, designs[0].moorings[0])
-        drawings = [drawn_section(mooring_section(assessments[0], compared), 1)]
+        drawings = [drawn_section(assessments[0], 1, drawing, compared)]
     if missing:
         _write_missing(assessments, output)
     else:
-        _answer(assessments, drawings, outputs, report)
+        _answer(assessments, drawings, outputs, report, page, own, every=all_findings)
     return gravest(_code(each, allow_unknown) for each in assessments)
 
 
@@ -211,18 +227,24 @@ def _answer(
     drawings: Sequence[DrawnSection],
     outputs: Outputs,
     folder: Path | None,
+    paper: str,
+    names: Sequence[str],
+    *,
+    every: bool,
 ) -> None:
     """Print what was found, and write the report if it is asked for.
 
-    Its PDF is set meanwhile: typst does not hold Python up.
+    Its PDF is set meanwhile: typst does not hold Python up. `names` are those of the PDF files of
+    single moorings, if these are asked for.
     """
     from concurrent.futures import ThreadPoolExecutor
 
     from calm.report import result_files
-    from calm.report.check_report import check_document, check_part, checks_csv, inventory_csv
+    from calm.report.check_files import check_document, checks_csv, inventory_csv
+    from calm.report.check_summary import check_part
     from calm.report.folder import write_report
 
-    document = cache(lambda: check_document(assessments))
+    document = cache(lambda: check_document(assessments, every=every))
     if folder is None:
         outputs.write_answer(document, check_part(assessments))
         return
@@ -232,25 +254,28 @@ def _answer(
 
     report = check_report([each.section for each in drawings])
     with ThreadPoolExecutor(1) as beside:
-        pdf = beside.submit(printed, report, leaves=[each.pdf for each in drawings])
+        pdf = beside.submit(printed, report, paper, leaves=[each.pdf for each in drawings])
         outputs.write_answer(document, check_part(assessments))
         texts = {
             "report.html": page(report, [each.html for each in drawings]),
             "report.json": result_files.to_json([document()]),
-            "checks.csv": checks_csv(assessments),
+            "checks.csv": checks_csv(assessments, every=every),
             "inventory.csv": inventory_csv(assessments),
         }
         files = {name: text.encode("utf-8", "replace") for name, text in texts.items()}
-        write_report(folder, files | {"report.pdf": pdf.result()})
+        own = {
+            f"{name}.pdf": each.full
+            for name, each in zip(names, drawings, strict=bool(names))
+            if each.full is not None
+        }
+        write_report(folder, files | {"report.pdf": pdf.result()} | own)
     narrate(f"the report is in {folder}")
 
 
 def _code(assessment: Assessment, allow_unknown: bool) -> ExitCode:
-    from calm.checks.finding import State
+    from calm.checks.finding import Conclusion
 
     if any(stand.result is None for stand in assessment.stands):
         return ExitCode.NO_EQUILIBRIUM
-    passes = {State.PASS, State.ESTIMATED, State.WARN} | (
-        {State.UNKNOWN} if allow_unknown else set()
-    )
-    return ExitCode.DONE if assessment.state in passes else ExitCode.FINDING
+    stops = {Conclusion.FAILS} | ({Conclusion.INCOMPLETE} if not allow_unknown else set())
+    return ExitCode.FINDING if assessment.verdict in stops else ExitCode.DONE

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from calm.cli import options, reading
 from calm.cli.outputs import ExitCode, narrate
-from calm.errors import NoEquilibrium, UsageError
+from calm.errors import NoEquilibrium
 from calm.version import __version__
 
 if TYPE_CHECKING:
@@ -28,7 +27,6 @@ def deck(
     ship_speed: str = "1 m/s",
     streamed: str | None = None,
     course: str | None = None,
-    deck_time: str | None = None,
     catalog: options.CatalogFiles = None,
     units: options.Units = None,
 ) -> ExitCode:
@@ -63,18 +61,13 @@ def deck(
     course
         Course over the ground as the ship tows the line out; by default against
         the current at the surface.
-    deck_time
-        Handling time of each piece and clamp before it goes over, such as "3
-        min", except shackles and rings; by default by role, from `document:
-        deck_time:` in the file. Without either the plan has no start of the
-        run.
 
     Examples
     --------
       calm deck mooring.yaml -o cruise/
       calm deck mooring.yaml -o cruise/ --page a3 --environment storm
       calm deck north.yaml south.yaml -o cruise/
-      calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --course "245 deg" --deck-time "3 min"
+      calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --course "245 deg"
       calm deck shallow.yaml -o cruise/ --order anchor-first
     """
     from calm.deck import deck_items, deck_of
@@ -87,7 +80,6 @@ def deck(
         ship_speed=(ship_speed, "speed"),
         streamed=(streamed, "length"),
         course=(course, "angle"),
-        deck_time=(deck_time, "time"),
     )
     designs, tows = reading.read_designs(files, environment, catalog or [], None, "calm deck")
     if tows:
@@ -109,11 +101,10 @@ def deck(
 
 
 def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
-    from calm.report.check_tables import verdict_of
     from calm.report.folder import write_report
+    from calm.report.open_items import assessment_verdict
 
-    state, words = verdict_of(deck.assessment.all_findings())
-    narrate(f"{path}: {state.sign} {words}: calm check {path}")
+    narrate(f"{path}: {assessment_verdict(deck.assessment).text}: calm check {path}")
     notes = _signs_that_are_lacking(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")
@@ -123,23 +114,30 @@ def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
 
 def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
     from calm.checks.finding import State
-    from calm.report import check_tables, deck_files, result_files
+    from calm.report import deck_files, open_items, result_files
     from calm.report.diagram import diagram_svg
     from calm.report.folder import printed
 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_files.deck_csvs(deck)}
     if deck.result.several:
         texts["net.svg"] = deck_files.net_svg(deck)
-    counts = check_tables.counted_states(deck.assessment.all_findings())
-    fails, unknown = counts[State.FAIL], counts[State.UNKNOWN]
-    verdict = {"state": str(deck.assessment.state), "fails": fails, "unknown": unknown}
+    counts = open_items.open_counts(deck.assessment)
+    verdict = {
+        "verdict": str(deck.assessment.verdict),
+        "state": str(deck.assessment.state),
+        "fails": counts[State.FAIL],
+        "unknown": counts[State.UNKNOWN],
+        "warns": counts[State.WARN],
+        "accepted": counts[State.ACCEPTED],
+        "estimated": counts[State.ESTIMATED],
+    }
     texts["plan.json"] = result_files.to_json(
         [{"calm": __version__, **_plan(deck), "verdict": verdict}]
     )
     return {
-        "deck.pdf": printed(deck_files.deck_report(deck, paper, notes), paper, least=7.5),
+        "deck.pdf": printed(deck_files.deck_report(deck, paper, notes), paper),
         "deck.xlsx": deck_files.deck_workbook(deck),
-        "diagram.pdf": printed(deck_files.diagram_report(deck, paper), paper, least=7.5),
+        "diagram.pdf": printed(deck_files.diagram_report(deck, paper), paper),
         **{name: text.encode("utf-8", "replace") for name, text in texts.items()},
     }
 
@@ -192,10 +190,4 @@ def _folders(designs: Sequence[reading.DesignFile], output: Path) -> list[Path]:
     """
     if len(designs) == 1:
         return [output]
-    # signs that systems refuse become a stroke
-    plain = (re.sub(r'[\x00-\x1f<>:"/\\|?*]+', "-", each.name).strip(" .") for each in designs)
-    folders = [output / (name or "mooring") for name in plain]
-    for folder in folders:
-        if [str(one).casefold() for one in folders].count(str(folder).casefold()) > 1:
-            raise UsageError(f"two moorings would go to {folder}; give them other names")
-    return folders
+    return [output / name for name in reading.names_of_files(designs, output)]

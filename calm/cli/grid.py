@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,7 +10,7 @@ from cyclopts import Parameter
 
 from calm.cli import options
 from calm.cli.batch import check_output
-from calm.cli.outputs import ExitCode, narrate, show_parts
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate, narrate_card
 from calm.cli.progress import progress
 from calm.errors import UsageError
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from calm.grid.field import GriddedQuantity
-    from calm.grid.samples import MooringDepths
+    from calm.grid.samples import MooringDepths, Samples
     from calm.records.instrument_series import InstrumentSeries
 
 METHODS = ("depth-time", "depth")
@@ -35,6 +36,7 @@ def grid(
     method: str = METHODS[0],
     flags: str = "1,2",
     report: Path | None = None,
+    json: OutputPath = None,
 ) -> ExitCode:
     """Put temperature, salinity and velocity at their moving depths onto fixed levels.
 
@@ -69,6 +71,8 @@ def grid(
         Quality flags of the values that count as measured; 8 never does.
     report
         Write a page and a PDF, grid.html and grid.pdf, in this folder.
+    json
+        Write the scales and what was read as JSON, - to print it.
 
     Examples
     --------
@@ -77,7 +81,6 @@ def grid(
       calm grid depths.nc stack.nc -o OS_M1_D.nc --levels 50,100,200 --variables TEMP,PSAL
     """
     from calm.dataset.discovery import hashed
-    from calm.drawing.plot import require_matplotlib
     from calm.errors import not_among
     from calm.grid.product import grid_layout, parse_levels, write_grid
     from calm.grid.samples import read_depths
@@ -85,8 +88,9 @@ def grid(
     from calm.quantities import QUANTITIES_MEASURED, chosen_quantities
     from calm.records.instrument_series import files_given, read_series
     from calm.report.folder import check_folder, write_pages
-    from calm.report.grid_report import grid_part, grid_report
+    from calm.report.grid_report import grid_document, grid_part, grid_report
 
+    outputs = Outputs((depths,), json)
     if method not in METHODS:
         raise UsageError(not_among("--method", method, METHODS))
     wanted, names = parse_levels(levels), chosen_quantities(variables)
@@ -99,10 +103,17 @@ def grid(
     files = files_given(values)
     check_output(output, depths, *(path for _, path in files))
     if report is not None:
-        require_matplotlib("calm grid --report")
+        import matplotlib  # noqa: F401  (missing, it is reported before the work)
+
         check_folder(report)
     where = read_depths(depths)
     series = read_series(values, names, good, where.seabed)
+    everything = [one for each in series.values() for one in each]
+    cards = [*{id(one.card): one.card for one in everything if one.card is not None}.values()]
+    for card in cards:
+        narrate_card(card)
+    for line in dict.fromkeys(f"{one.source}: {one.note}" for one in everything if one.note):
+        narrate(line)
     if variables is not None:
         for name in names:
             if not series[name]:
@@ -111,14 +122,52 @@ def grid(
     archived = variables is not None and variables.isupper()
     called = {name: QUANTITIES_MEASURED[name].archive if archived else name for name in fields}
     inputs = [hashed(depths), *(hashed(path) for _, path in files)]
-    layout = grid_layout(fields, wanted, where, inputs, called, step)
+    layout = grid_layout(fields, wanted, where, inputs, called, step, cards)
     write_grid(
         layout, fields, wanted, called, output, lambda each: progress(each, "blocks of times")
     )
-    show_parts(grid_part(fields))
     if report is not None:
-        write_pages(report, "grid", grid_report(output, fields, called, wanted))
+        write_pages(report, "grid", grid_report(output, fields, called, wanted, cards))
+    outputs.write_answer(lambda: grid_document(fields, cards), grid_part(fields))
     return ExitCode.DONE
+
+
+def exchanged(
+    where: MooringDepths,
+    samples: Samples,
+    name: str,
+    series: list[InstrumentSeries],
+    points: dict[int, int],
+) -> Iterator[str]:
+    """Yield instruments whose files look exchanged.
+
+    The pressures in a file are those of another place, or two mean values in the wrong order.
+    """
+    import numpy as np
+
+    from calm.grid.samples import ANOTHER_PLACE
+    from calm.records.value_tests import exchanged_pair
+
+    labels = where.places.label
+    for i, at in points.items():
+        usual = float(np.nanmedian(where.depth[:, at]))
+        one, here = series[i], f"`{labels[at]}` was at {usual:.0f} m"
+        if abs(one.pressure - usual) > max(ANOTHER_PLACE, 0.1 * usual):
+            yield (
+                f"{one.source}: the median of its pressures is {one.pressure:.0f} dbar, where "
+                f"{here}: are two files exchanged?"
+            )
+        if one.called in labels and one.called != labels[at]:
+            yield f"{one.source}: given as `{labels[at]}`, and calls itself `{one.called}`"
+    if name == "temperature":
+        known = [column[np.isfinite(column)] for column in samples.value.T]
+        means = np.array([column.mean() if column.size else np.nan for column in known])
+        if pair := exchanged_pair(means):
+            upper, lower = (samples.label[i] for i in pair)
+            yield (
+                f"{name}: only if `{upper}` and `{lower}` are exchanged do the means of all "
+                f"{len(means)} instruments fall or rise with depth: are two files exchanged?"
+            )
 
 
 def fields_of(
@@ -148,6 +197,8 @@ def fields_of(
     fields, reasons = {}, []
     for name, (points, _) in matched.items():
         samples = gather(where, series[name], points, time)
+        for line in exchanged(where, samples, name, series[name], points):
+            narrate(line)
         dropped = sum(series[name][i].dropped for i in points)
         if dropped:
             narrate(f"{name}: {dropped} values are left out because of their flag")

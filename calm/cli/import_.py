@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from calm.cli import options
-from calm.cli.outputs import STDOUT, ExitCode, OutputPath, narrate, show
+from calm.cli.outputs import STDOUT, ExitCode, OutputPath, narrate, narrate_card, show
 from calm.errors import InputError, Problem, UsageError
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ def import_(
     strict: bool = False,
     define: Annotated[list[str] | None, Parameter(name=["--define", "-D"])] = None,
     environment: Path | None = None,
+    onto: Path | None = None,
     columns: str | None = None,
     elements: Path | None = None,
     match_catalogue: bool = False,
@@ -52,6 +53,10 @@ def import_(
         names, as "NAME=ID". Repeatable.
     environment
         An environment file, in place of the water in the file.
+    onto
+        A mooring file: the list of instruments FILE (serial number, name, nominal depth, clock
+        offset; CSV, RODB's info.dat, oceanarray, or NetCDF) is assigned to its line, and OUTPUT
+        is a copy whose `deployed:` has the serial numbers.
     columns
         The columns of a table by their headings: name=Item,length=Len.
     elements
@@ -69,6 +74,7 @@ def import_(
       calm import moor001.mat -o moor001.yaml
       calm import *.cbl -o moorings/ --environment site.yaml
       calm import snare.cbl -o snare.yaml -D DEPTH=1200 --strict
+      calm import info.dat --onto mooring.yaml -o deployed.yaml
       calm import list.csv -o list.yaml --columns name=Item,length=Len --environment site.yaml
     """
     from calm.exchange.current_record import record_file
@@ -78,6 +84,10 @@ def import_(
 
     if not files:
         raise UsageError("calm import needs a file")
+    if onto is not None:
+        if len(files) > 1:
+            raise UsageError("--onto takes one list of instruments")
+        return _assign(files[0], onto, output, json)
     headings = _pairs("--columns", columns.split(",") if columns else [])
     given = ImportOptions(_pairs("--define", define or []), headings, elements, allow_include)
     targets = _targets(files, output)
@@ -112,6 +122,27 @@ def import_(
         _tell(imported, target, record)
     if json is not None:
         text = result_files.to_json([_document(imported, target) for imported, target in done])
+        show(text) if json == STDOUT else folder.write_file(json, text.encode())
+    return ExitCode.DONE
+
+
+def _assign(file: Path, onto: Path, output: Path, json: Path | None) -> ExitCode:
+    """Assign a list of instruments to the line of a mooring file, and write the copy."""
+    from calm.motion.assigned_instruments import assign_instruments
+    from calm.report import folder, result_files
+
+    (target,) = _targets((file,), output)
+    if os.path.realpath(target) == os.path.realpath(onto):
+        raise UsageError(f"{target} is the mooring file that is read; write another one")
+    found = assign_instruments(onto, file)
+    for sentence in (*found.assigned, *found.doubts):
+        narrate(sentence)
+    folder.write_file(target, found.text.encode())
+    narrate(f"{target} written: {len(found.assigned)} instruments of {file} are assigned")
+    if json is not None:
+        document = {"file": str(file), "output": str(target), "assigned": list(found.assigned),
+                    "doubts": list(found.doubts)}  # fmt: skip
+        text = result_files.to_json([document])
         show(text) if json == STDOUT else folder.write_file(json, text.encode())
     return ExitCode.DONE
 
@@ -167,6 +198,12 @@ def _tell(imported: Imported, target: Path, record: Path | None) -> None:
     for match in imported.matched:
         narrate(f"{imported.file}: {match.name} is {match.entry} of the catalogue")
     if record is not None:
+        from calm.records.current_file import open_record
+        from calm.records.current_terms import Terms
+
+        with open_record(record, Terms()) as read:
+            for card in read.cards:
+                narrate_card(card)
         narrate(f"{record} written; solve it with: calm batch {target} --currents {record} -o …")
     narrate(f"{target} written; solve it with: calm run {target}")
 

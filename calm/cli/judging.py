@@ -15,16 +15,35 @@ from calm.errors import internal_failure
 if TYPE_CHECKING:
     from calm.case import Design, uncertain
     from calm.checks.assessment import Assessment, MooringInEnvironment
+    from calm.checks.comparison import Comparison
     from calm.cli.reading import DesignFile
     from calm.report.check_report import CheckedSection
 
 
+class Drawing(NamedTuple):
+    """How moorings are drawn for the report.
+
+    Attributes
+    ----------
+    alone : whether a mooring has all its pages there, and not one behind the summary
+    full : whether each of many has all its pages as a PDF of its own
+    paper : what these are printed on
+    """
+
+    alone: bool = True
+    full: bool = False
+    paper: str = "a4"
+
+
 class DrawnSection(NamedTuple):
-    """A mooring's section of the report: its heading for the summary, its HTML and its PDF leaf."""
+    """A mooring's section of the report: its row of the summary, its HTML and its PDF leaf, and all
+    its pages as a PDF of its own, if that is asked for.
+    """
 
     section: CheckedSection
     html: str
     pdf: str
+    full: bytes | None = None
 
 
 class CheckedMooring(NamedTuple):
@@ -34,16 +53,33 @@ class CheckedMooring(NamedTuple):
     drawn: DrawnSection | None
 
 
-def drawn_section(section: CheckedSection, number: int) -> DrawnSection:
-    """Draw the `number`th section of a report for HTML and PDF."""
-    from calm.report.folder import pdf_leaf
+def drawn_section(
+    assessment: Assessment, number: int, drawing: Drawing, against: Comparison | None = None
+) -> DrawnSection:
+    """Draw the `number`th section of a report for HTML and PDF.
+
+    `against` is the mooring compared with the design that it came from.
+    """
+    from calm.report.check_report import check_report, mooring_section, short_section
+    from calm.report.folder import pdf_leaf, printed
     from calm.report.html import leaf
 
-    return DrawnSection(replace(section, parts=()), leaf(section, number), pdf_leaf(section))
+    full = None
+    if drawing.alone or drawing.full:
+        section = mooring_section(assessment, against, drawing.paper)
+    if drawing.full:
+        full = printed(check_report([section]), drawing.paper)
+    if not drawing.alone:
+        section = short_section(assessment)
+    bare = replace(section, parts=())
+    return DrawnSection(bare, leaf(section, number), pdf_leaf(section), full)
 
 
 def judge(
-    designs: Sequence[DesignFile], workers: int | None, drawn: bool, draws: tuple[int, int] | None
+    designs: Sequence[DesignFile],
+    workers: int | None,
+    drawn: Drawing | None,
+    draws: tuple[int, int] | None,
 ) -> list[CheckedMooring]:
     """Judge designs on one day: the day of the report, by default today.
 
@@ -53,7 +89,7 @@ def judge(
     Parameters
     ----------
     workers : number of processes; None for one on each core
-    drawn : draw the sections of the report
+    drawn : how the sections of the report are drawn; None without a report
     draws : samples and seed of the probabilities; None without them
     """
     from calm.checks.situations import SOLVES
@@ -64,7 +100,7 @@ def judge(
     stands = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
     expect_many(SOLVES * len(stands))
     if len(designs) > progress.FEW:
-        load_ahead(len(stands), drawn)
+        load_ahead(len(stands), drawn is not None)
         whole = [(number, design, day, drawn, draws) for number, design in enumerate(designs, 1)]
         return progress.mapped(_solve_and_conclude, whole, workers, "moorings judged")
     solved = iter(progress.mapped(_stands, stands, workers, "environments solved"))
@@ -79,14 +115,14 @@ def judge(
 def load_ahead(stands: int, drawn: bool) -> None:
     """Import the modules that judging so many moorings needs, before processes are forked.
 
-    The compiled march is loaded if it is cached, but not compiled before all files are valid.
+    The compiled solver is loaded if it is in the cache.
     """
     import calm.checks.assess
     import calm.checks.recovery
     from calm.checks.situations import SOLVES
-    from calm.solve.solution import COLD, expect_many
+    from calm.solve import expect_many
 
-    expect_many(min(SOLVES * stands, COLD - 1))
+    expect_many(SOLVES * stands)
     if drawn:
         import calm.report.check_report
         import calm.report.html  # noqa: F401
@@ -96,7 +132,7 @@ def load_ahead(stands: int, drawn: bool) -> None:
 
 
 def _solve_and_conclude(
-    task: tuple[int, DesignFile, date, bool, tuple[int, int] | None],
+    task: tuple[int, DesignFile, date, Drawing | None, tuple[int, int] | None],
 ) -> CheckedMooring:
     number, design, day, drawn, draws = task
     stands = [each for one in design.moorings for each in _stands((design.name, one, day))]
@@ -108,7 +144,7 @@ def _concluded(
     name: str,
     stands: Sequence[MooringInEnvironment],
     day: date,
-    drawn: bool,
+    drawn: Drawing | None,
     draws: tuple[int, int] | None,
     shared: uncertain.Mapped,
 ) -> CheckedMooring:
@@ -117,13 +153,12 @@ def _concluded(
     `draws` are samples and seed of the probabilities, or None; `shared` solves blocks of samples.
     """
     from calm.checks import assess, design_check
-    from calm.report.check_report import mooring_section
 
     assessment = design_check.assessment_of(name, stands, day)
     if draws is not None:
         assessment = assess.with_probabilities(assessment, *draws, shared)
     return CheckedMooring(
-        assessment, drawn_section(mooring_section(assessment), number) if drawn else None
+        assessment, None if drawn is None else drawn_section(assessment, number, drawn)
     )
 
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING
 
 from calm.cli import options
 from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
@@ -29,17 +27,18 @@ def locate(
     plot: Path | None = None,
     json: OutputPath = None,
     near: options.Signed = None,
+    hemisphere: str = "",
     update: Path | None = None,
     accept: bool = False,
-    output: Annotated[Path | None, Parameter(name=["--output", "-o"], show=False)] = None,
 ) -> ExitCode:
     """Find where an anchor lies from acoustic ranges taken by a ship.
 
     Outliers among the ranges are reported and left out, if enough ranges
     remain. The position comes with its 95 % ellipse, the depth with its
     interval, and a warning if the ship's positions leave them poorly known. If
-    two positions fit, the one near the planned position is taken, and the other
-    is given. Rays are taken as straight.
+    two positions fit, both are given, and weighed by the distance that an
+    anchor can fall back from the planned position. Exit code 1 while both
+    remain. Rays are taken as straight.
 
     Parameters
     ----------
@@ -64,12 +63,16 @@ def locate(
     json
         Write the place as JSON, - to print it.
     near
-        Approximate latitude and longitude of the drop, to choose between two
-        positions; by default the planned position in the file of --update.
+        Planned latitude and longitude of the anchor, by which two positions are
+        weighed; by default the planned position in the file of --update.
+    hemisphere
+        Hemispheres of positions that have neither letter nor sign, such as S,W.
     update
         A mooring file: write position and depth into its `deployed:`, and
-        report the distance from its planned position. If the position is in
-        doubt nothing is written, and the exit code is 1.
+        report the distance from its planned position. If two positions remain,
+        if the depth differs from the planned one by more than 30 m or 3 %, or
+        if the position is in doubt for another reason, nothing is written, and
+        the exit code is 1.
     accept
         Write the position in spite of a doubt.
 
@@ -110,14 +113,11 @@ def locate(
             "deeper than the transducer"
         )
     sound = _sound(sound_speed or DEFAULT_SPEED)
-    survey = read_ranges(file, under)
+    survey = read_ranges(file, under, hemisphere)
     if sound_speed is not None and not survey.timed:
         narrate("--sound-speed is not used: ranges in metres are taken as they are")
     for notice in survey.notices:
         narrate(f"{file}: {notice}")
-    if output is not None:
-        narrate("-o is now --update: the file is edited in place")
-        update = update or output
     mooring = None if update is None else range_fit.located_mooring(update)
     about = None if near is None else parse_place(near)
     if about is None and mooring is not None and mooring.position is not None:
@@ -136,7 +136,7 @@ def locate(
     if plot is not None:
         write_file(plot, image(located_figure(located), plot.suffix))
     if edited is None:
-        return ExitCode.DONE
+        return ExitCode.FINDING if located.undecided and not accept else ExitCode.DONE
     if doubts and not accept:
         narrate(f"{update} is not written: {'; '.join(doubts)}. --accept writes it anyway")
         return ExitCode.FINDING

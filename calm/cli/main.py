@@ -29,12 +29,13 @@ from calm.cli.locate import locate
 from calm.cli.motion import motion
 from calm.cli.new import new
 from calm.cli.outputs import ExitCode, narrate, prepare, show
+from calm.cli.page import page
 from calm.cli.run import run
 from calm.cli.schema import schema
 from calm.cli.size import size
 from calm.cli.verify import verify
 from calm.cli.waves import waves
-from calm.errors import CalmError, InputError, NoEquilibrium
+from calm.errors import CalmError, InputError, NoEquilibrium, how_to_install
 
 _EPILOGUE = """Examples:
 
@@ -100,6 +101,7 @@ _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
     "Design": (
         (new, ""),
         (build, ""),
+        (page, ""),
         (run, "[OPTIONS] FILE..."),
         (size, ""),
         (waves, ""),
@@ -178,12 +180,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         narrate("calm: interrupted")
         return ExitCode.INTERRUPTED
+    except ModuleNotFoundError as error:
+        if (advice := how_to_install(error)) is None:
+            return _unexpected(error)
+        narrate(f"calm: {advice}")
+        return ExitCode.BAD_INPUT
     except MemoryError:
         narrate("calm: not enough memory")
         return ExitCode.BAD_INPUT
     except Exception as error:
-        if os.environ.get("CALM_DEBUG") == "1":
-            traceback.print_exc()
-        narrate(f"calm: internal error ({type(error).__name__}: {error}); please report it")
-        return ExitCode.INTERNAL_ERROR
+        return _unexpected(error)
     return code if isinstance(code, ExitCode) else ExitCode.DONE
+
+
+def _unexpected(error: Exception) -> ExitCode:
+    if os.environ.get("CALM_DEBUG") == "1":
+        traceback.print_exception(error)
+    narrate(f"calm: internal error ({type(error).__name__}: {error}); please report it")
+    return ExitCode.INTERNAL_ERROR

@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from calm.cli import options
 from calm.cli.batch import check_output, ended, stopped_by_a_signal
-from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate, narrate_card
 from calm.cli.progress import ProgressTeller
 from calm.errors import UsageError
 
@@ -156,6 +156,8 @@ def motion(
         cross_validate, _separated(correct), sea_level, flags, apart, turned, prior,
         _separated(without),
     )  # fmt: skip
+    for card in recovery.cards:
+        narrate_card(card)
     for note in recovery.notes:
         narrate(note)
     teller = ProgressTeller()
@@ -174,9 +176,11 @@ def motion(
                 write_copies(instruments, result, apart, copy, inputs, recovery.source)
     name = mooring.file.name or file.stem
     if report is not None:
-        given = recovery.measured.time, name, recovery.notes
+        given = recovery.measured.time, name, recovery.notes, recovery.cards
         write_pages(report, "motion", motion_report(study, series, *given))
-    outputs.write_answer(lambda: motion_document(study, name), motion_part(study, name))
+    outputs.write_answer(
+        lambda: motion_document(study, name, recovery.cards), motion_part(study, name)
+    )
     return code
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -94,6 +95,22 @@ def read_designs(
     called = _told_apart({path: its[0].file.name for path, its in stands.items()})
     designs = [DesignFile(path, called[path], _cut_alike(its)) for path, its in stands.items()]
     return designs, tows
+
+
+def names_of_files(
+    designs: Sequence[DesignFile], folder: Path, taken: Sequence[str] = ()
+) -> list[str]:
+    """Names of moorings as those of files or folders; signs that systems refuse become a stroke.
+
+    UsageError: two moorings would have the same, or one that is `taken`.
+    """
+    plain = (re.sub(r'[\x00-\x1f<>:"/\\|?*]+', "-", each.name).strip(" .") for each in designs)
+    names = [name or "mooring" for name in plain]
+    known = [one.casefold() for one in (*names, *taken)]
+    for name in names:
+        if known.count(name.casefold()) > 1:
+            raise UsageError(f"two moorings would go to {folder / name}; give them other names")
+    return names
 
 
 def _told_apart(names: dict[Path, str]) -> dict[Path, str]:

@@ -10,7 +10,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from calm.cli.outputs import ExitCode, narrate
+from calm.cli.outputs import ExitCode, narrate, narrate_card
 from calm.errors import NoEquilibrium
 
 if TYPE_CHECKING:
@@ -38,11 +38,6 @@ class FileOutcome:
     def code(self) -> ExitCode:
         """The exit code of this file alone."""
         return ExitCode.NO_EQUILIBRIUM if self.failure else ExitCode.DONE
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """Warnings of the result."""
-        return self.result.warnings if self.result else ()
 
     def document(self) -> dict[str, Any]:
         """The JSON object of the result, or of the failure."""
@@ -120,6 +115,8 @@ def solve_files(
     drawn_often = None if draws is None else _to_draw_often(*draws)
     outcomes = []
     for file, line in zip(files, lines, strict=True):
+        if (card := line.file.environment.current.card) is not None:
+            narrate_card(card)
         result, failure = _solved(file, line)
         outcomes.append(FileOutcome(
             file, line.file.name, result, failure, verbose=verbose,

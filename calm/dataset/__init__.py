@@ -1,1 +1,1 @@
-"""Results as datasets by the CF conventions: their variables, and the NetCDF files they fill."""
+"""Results as datasets with CF metadata: their variables, and their NetCDF files."""

@@ -1,4 +1,4 @@
-"""Attributes that archives want of a file: ACDD 1.3 and OceanSITES 1.4 beside CF.
+"""Attributes that data archives require in addition to CF: ACDD 1.3 and OceanSITES 1.4.
 
 Names and tables are those of the OceanSITES Data Format Reference Manual 1.4 (2020) and of the
 Attribute Convention for Data Discovery 1.3.
@@ -22,7 +22,7 @@ FLAGS: Mapping[int, str] = {
     3: "potentially_correctable_bad_data", 4: "bad_data", 7: "nominal_value",
     8: "interpolated_value", 9: "missing_value",
 }  # fmt: skip
-"""Table 2 of OceanSITES."""
+"""Quality flags, table 2 of OceanSITES."""
 OF_FLAGS: Attributes = {
     "flag_values": list(FLAGS),
     "flag_meanings": " ".join(FLAGS.values()),
@@ -35,12 +35,12 @@ _KEPT_BEGIN = ("creator_", "platform_", "site_", "principal_investigator", "publ
 
 
 def written() -> str:
-    """Return the time of writing, as ISO 8601: that of SOURCE_DATE_EPOCH where it is given."""
+    """Return the time of writing, ISO 8601; if SOURCE_DATE_EPOCH is set, that time."""
     return f"{source_date() or datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
 
 
 def hashed(path: Path) -> str:
-    """Return the name of a file with its SHA-256; of a folder the name."""
+    """Return the name of a file with its SHA-256, or the bare name of a folder."""
     if not path.is_file():
         return path.name
     with path.open("rb") as file:
@@ -48,7 +48,9 @@ def hashed(path: Path) -> str:
 
 
 def kept(attributes: Mapping[str, Any]) -> Attributes:
-    """Return what a file says of its platform and of people, which holds of what is made of it."""
+    """Return the attributes of an input file that also apply to results, such as its platform, site
+    and creator.
+    """
     return {
         name: value
         for name, value in attributes.items()
@@ -59,13 +61,13 @@ def kept(attributes: Mapping[str, Any]) -> Attributes:
 def coverage(
     time: NDArray[np.datetime64], depth: Sequence[float], place: Sequence[float]
 ) -> Attributes:
-    """Return what a file says of when, how deep and where.
+    """Return the attributes of the covered time, depth and position.
 
     Parameters
     ----------
-    time : of it, rising
-    depth : least and greatest [m]; empty where not known
-    place : latitude and longitude [degrees]; empty where not known
+    time : times of the result, ascending
+    depth : smallest and largest depth [m]; empty if unknown
+    place : latitude and longitude [degrees]; empty if unknown
     """
     first, last = (np.datetime_as_string(one, "s") + "Z" for one in (time[0], time[-1]))
     said: Attributes = {
@@ -121,13 +123,14 @@ def with_flags(
     names: Mapping[str, Sequence[str]],
     cell_methods: str = "time: point",
 ) -> tuple[Variable, ...]:
-    """Return variables that name what goes with them, each followed by its flags.
+    """Add a variable of quality flags behind each variable that has flags.
 
     Parameters
     ----------
-    variables : of the result
-    names : of the variables that have flags, what else goes with them: deviations
-    cell_methods : of the variables that have flags
+    variables : variables of the result
+    names : for each variable with flags, the names of its other ancillary variables, such as
+        deviations
+    cell_methods : the CF attribute `cell_methods` of the variables with flags
     """
     found = []
     for one in variables:
@@ -150,18 +153,18 @@ def with_flags(
 
 
 def in_capitals(layout: ResultLayout) -> ResultLayout:
-    """Return a layout whose names are in capitals, as archives of OceanSITES have them."""
+    """Return a layout with all names in capitals, as in the archives of OceanSITES."""
     names = {one.name for one in layout.variables} | set(layout.sizes)
 
     def raised(attributes: Attributes) -> Attributes:
-        told = dict(attributes)
+        changed = dict(attributes)
         for key in ("coordinates", "ancillary_variables", "cell_methods", "bounds"):
-            if key in told:
-                words = str(told[key]).split(" ")
-                told[key] = " ".join(
+            if key in changed:
+                words = str(changed[key]).split(" ")
+                changed[key] = " ".join(
                     w.upper() if w in names or w.removesuffix(":") in names else w for w in words
                 )
-        return told
+        return changed
 
     return ResultLayout(
         {name.upper(): size for name, size in layout.sizes.items()},

@@ -1,7 +1,7 @@
-"""Results by the CF conventions: their dimensions and variables, and the NetCDF 4 files of them.
+"""Results as CF datasets: their dimensions and variables, and their NetCDF 4 files.
 
-HDF5 ends the process where a write fails, as on a full disk. So it never meets one: what is small
-is made in memory, and room for each block is taken on the disk before it is asked to write there.
+HDF5 ends the process if a write fails, for example on a full disk. For this reason the header is
+made in memory, and disk space is reserved before each block is written.
 """
 
 from __future__ import annotations
@@ -26,18 +26,21 @@ if TYPE_CHECKING:
     import h5netcdf
 
 LEVEL = 1
-"""Of the compression; more takes twice the time for 3 % less."""
+"""Compression level: higher levels take twice the time for 3 % less space."""
 
 Chunks = Mapping[str, bytes]
-"""The bytes of one block, by the names of the variables that go with time."""
+"""Compressed bytes of one block, by the name of the time-dependent variable."""
 
-_OF_A_CHUNK, _OF_A_VARIABLE = 512, 65_536  # bytes at most that HDF5 needs to keep account of them
+# bytes of metadata that HDF5 needs at most for a chunk and for a variable
+_OF_A_CHUNK, _OF_A_VARIABLE = 512, 65_536
 _LONG = 4096  # all attributes of a variable have 64 kB unless they are strings
 _ZEROS = bytes(1 << 20)
 
 
 def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
-    """The file of a layout; what goes with time is laid out, in chunks of a block, and empty."""
+    """Return a file of a layout; time-dependent variables are defined in chunks of a block, without
+    data.
+    """
     import h5netcdf
 
     image = BytesIO()
@@ -51,12 +54,13 @@ def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
 
 
 def packed(layout: ResultLayout, block: int, arrays: Mapping[str, NDArray[Any]]) -> Chunks:
-    """Return a block as HDF5 stores it: one chunk for each variable, shuffled and deflated.
+    """Return a block in the storage format of HDF5: one chunk for each variable, shuffled and
+    deflated.
 
     Parameters
     ----------
-    block : times in a chunk
-    arrays : (n, ...) values of each variable that goes with time; the last block may be shorter
+    block : number of times in a chunk
+    arrays : values of each time-dependent variable, shape (n, …); the last block may be shorter
     """
     chunks = {}
     for variable in layout.in_blocks:
@@ -76,19 +80,19 @@ def write_netcdf(
     path: Path,
     last: Callable[[], Mapping[str, str]] = dict,
 ) -> None:
-    """Write a file block by block; it gets its name when it is complete.
+    """Write a file block by block, under a temporary name until it is complete.
 
     Parameters
     ----------
-    block : times in a block
+    block : number of times in a block
     blocks : the results of `packed`, in order; one is in memory at a time
-    last : returns attributes that are known after the last block; the layout has them already,
+    last : returns attributes known only after the last block; the layout already has them,
         with values of the same length
 
     Raises
     ------
     UsageError
-        The system refuses, e.g. because the disk is full; an older file stays.
+        The file cannot be written, for example because the disk is full; an older file is kept.
     """
     import h5py
 
@@ -121,7 +125,7 @@ def write_netcdf(
 
 
 def _take_room(handle: int, size: int) -> None:
-    """Make a file at least so long, on blocks of the disk that are its own."""
+    """Extend a file to at least this size, and reserve its disk space."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(handle, 0, size)
         return
@@ -130,13 +134,13 @@ def _take_room(handle: int, size: int) -> None:
 
 
 def chunk_shape(layout: ResultLayout, variable: Variable, block: int) -> tuple[int, ...]:
-    """Return the shape of the chunks of a variable that goes with time; the last is whole, too.
+    """Return the shape of the chunks of a time-dependent variable; the last chunk is full, too.
 
     Parameters
     ----------
-    layout : of the result
-    variable : one of its variables
-    block : profiles in a chunk, at most
+    layout : layout of the result
+    variable : a variable of the layout
+    block : largest number of profiles in a chunk
     """
     length = min(block, layout.sizes[variable.dimensions[0]])
     return length, *(layout.sizes[name] for name in variable.dimensions[1:])
@@ -169,7 +173,9 @@ def _define(file: h5netcdf.File, layout: ResultLayout, variable: Variable, block
 
 
 def _text(value: str | float) -> str | float | np.bytes_:
-    """Characters where they will do, which every tool takes; else a string of any length."""
+    """Return a text as characters, which every tool reads, or as a string if it is long or not
+    ASCII.
+    """
     if isinstance(value, float):
         return value
     return np.bytes_(value) if value.isascii() and len(value) < _LONG else value
@@ -178,10 +184,12 @@ def _text(value: str | float) -> str | float | np.bytes_:
 Attributes = dict[str, Any]
 
 PIECES, CLAMPS = "piece of the line, from its top", "clamped instrument, down the line"
-"""What the labels along `component` and `clamp` name."""
+"""Meanings of the labels along `component` and `clamp`."""
 
 NUMBER = "<f4"
-"""Of depths, offsets, forces and angles of many profiles; without equilibrium they are NaN."""
+"""Type of depths, offsets, forces and angles of many profiles; they are NaN without an
+equilibrium.
+"""
 
 _PLACE = {"latitude": "degrees_north", "longitude": "degrees_east"}
 
@@ -193,13 +201,13 @@ def of_net(
     clamps: Iterable[int],
     nodes: Iterable[int] = (),
 ) -> list[Variable]:
-    """Return the variables of a net, offset from its origin, with the leg of each part.
+    """Return the variables of a net: offsets from its origin, and the leg of each part.
 
     Parameters
     ----------
-    variables : as of a single line
-    names : of the legs
-    components, clamps, nodes : the number of the leg of each
+    variables : variables as for a single line
+    names : names of the legs
+    components, clamps, nodes : index of the leg of each component, clamp and node
     """
     found = []
     for one in variables:
@@ -217,7 +225,9 @@ def of_net(
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of a result; `values` is None where it goes with time, and comes in blocks."""
+    """A variable of a result; `values` is None for a time-dependent variable, which is written in
+    blocks.
+    """
 
     name: str
     dimensions: tuple[str, ...]
@@ -227,7 +237,7 @@ class Variable:
 
     @property
     def described(self) -> Attributes:
-        """Return the attributes with the kind of its contents by ACDD; names have none."""
+        """Attributes with `coverage_content_type` of ACDD; variables of names have none."""
         if "units" not in self.attributes and "flag_meanings" not in self.attributes:
             return self.attributes
         content = "modelResult"
@@ -240,13 +250,13 @@ class Variable:
 
 @dataclass(frozen=True)
 class ResultLayout:
-    """A result before its variables that go with time are known.
+    """A result whose time-dependent variables are still without values.
 
     Attributes
     ----------
-    sizes : of the dimensions
-    variables : in the order of the result
-    attributes : of the result as a whole
+    sizes : sizes of the dimensions
+    variables : variables in the order of the result
+    attributes : global attributes
     """
 
     sizes: Mapping[str, int]
@@ -255,7 +265,7 @@ class ResultLayout:
 
     @property
     def in_blocks(self) -> list[Variable]:
-        """The variables that go with time."""
+        """The time-dependent variables."""
         return [variable for variable in self.variables if variable.values is None]
 
 
@@ -265,12 +275,12 @@ def numbers(
     coordinates: str,
     values: Mapping[str, NDArray[Any]] | None = None,
 ) -> list[Variable]:
-    """Variables of numbers; a coordinate among them is not its own.
+    """Return numeric variables; a coordinate is not listed among its own coordinates.
 
     Parameters
     ----------
-    coordinates : names of those that go with the variables
-    values : by name; those that go with time have none yet
+    coordinates : names of the coordinates of the variables
+    values : values by name; time-dependent variables have none yet
     """
     variables = []
     for name, (unit, meaning, more) in quantities.items():
@@ -290,7 +300,7 @@ def labels(name: str, dimension: str, texts: Iterable[str], meaning: str) -> Var
 
     Parameters
     ----------
-    name, dimension : of the variable
+    name, dimension : name and dimension of the variable
     texts : the names
     meaning : what they name
     """
@@ -299,10 +309,10 @@ def labels(name: str, dimension: str, texts: Iterable[str], meaning: str) -> Var
 
 
 def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
-    """Return the coordinates that count parts, nodes and sensors down the line, of those there are.
+    """Return the coordinates that number parts, nodes and sensors down the line.
 
-    They are what CF calls a dimensionless vertical coordinate: depths of neighbours may be equal,
-    and go with time.
+    They are dimensionless vertical coordinates in the sense of CF, because depths vary in time and
+    those of neighbours may be equal.
     """
     return [
         Variable(
@@ -317,13 +327,14 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
 
 
 def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Variable], str]:
-    """A mooring as a station, and what variables say of it among their coordinates.
+    """Return the variables of a mooring as a station, and the text that they add to the attribute
+    `coordinates`.
 
     Parameters
     ----------
-    place : latitude and longitude [degrees north, degrees east]; without them there is no feature
-        in the sense of the conventions, which is at a place
-    of_what : is there
+    place : latitude and longitude [degrees north, degrees east]; without them the dataset has
+        no discrete sampling geometry in the sense of CF
+    of_what : the object at that position, for the long names
     """
     said = np.array(name, dtype=np.str_)
     attributes: Attributes = {"long_name": "name of the mooring"}
@@ -344,20 +355,20 @@ def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Varia
 
 
 def source_date() -> datetime | None:
-    """Return the time that SOURCE_DATE_EPOCH gives, in UTC; None without it."""
+    """Return the time given by SOURCE_DATE_EPOCH, in UTC; None if it is not set."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
     return datetime.fromtimestamp(int(epoch), UTC) if epoch.isdigit() else None
 
 
 def origin(path: str, name: str, description: str, command: str) -> Attributes:
-    """The attributes of a result that tell where it comes from; what is not known is empty.
+    """Return the global attributes about the source of a result; an unknown one is empty.
 
-    The only date is that of `SOURCE_DATE_EPOCH`, so that the same input gives the same bytes.
+    The only date is that of `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
 
     Parameters
     ----------
-    path, name, description : of the mooring file
-    command : of CALM
+    path, name, description : path, name and description of the mooring file
+    command : the command of CALM
     """
     made = f"calm {__version__} {command}"
     if date := source_date():

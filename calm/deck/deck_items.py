@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import groupby
 
-from calm.case import Result
+from calm.case.design import AnyResult, Result
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place, rows_down
 from calm.files import Clamp, Flexible, Piece
 from calm.files.logbook import DeployedItem
@@ -215,11 +215,11 @@ def name_of_run(items: Sequence[DeckItem]) -> str:
     return ", ".join(f"{count} × {name}" for name, count in counts.items())
 
 
-def deck_items_of(result: Result) -> tuple[DeckItem, ...]:
+def deck_items_of(result: AnyResult) -> tuple[DeckItem, ...]:
     """Down the line to the anchor, or each leg, the clamps of a piece after it, down that piece."""
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}
-    seabeds = [leg.water.depth for leg in result.design.legs]
+    seabeds = [leg.water.depth for leg in result.legs]
     own = leg_numbers(result.file)
     found: list[DeckItem] = []
     for row, clamps in rows_down(result):

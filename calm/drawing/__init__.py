@@ -1,4 +1,4 @@
-"""Pictures: of a line from the side and above, of its parts, and graphs.
+"""Pictures: side view and plan of a line, its parts, and graphs.
 
-What is drawn is a model in metres; a printer for each medium puts it out.
+Every picture is a model in metres; a separate printer exists for each medium.
 """

@@ -1,174 +1,333 @@
-"""A mooring drawn in all of its environments: elevation, current, tension, plan, and breaks."""
+"""The figures of a design check: the mooring to scale, its loads, and the line in rows of a table.
 
+They are black on white, so that no information depends on colour. Lengths are in points.
+"""
+
+import re
 from collections.abc import Sequence
-from math import ceil
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from calm.case.leg_result import LegResult
-from calm.checks.assessment import Assessment
-from calm.checks.posture import reaches_the_surface
-from calm.checks.recovery import Break
-from calm.checks.strength import allowable_load
-from calm.drawing import graph, line_picture
-from calm.drawing.line_drawing import SEABED_COLOUR, SIGNS, WATER_COLOUR
-from calm.drawing.line_picture import NAMED_ROLES, LineKind, along_the_line, current_between
+from calm.drawing.graph import number, round_numbers
+from calm.drawing.line_picture import along, plane_of_legs
+from calm.drawing.schematic import CLAMP_SCALE, SYMBOL_SCALE, PlacedPart, draw_symbol
+from calm.drawing.schematic.pen import Pen, picture, shortened, svg_text, text_width
+from calm.drawing.schematic.shown_parts import ShownPart
+from calm.drawing.schematic.symbols import (
+    BALLS,
+    LINES,
+    Symbol,
+    draw_surface,
+    figure_of,
+)
+from calm.physics.line import Floats
 from calm.quantities import QUANTITIES
 
-Solved = Sequence[tuple[str, LegResult]]
+FONT = 8.0
+"""Font size, also the smallest size."""
+ROW_WIDTH = 52.0
+"""Width of the drawing of the line in rows of a table."""
+INK, GREY, PALE = "black", "#6e6e6e", "#cdcdcd"
+
+_LEFT = 28.0  # width of the depth axis
+_FLOW = 38.0  # width of the current profile
+_SYMBOLS = 44.0
+_ABOVE, _BELOW = 14.0, 10.0
+_NEAREST = 9.5  # smallest distance of two labels
+_LEAST = 0.45  # smallest share of the height used for the water depth
 
 
-_SIZE = 8.0  # points, of the letters
-_WIDTH, _HEIGHT = 533.0, 576.0  # points: an A4 page between its margins
-_LEGEND_ROW, _LEGEND_COLUMNS = 13.5, 4
-_LEAST_SPAN = 0.1  # of the depth: a line that hardly leans is not drawn as if it did
-_FURTHEST_LIMIT = 4.0  # times the greatest tension; what is beyond is drawn at the edge
-_DASHES: tuple[tuple[float, ...], ...] = ((), (7.0, 2.5), (1.8, 1.8))
-_STILL = graph.Stroke("grey", 1.0, (3.0, 2.0))
-_LIMIT = graph.Stroke("#b3261e", 2.0, square=True)
-_UNJUDGED, _ENOUGH, _SHORT = "#b8bec4", "#8fb3cf", "#d98880"
+@dataclass(frozen=True)
+class DrawnCase:
+    """A load case in the drawing: its code and its legs."""
+
+    code: str
+    legs: Sequence[LegResult]
 
 
-def check_figure(assessment: Assessment) -> str:
-    """The figure as SVG: five panels that share one legend, a line of its own for each environment.
+@dataclass(frozen=True)
+class Label:
+    """A label beside the line: a part, its text, and its depth as text.
 
-    The elevation and the current are of one depth axis; an elevation lies in the plane of its own
-    excursion. Tension is drawn over the distance along the line, with the load that each piece may
-    bear. The breaks are drawn where the mooring has a release. The panels keep their size: the
-    graph grows by the rows of the legend.
+    `at` is its depth and its positions east and north [m]; None for a cable. `tag` is the mark and
+    the number of its open finding.
     """
-    solved = [(stand.environment, stand.result) for stand in assessment.stands if stand.result]
-    entries = _legend(solved)
-    legend = ceil(len(entries) / _LEGEND_COLUMNS) * _LEGEND_ROW
-    title = f"{assessment.name}: elevation, current, tension, plan and breaks"
-    page = graph.Graph(_WIDTH, _HEIGHT + legend, title, _SIZE)
-    across = (_WIDTH - 12.0) / _LEGEND_COLUMNS
-    page.legend(entries, (6.0, 3.0), across, _LEGEND_ROW, _LEGEND_COLUMNS)
-    top, lower = legend + 11.0, legend + 372.0
-    depth = max(line_picture.seabed_of(result) for _, result in solved)
-    highest = min(float(result.shape.depth.min()) for _, result in solved)
-    # of the elevation and the current: from below the seabed to above the surface
-    depths = graph.Scale(1.03 * depth, min(-0.03 * depth, highest))
-    _draw_elevation(page, (42.0, top, 187.0, 310.0), solved, depths)
-    _draw_current(page, (240.0, top, 72.0, 310.0), solved, depths)
-    _draw_tension(page, (361.0, top, 165.0, 310.0), solved)
-    _draw_plan(page, (42.0, lower, 187.0, 173.0), solved)
-    if assessment.backup:
-        _draw_breaks(page, (288.0, lower, 238.0, 173.0), assessment.backup)
-    return page.svg()
+
+    part: ShownPart
+    text: str
+    depth: str
+    at: tuple[float, float, float] | None
+    tag: str = ""
 
 
-Place = tuple[float, float, float, float]
-"""Left and upper edge, width and height of axes [pt]."""
+def grey(svg: str) -> str:
+    """Return a drawing with its colours replaced by greys of the same luminance."""
+
+    def of(match: re.Match[str]) -> str:
+        red, green, blue = (int(match[1][at : at + 2], 16) for at in (0, 2, 4))
+        light = round(0.299 * red + 0.587 * green + 0.114 * blue)
+        return f"#{light:02x}{light:02x}{light:02x}"
+
+    return re.sub(r"#([0-9a-f]{6})\b", of, svg)
 
 
-def _legend(solved: Solved) -> list[graph.LegendEntry]:
-    """An entry for each environment, and for what else the panels show."""
-    _, first = solved[0]
-    there = {part.role for part in line_picture.named_parts(first)}
-    still = [] if first.still_shape is None else [graph.LegendEntry("still water", line=_STILL)]
-    return [
-        *(graph.LegendEntry(name, line=_stroke(number)) for number, (name, _) in enumerate(solved)),
-        *still,
-        *(graph.LegendEntry(role, sign=SIGNS[role]) for role in NAMED_ROLES if role in there),
-        graph.LegendEntry("limit", line=_LIMIT),
-    ]
+def elevation(
+    title: str, cases: Sequence[DrawnCase], labels: Sequence[Label], size: tuple[float, float]
+) -> tuple[str, float]:
+    """Return the elevation of the mooring as SVG, to a single scale, and the scale in metres per
+    point.
+
+    The first case is a thick solid line, still water is dashed, strumming cables are dotted, and
+    other cases are thin lines. The current of the first case is drawn on the left. The labels and
+    their symbols are on the right, from the top down; without room for them, in a wide mooring,
+    only the places of the parts are marked.
+
+    Parameters
+    ----------
+    cases : the load cases, all drawn in the vertical plane of the first one
+    labels : the labels, from the top
+    size : width and height of the drawing
+    """
+    width, height = size
+    page = picture(width, height, title)
+    legs = cases[0].legs
+    plane = plane_of_legs(legs)
+    lines = {
+        case.code: [(along(leg.shape.x, leg.shape.y, plane), leg.shape.depth) for leg in case.legs]
+        for case in cases
+    }
+    reach = np.concatenate([x for one in lines.values() for x, _ in one])
+    depth = max(float(leg.water.depth) for leg in legs)
+    rise = max(0.0, -min(float(y.min()) for one in lines.values() for _, y in one))
+    tall = height - _ABOVE - _BELOW
+    span = float(np.ptp(reach))
+    listed = [*labels[: int((height - _ABOVE) / _NEAREST)]]
+    flow = _LEFT + _FLOW
+    room = width - flow - _SYMBOLS - _longest(listed)
+    scale = max((depth + rise) / tall, span / max(room, 1.0))
+    if depth / scale < _LEAST * tall:  # too wide to have the labels beside it
+        listed, flow, room = [], _LEFT, width - _LEFT - 8.0
+        scale = max((depth + rise) / tall, span / room)
+    sea = _ABOVE + rise / scale
+    start = flow + max(0.5 * (room - span / scale), 0.0) * (not listed)
+
+    def x(value: Floats | float) -> Floats:
+        return np.asarray(start + (value - float(reach.min())) / scale)
+
+    def y(value: Floats | float) -> Floats:
+        return np.asarray(sea + value / scale)
+
+    edge = width if not listed else flow + room
+    page.line(_LEFT, sea, edge, sea, stroke=INK, stroke_width=0.9)
+    bed = float(y(depth))
+    page.line(_LEFT, bed, edge, bed, stroke=INK, stroke_width=0.9)
+    for count in range(int((edge - _LEFT) / 6.0)):
+        left = _LEFT + 6.0 * count
+        page.line(left + 4.0, bed, left, bed + 4.5, stroke=INK, stroke_width=0.4)
+    for level in round_numbers(0.0, depth, max(2, min(7, int(depth / scale / 12.0)))):
+        at = float(y(level))
+        page.line(_LEFT - 3.0, at, _LEFT, at, stroke=INK, stroke_width=0.5)
+        page.letters(_LEFT - 5.0, at, number(level), size=FONT, colour=INK, anchor="end")
+    if listed:
+        _draw_flow(page, legs[0], sea, scale)
+    for code, drawn in reversed(lines.items()):
+        stroke = _STROKES.get("first" if code == cases[0].code else code[-1], _THIN)
+        for across, below in drawn:
+            points = " L".join(f"{a:.1f} {b:.1f}" for a, b in zip(x(across), y(below), strict=True))
+            page.path(f"M{points}", fill="none", **stroke)
+    marks = [one for one in labels if one.at is not None]
+    for one in marks:
+        assert one.at is not None
+        level, east, north = one.at
+        px, py = float(x(along(east, north, plane))), float(y(level))
+        hollow = one.part.sign.symbol in _HOLLOW
+        if one in listed:
+            drop = _level(listed.index(one), len(listed), height)
+            knee = flow + room + 6.0
+            page.path(f"M{px:.1f} {py:.1f}L{knee:.1f} {drop:.1f}L{knee + 12.0:.1f} {drop:.1f}",
+                      fill="none", stroke=GREY, stroke_width=0.35)  # fmt: skip
+        page.circle(px, py, 1.9, fill="white" if hollow else INK, stroke=INK, stroke_width=0.6)
+    if listed:
+        _draw_labels(page, listed, flow + room + 28.0, width, height)
+    return grey(svg_text(page)), scale
 
 
-def _stroke(number: int) -> graph.Stroke:
-    """Colour and dashes of an environment: no two of the first twenty-one are alike."""
-    turn, colour = divmod(number, len(graph.COLOURS))
-    return graph.Stroke(graph.COLOURS[colour], 1.2, _DASHES[turn % len(_DASHES)])
+_THIN: dict[str, float | str] = {"stroke": GREY, "stroke_width": 0.5}
+_STROKES: dict[str, dict[str, float | str]] = {
+    "first": {"stroke": INK, "stroke_width": 1.2},
+    "s": {"stroke": INK, "stroke_width": 0.7, "stroke_dasharray": "1 1.6"},
+    "0": {"stroke": GREY, "stroke_width": 0.7, "stroke_dasharray": "4 2"},
+}
+"""Strokes of the lines, by the last letter of a code."""
+_HOLLOW = (*BALLS, Symbol.SPHERE, Symbol.FOAM, Symbol.STREAMLINED, Symbol.BUOY)
+_WIDEST_LABEL, _FIGURES = 106.0, 26.0
+_REAL = 0.78
+"""Ratio of the actual width of a text to the upper bound given by `text_width`."""
+_MOST_LEVELS = 7
 
 
-def _draw_elevation(page: graph.Graph, place: Place, solved: Solved, depths: graph.Scale) -> None:
-    _, first = solved[0]
-    side, depth = line_picture.elevation_of(first), depths.low / 1.03
-    lines = [line_picture.from_the_side(one.shape, line_picture.plane_of(one)) for _, one in solved]
-    start = min(0.0, *(float(line.x.min()) for line in lines))
-    end = max(0.0, *(float(line.x.max()) for line in lines))
-    span = max(end - start, _LEAST_SPAN * depth)
-    axes = page.axes(*place, graph.Scale(start - 0.08 * span, start + 1.08 * span), depths)
-    axes.strip(depth, depths.low, SEABED_COLOUR)
-    axes.level(0.0, graph.Stroke(WATER_COLOUR, 1.0))
-    for line in side.lines:
-        if line.kind is LineKind.STILL:
-            axes.line(line.x, line.y, _STILL)
-        elif line.kind is LineKind.SEABED:
-            axes.line(line.x, line.y, graph.Stroke(SEABED_COLOUR, 3.0))
-    for number, line in enumerate(lines):
-        axes.line(line.x, line.y, _stroke(number))
-    for mark in side.marks:
-        axes.mark(mark.x, mark.y, *SIGNS[mark.role])
-    axes.frame(5, 9, below=QUANTITIES["offset"].label, beside=side.up)
+def _longest(labels: Sequence[Label]) -> float:
+    """Return the width of the labels with their depths."""
+    widths = (text_width(f"{one.text} {one.tag}", FONT, bold=True) for one in labels)
+    return min(_REAL * max(widths, default=0.0), _WIDEST_LABEL) + _FIGURES
 
 
-def _draw_current(page: graph.Graph, place: Place, solved: Solved, depths: graph.Scale) -> None:
-    profiles = []
-    for _, result in solved:
-        water = result.water
-        depth, u, v = current_between(water, 0.0, water.depth, samples=60)
-        profiles.append((np.hypot(u, v), depth))
-    fastest = max(float(speed.max()) for speed, _ in profiles)
-    axes = page.axes(*place, graph.Scale(0.0, 1.05 * fastest or 1.0), depths)
-    for number, (speed, depth) in enumerate(profiles):
-        axes.line(speed, depth, _stroke(number))
-    below = f"current [{QUANTITIES['speed'].usual_unit}]"
-    axes.frame(3, 9, below=below, numbered=(True, False))
+def _level(place: int, count: int, height: float) -> float:
+    """Return the vertical position of a label."""
+    return _ABOVE + (place + 0.5) * (height - _ABOVE) / count
 
 
-def _draw_tension(page: graph.Graph, place: Place, solved: Solved) -> None:
-    """Tension over the stretched length, and what the pieces may bear, where that is known."""
-    greatest = max(float(result.shape.tension.max()) for _, result in solved)
-    _, first = solved[0]
-    ends = np.concatenate([[0.0], np.cumsum(first.components.length[:-1])])
-    factors, surface = first.file.checks.safety_factor, reaches_the_surface(first.leg)
-    loads = [
-        allowable_load(piece.component, factors, surface) or np.nan
-        for piece in first.file.pieces[:-1]
-    ]
-    edge = min(np.nanmax([*loads, greatest]), _FURTHEST_LIMIT * greatest)
-    distances = [along_the_line(result.shape) for _, result in solved]
-    furthest = max(float(each[-1]) for each in (ends, *distances))
-    axes = page.axes(
-        *place, graph.Scale(0.0, 1.04 * edge), graph.Scale(1.02 * furthest, -0.02 * furthest)
-    )
-    for number, ((_, result), distance) in enumerate(zip(solved, distances, strict=True)):
-        axes.line(result.shape.tension, distance, _stroke(number))
-    axes.lines([np.minimum(loads, edge)] * 2, [ends[:-1], ends[1:]], _LIMIT)
-    axes.frame(4, 9, below=QUANTITIES["tension"].label, beside="distance along the line [m]")
+def _draw_flow(page: Pen, leg: LegResult, sea: float, scale: float) -> None:
+    """Draw the current speed by depth, with arrows at as many levels as there is room for."""
+    speed = np.hypot(leg.water.u, leg.water.v)
+    fastest = float(speed.max())
+    if fastest == 0.0:
+        return
+    across = _LEFT + 4.0 + speed / fastest * (_FLOW - 20.0)
+    level = np.clip(leg.water.level, 0.0, leg.water.depth)
+    down = sea + level / scale
+    points = " L".join(f"{a:.1f} {b:.1f}" for a, b in zip(across, down, strict=True))
+    page.path(f"M{points}", fill="none", stroke=GREY, stroke_width=0.8)
+    last = -np.inf
+    for x, y, value in zip(across.tolist(), down.tolist(), speed.tolist(), strict=True):
+        if y - last < max(1.4 * FONT, (down[-1] - down[0]) / _MOST_LEVELS):
+            continue
+        last = y
+        page.line(_LEFT + 2.0, y, x, y, stroke=GREY, stroke_width=0.6)
+        page.path(f"M{x - 4.0:.1f} {y - 1.7:.1f}L{x:.1f} {y:.1f}L{x - 4.0:.1f} {y + 1.7:.1f}Z",
+                  fill=GREY)  # fmt: skip
+        unit = f" {QUANTITIES['speed'].display_unit}" if y == down[0] else ""
+        text = QUANTITIES["speed"].format(value) + unit
+        page.letters(x + 1.5, y - 5.0, text, size=FONT, colour=INK)
 
 
-def _draw_plan(page: graph.Graph, place: Place, solved: Solved) -> None:
-    """Both axes are to one scale."""
-    _, _, width, height = place
-    across, up = (
-        graph.covering([0.0], *(getattr(result.shape, name) for _, result in solved))
-        for name in "xy"
-    )
-    axes = page.axes(*place, *graph.to_one_scale(across, up, width, height))
-    for number, (_, result) in enumerate(solved):
-        stroke = _stroke(number)
-        axes.line(result.shape.x, result.shape.y, stroke)
-        axes.mark(result.top.x, result.top.y, "o", 3.5, stroke.colour)
-    axes.mark(0.0, 0.0, "v", 5.0, "black")
-    axes.frame(5, 6, below=QUANTITIES["x"].label, beside=QUANTITIES["y"].label)
+def _draw_labels(
+    page: Pen, labels: Sequence[Label], at: float, width: float, height: float
+) -> None:
+    """Draw the line, not to scale, with the symbols, names and depths of its parts."""
+    pitch = (height - _ABOVE) / len(labels)
+    levels = [_level(number, len(labels), height) for number in range(len(labels))]
+    pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
+    pen.line(at, levels[0], at, levels[-1])
+    left = at + 20.0
+    for one, y in zip(labels, levels, strict=True):
+        sign = one.part.floats or one.part.sign
+        if sign.symbol not in LINES:
+            figure = figure_of(sign)
+            scale = min(CLAMP_SCALE, (pitch - 1.0) / figure.height)
+            figure.draw(pen.group(at, y, scale))
+        room = width - left - _FIGURES
+        bold = one.at is not None
+        tag = f" {one.tag}" if one.tag else ""
+        told = shortened(one.text, room / _REAL - text_width(tag, FONT, bold=bold), FONT, bold=bold)
+        style = {} if bold else {"font_style": "italic"}
+        page.draw("g", **style).letters(left, y, told + tag, size=FONT, bold=bold)
+        page.letters(width, y, one.depth, size=FONT, anchor="end")
 
 
-def _draw_breaks(page: graph.Graph, place: Place, backup: Sequence[Break]) -> None:
-    """Draw what is left to lift after each break, and what is required; grey where not judged."""
-    number = np.array([each.break_after for each in backup], dtype=np.float64)
-    required = np.array([each.required for each in backup])
-    margins = np.array([each.margin for each in backup])
-    axes = page.axes(
-        *place, graph.covering(number - 0.5, number + 0.5), graph.covering([0.0], margins, required)
-    )
-    colours = [
-        _UNJUDGED if not each.judged else _ENOUGH if each.margin >= each.required else _SHORT
-        for each in backup
-    ]
-    axes.bars(number, margins, 0.8, colours)
-    axes.lines([number - 0.5, number + 0.5], [required] * 2, _LIMIT)
-    axes.level(0.0, graph.Stroke("black", 0.6))
-    numbered = graph.counts(backup[0].break_after, backup[-1].break_after, 8)
-    axes.frame(numbered, 6, below="break below piece no.", beside="back-up buoyancy left [N]")
+class PieceBar(NamedTuple):
+    """A piece in the load chart: its tensions and capacities, in the unit of the chart.
+
+    Attributes
+    ----------
+    number : number of the piece in the line
+    tension, capacity : maximum tension, and the capacity; None if unknown
+    launch, launch_capacity : maximum tension and capacity during the launch
+    judged : whether the piece needs a capacity
+    """
+
+    number: int
+    tension: float
+    capacity: float | None
+    launch: float | None
+    launch_capacity: float | None
+    judged: bool
+
+
+def load_chart(title: str, loads: Sequence[PieceBar], size: tuple[float, float]) -> str:
+    """Return tension and capacity of every piece as SVG; the top of the line is on the left.
+
+    `size` is its width and height.
+    """
+    width, height = size
+    page = picture(width, height, title)
+    left, top, bottom = 24.0, 8.0, height - 12.0
+    highest = 1.3 * max(max(one.tension, one.launch or 0.0) for one in loads) or 1.0
+    step = (width - left - 4.0) / max(len(loads), 1)
+
+    def y(value: float) -> float:
+        return bottom - min(value / highest, 1.0) * (bottom - top)
+
+    for level in round_numbers(0.0, highest, 4):
+        page.line(left, y(level), width, y(level), stroke=PALE, stroke_width=0.4)
+        page.letters(left - 4.0, y(level), number(level), size=FONT, colour=INK, anchor="end")
+    named = -1e9
+    for place, one in enumerate(loads):
+        capacity, falls, stands = one.capacity, one.launch, one.tension
+        most = None if one.launch_capacity == capacity else one.launch_capacity
+        x = left + 3.0 + place * step
+        middle = x + 0.37 * step
+        if falls:
+            page.box(middle, (y(falls) + bottom) / 2, 0.74 * step, bottom - y(falls), fill=PALE)
+        page.box(middle, (y(stands) + bottom) / 2, 0.4 * step, bottom - y(stands), fill=INK)
+        for load, dashes in ((capacity, "none"), (most, "1.2 1.2")):
+            if load is not None and load <= highest:
+                page.line(x - 0.06 * step, y(load), x + 0.82 * step, y(load), stroke=INK,
+                          stroke_width=1.3, stroke_dasharray=dashes)  # fmt: skip
+        if one.judged and capacity is None:
+            page.letters(middle, top - 3.0, "?", size=FONT, bold=True, anchor="middle")
+        elif capacity is not None and capacity > highest:
+            page.path(f"M{middle - 2:.1f} {top - 1:.1f}h4l-2 -3.4Z", fill=INK)
+        if x - named >= 11.0:
+            named = x
+            page.letters(
+                middle, bottom + 7.0, str(one.number), size=FONT, colour=INK, anchor="middle"
+            )
+    return grey(svg_text(page))
+
+
+def beside_row(part: ShownPart, height: float, *, first: bool = False, last: bool = False) -> str:
+    """Return the line with the symbol of a part as SVG, for a row of a table.
+
+    The line begins in the row of the first part, and ends in the row of the last part.
+    """
+    page = _row_picture(height, ", ".join(part.labels))
+    middle = height / 2
+    ends = middle if first else 0.0, middle if last else height
+    pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
+    draw_symbol(pen, PlacedPart(part, 0.0, height, (), ends), ROW_WIDTH / 2)
+    return grey(svg_text(page))
+
+
+def _row_picture(height: float, title: str) -> Pen:
+    """Return a picture without background, which would cover the rules of the table."""
+    page = picture(ROW_WIDTH, height, title)
+    page.element.remove(page.element[-1])
+    return page
+
+
+def surface_row(height: float) -> str:
+    """Return the sea surface as SVG."""
+    page = _row_picture(height, "sea surface")
+    draw_surface(page, ROW_WIDTH, height / 2)
+    return grey(svg_text(page))
+
+
+def seabed_row(height: float) -> str:
+    """Return the seabed as SVG."""
+    page = _row_picture(height, "seabed")
+    page.line(0.0, 1.0, ROW_WIDTH, 1.0, stroke=INK, stroke_width=0.9)
+    for at in range(int(ROW_WIDTH / 6.0)):
+        page.line(6.0 * at + 4.0, 1.0, 6.0 * at, 6.0, stroke=INK, stroke_width=0.4)
+    return grey(svg_text(page))
+
+
+def row_height(part: ShownPart) -> float:
+    """Return the smallest height of a row that contains the symbol of a part."""
+    if part.sign.symbol in LINES and part.floats is None:
+        return 19.0
+    scale = CLAMP_SCALE if part.clamped or part.floats else SYMBOL_SCALE
+    return max(13.0, scale * figure_of(part.floats or part.sign).height + 2.0)

@@ -19,20 +19,20 @@ from calm.drawing.schematic.pen import INK, Pen, picture, text_width
 from calm.physics.line import Floats
 
 COLOURS = ("#0b3c5d", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#332288")
-"""Colours of lines in one graph; a single line has the first."""
+"""Colours of lines in one graph; a single line has the first colour."""
 
-_MARGIN = 0.05  # of the range, on either side
+_MARGIN = 0.05  # share of the range, on either side
 
 
 @dataclass(frozen=True)
 class Scale:
-    """A range, linear or of decades.
+    """A range of values, linear or logarithmic.
 
     Attributes
     ----------
-    low : value at the left or the lower edge; it may be the greater one
+    low : value at the left or the lower edge; it may be larger than `high`
     high : value at the right or the upper edge
-    logarithmic : whether decades are equally far apart; both edges are then above zero
+    logarithmic : whether the scale is logarithmic; both values are then positive
     """
 
     low: float
@@ -60,11 +60,11 @@ def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
 
 
 def to_one_scale(across: Scale, up: Scale, width: float, height: float) -> tuple[Scale, Scale]:
-    """Widen one of two ranges about its middle, so that a unit has one length on both axes.
+    """Widen a range about its middle, so that both axes have equal scales.
 
     Parameters
     ----------
-    width, height : of the axes [pt]
+    width, height : width and height of the axes [pt]
     """
     unit = max(abs(across.high - across.low) / width, abs(up.high - up.low) / height)
     return _widened(across, unit * width), _widened(up, unit * height)
@@ -77,7 +77,8 @@ def _widened(scale: Scale, extent: float) -> Scale:
 
 
 _STEPS = (1.0, 2.0, 5.0, 10.0)
-# Steps of time: unit, how many of it, which signs of ISO 8601 tell it, about how many seconds.
+# time steps: unit, number of units, range of characters in ISO 8601, approximate duration in
+# seconds
 _TIMES = (
     *(("m", count, (11, 16), 60.0 * count) for count in (1, 2, 5, 10, 30)),
     *(("h", count, (5, 16), 3600.0 * count) for count in (1, 3, 6, 12)),
@@ -146,7 +147,7 @@ def seconds(times: Any) -> NDArray[np.float64]:
 
 
 def _days(months: Any, step: int) -> Any:
-    """Days of each month in equal steps from the first, none just before the next month."""
+    """Days of each month in equal steps from the first, without days just before the next month."""
     each = np.arange(months[0], months[1] + 1).astype("datetime64[D]")
     return (each[:, None] + np.arange(0, 29 - step // 2, step)).ravel()
 
@@ -171,10 +172,10 @@ def number(value: float) -> str:
 
 
 class Stroke(NamedTuple):
-    """A line's colour and width [pt].
+    """Colour, width [pt] and dashes of a line.
 
-    `dashes` are the lengths [pt] of dashes and gaps, of which an unbroken line has none; a `square`
-    one goes on by half its width at both ends, so that the shortest is seen.
+    `dashes` are the lengths [pt] of dashes and gaps, empty for a solid line; a `square` line
+    extends by half its width at both ends, so that even the shortest is visible.
     """
 
     colour: str
@@ -197,11 +198,11 @@ _TICK = 3.0  # points
 _NEAREST = 0.05  # points: of two that are nearer one is drawn
 
 
-_SAMPLE, _GAP = 16.0, 5.0  # points: the line beside a text, and what is between them
+_SAMPLE, _GAP = 16.0, 5.0  # points: length of the line next to a text, and the gap between them
 
 
 class LegendEntry(NamedTuple):
-    """A text with its line or its mark: form, width [pt] and colour."""
+    """A text with its line or its mark (form, width [pt] and colour)."""
 
     text: str
     line: Stroke | None = None
@@ -230,9 +231,9 @@ class Graph:
         *,
         clipped: bool = False,
     ) -> Axes:
-        """Add axes at a place [pt] of the graph; the ranges run from left to right and upward.
+        """Add axes at a position [pt] of the graph, with ranges from left to right and upward.
 
-        The frame of `clipped` axes cuts off lines that leave it.
+        The frame of `clipped` axes clips lines that leave it.
         """
         return Axes(self, (left, top, width, height), across, up, clipped)
 
@@ -248,7 +249,7 @@ class Graph:
 
         Parameters
         ----------
-        place : the left upper corner [pt]
+        place : upper left corner [pt]
         across, row : width of a column, height of a row [pt]
         """
         for number, entry in enumerate(entries):
@@ -263,7 +264,7 @@ class Graph:
 
 
 class Axes:
-    """Two scales and the drawing between them, in a frame that `frame` draws last."""
+    """Two scales and the drawing between them, in a frame that is drawn last."""
 
     def __init__(
         self,
@@ -353,7 +354,7 @@ class Axes:
         anchor: str = "start",
         colour: str = INK,
     ) -> None:
-        """Write a text beside a point, shifted [pt] to the right and down."""
+        """Write a text next to a point, shifted [pt] to the right and down."""
         at = float(self.x(x)) + shift[0], float(self.y(y)) + shift[1]
         self.drawn.letters(*at, text, size=self.graph.size, anchor=anchor, colour=colour)
 
@@ -375,7 +376,7 @@ class Axes:
                 )  # fmt: skip
 
     def mark(self, x: float, y: float, sign: str, size: float, colour: str) -> None:
-        """Draw a mark at a point, see `draw_mark`."""
+        """Draw a mark at a point (see `draw_mark`)."""
         draw_mark(self.drawn, float(self.x(x)), float(self.y(y)), sign, size, colour)
 
     def frame(
@@ -392,10 +393,10 @@ class Axes:
 
         Parameters
         ----------
-        across, up : the ticks, or about how many round numbers are to stand there
-        below, beside : what the axis across and the upward one show; lines apart by line feeds
-        grid : whether ticks go on as thin lines behind what is drawn
-        numbered : whether the axis across, and the upward one, have their texts
+        across, up : the ticks, or the approximate number of round numbers to show
+        below, beside : labels of the horizontal and the vertical axis; line feeds separate lines
+        grid : whether ticks continue as thin lines behind the drawing
+        numbered : whether the horizontal and the vertical axis have numbers
         """
         pen, size = self.graph.pen, self.graph.size
         across, up = (
@@ -460,7 +461,7 @@ def _path(x: Floats, y: Floats) -> str:
 def draw_mark(pen: Pen, x: float, y: float, sign: str, size: float, colour: str) -> None:
     """Draw a mark of a width [pt] at a point.
 
-    Filled: o, s (square), D (diamond), v and ^ (triangles); of lines: +, | (an upright).
+    Filled marks: o, s (square), D (diamond), v and ^ (triangles); line marks: +, | (vertical).
     """
     half = size / 2
     if sign == "o":

@@ -1,4 +1,4 @@
-"""A result as a drawing: the line from the side, the water beside it, and the line from above."""
+"""A result as a drawing: the side view of the line with the water next to it, and the plan."""
 
 from __future__ import annotations
 
@@ -35,19 +35,21 @@ STROKES = {
 """The stroke of each kind of line; a band is an area."""
 
 LEAST_SPAN = 0.1
-"""Share of the height that distances are drawn to at least: a plumb line must not look bent."""
+"""Smallest horizontal range, as a share of the height, so that a vertical line does not look
+bent.
+"""
 
-_SIZE = 8.0  # points, of the letters
+_SIZE = 8.0  # font size in points
 _WIDTH = 600.0  # points
 _LEFT, _RIGHT, _BELOW = 44.0, 8.0, 32.0  # around the axes, for their scales
 _TITLE, _TITLE_LEADING = 11.0, 15.0
 _LEGEND_ROW, _LEGEND_COLUMNS = 13.5, 5
-_FLOW, _PLAN, _BETWEEN = 72.0, 130.0, 50.0  # widths; the last one with the scale of the plan
-_LEAST_HEIGHT = 290.0  # of the axes
+_FLOW, _PLAN, _BETWEEN = 72.0, 130.0, 50.0  # widths; the last includes the scale of the plan
+_LEAST_HEIGHT = 290.0  # smallest height of the axes
 _NAME_LEADING = 10.5
 _LONGEST_NAME, _LEADER = 140.0, 32.0
-# Speeds that differ by less, as a share of the greatest, are drawn as one line: they would cover
-# each other.
+# speeds that differ by less, as a share of the maximum, are drawn as one line, since the lines
+# would overlap
 _SAME_SPEED = 0.01
 # A line that leaves the plane of the tow by more than this share of its layback is drawn in plan.
 _PLANE_WITHIN = 0.01
@@ -61,8 +63,8 @@ def line_drawing(result: AnyResult, uncertain: Uncertain | None = None) -> str:
     The elevation of a mooring is in the vertical plane of its anchor and its free end, that of a
     net in the plane in which the net is widest, that of a tow in the plane of the tow, with the
     ship at distance 0. The line in still water is dashed. The second view has the speed of the
-    water past the line and its component in that plane. The third view, from above, is left out
-    if a tow stays in its plane. The band of an uncertain mooring is behind the line.
+    water past the line and its component in that plane. The third view, from above, is omitted if a
+    tow stays in its plane. The band of an uncertain mooring is behind the line.
     """
     plane = line_picture.plane_of(result)
     side = line_picture.elevation_of(result, uncertain=uncertain)
@@ -108,7 +110,7 @@ def _leaves_plane(result: AnyResult, behind: Floats) -> bool:
 
 
 def _legend(side: LinePicture) -> list[LegendEntry]:
-    """An entry for each kind of line that has a label, and for each role that is marked."""
+    """Legend entries for each kind of line with a label, and for each role with marks."""
     lines = [
         LegendEntry(line.label, line=Stroke("#ced8df", 7.0))
         if line.kind is LineKind.BAND
@@ -129,7 +131,7 @@ def draw_elevation(
     written: Sequence[tuple[str, PictureMark]],
     depths: Scale,
 ) -> None:
-    """Draw the line from the side, between surface and seabed, its names in a column beside it."""
+    """Draw the line from the side, between surface and seabed, with its names in a column."""
     _, _, width, _ = place
     widest = max((text_width(text, _SIZE) for text, _ in written), default=0.0)
     room = min(widest, _LONGEST_NAME)
@@ -165,7 +167,7 @@ def _draw_marks(axes: Axes, marks: Sequence[PictureMark]) -> None:
 
 
 def _write_names(axes: Axes, written: Sequence[tuple[str, PictureMark]], room: float) -> None:
-    """Names in a column at the right edge, each with a thin line to its part."""
+    """Write names in a column at the right edge, each with a thin line to its part."""
     left, half = axes.left + axes.width - room - 4.0, _NAME_LEADING / 2
     wanted = [float(axes.y(part.depth)) for _, part in written]
     places = line_picture.spread(
@@ -180,7 +182,7 @@ def _write_names(axes: Axes, written: Sequence[tuple[str, PictureMark]], room: f
 
 
 def draw_plan(page: Graph, place: Place, above: LinePicture) -> None:
-    """Draw the line from above, both axes to one scale."""
+    """Draw the line from above, with equal scales on both axes."""
     _, _, width, height = place
     across, up = (
         covering([0.0], *(getattr(line, name) for line in above.lines)) for name in ("x", "y")
@@ -199,7 +201,7 @@ def _two_speeds(u: Floats, v: Floats, plane: Floats) -> bool:
 
 
 def flow_legend(u: Floats, v: Floats, plane: Floats) -> list[LegendEntry]:
-    """The entries of the lines that `draw_flow` draws."""
+    """Legend entries for the lines of `draw_flow`."""
     entries = [LegendEntry("speed", line=_FASTER)]
     return entries + [LegendEntry("in the plane", line=_IN_PLANE)] * _two_speeds(u, v, plane)
 

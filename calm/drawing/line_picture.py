@@ -1,7 +1,8 @@
-"""A solved line seen from the side and from above: what is drawn, in metres, for every printer.
+"""Side view and plan of a solved line, in metres, as the common model of all printers.
 
-`calm.drawing.line_drawing` draws it for files and pages, `calm.drawing.check_figures` beside others
-of a check, `calm.drawing.sketch` in a terminal and `calm.drawing.plot` on axes of matplotlib.
+`calm.drawing.line_drawing` draws it for files and pages, `calm.drawing.check_figures` with other
+figures of a check, `calm.drawing.sketch` in a terminal and `calm.drawing.plot` on axes of
+matplotlib.
 """
 
 from collections.abc import Iterator, Sequence
@@ -12,21 +13,22 @@ from itertools import repeat
 import numpy as np
 
 from calm.case.design import AnyResult
+from calm.case.leg_result import LegResult
 from calm.case.result_tables import Shape, rows_down
 from calm.case.uncertain import Uncertain
 from calm.physics.line import Floats, Water
 from calm.quantities import QUANTITIES, bearing_of, bearing_text
 
-# The seabed is drawn when it is no deeper than this many times the line.
+# the seabed is drawn if its depth is at most this multiple of the line's depth
 _SEABED_NEAR = 1.5
-_MOORED_MARGIN, _TOWED_MARGIN = 0.03, 0.04  # of the height, above and below
+_MOORED_MARGIN, _TOWED_MARGIN = 0.03, 0.04  # share of the height, above and below
 
 NAMED_ROLES = ("float", "instrument", "release", "anchor")
-"""The roles a drawing marks; what only joins them is left to the table."""
+"""Roles that a drawing marks. Connectors appear only in the table."""
 
 
 class LineKind(Enum):
-    """Tell what a line of a picture stands for; each printer has its strokes for it."""
+    """Kind of a line in a picture; each printer has a stroke for each kind."""
 
     LINE = "line"
     STILL = "still"
@@ -37,7 +39,7 @@ class LineKind(Enum):
 
 @dataclass(frozen=True)
 class Polyline:
-    """Hold the points of a line: `x` to the right, `y` of the picture's other axis [m]."""
+    """Points of a line: `x` to the right, `y` along the other axis [m]."""
 
     kind: LineKind
     x: Floats
@@ -47,9 +49,10 @@ class Polyline:
 
 @dataclass(frozen=True)
 class PictureMark:
-    """Hold a marked point of the line: its component, name, role and depth [m].
+    """A marked point of the line: its component, name, role and depth [m].
 
-    `x` and `y` are its place in the picture; east and north [m] as `named_parts` has them.
+    `x` and `y` are its coordinates in the picture [m]; in `named_parts` they are east and north
+    [m].
     """
 
     use: str
@@ -62,18 +65,18 @@ class PictureMark:
 
 @dataclass(frozen=True)
 class LinePicture:
-    """Represent a picture of a line.
+    """A picture of a line.
 
     Attributes
     ----------
-    lines : what is drawn behind before what is drawn over it
+    lines : lines in drawing order, from back to front
     marks : floats, instruments, releases and the anchor
     top, bottom : depths at the edges of a view from the side, with their margins [m]
-    height : of the water that is moored in, or of the line that is towed [m]
-    surface : whether the sea surface lies at depth 0
-    seabed : its depth [m]; None where it is not in the picture
-    ship : where the ship is, of a tow
-    across, up : what the axes show, with their units
+    height : water depth of a mooring, or height of a towed line [m]
+    surface : whether there is a sea surface at depth 0
+    seabed : depth of the seabed [m]; None if it is not in the picture
+    ship : position of the ship of a tow
+    across, up : labels of the axes, with units
     """
 
     lines: tuple[Polyline, ...]
@@ -88,7 +91,7 @@ class LinePicture:
     seabed: float | None = None
 
     def span(self) -> tuple[float, float]:
-        """Return the least and the greatest `x`, zero among them; still water does not count."""
+        """Smallest and largest `x`, including zero, without the line in still water."""
         reach = [line.x for line in self.lines if line.kind is not LineKind.STILL]
         return min(0.0, *(float(x.min()) for x in reach)), max(
             0.0, *(float(x.max()) for x in reach)
@@ -98,12 +101,12 @@ class LinePicture:
 def elevation_of(
     result: AnyResult, beside: Sequence[Shape] = (), uncertain: Uncertain | None = None
 ) -> LinePicture:
-    """Return a line in the vertical plane of its excursion, or of its tow.
+    """Return the side view of a line, in the vertical plane of its excursion or its tow.
 
     Parameters
     ----------
     beside : shapes of the mooring in other environments, or of other designs
-    uncertain : of a mooring; the band between its 5 and 95 %
+    uncertain : uncertainty of a mooring, for the band between 5 and 95 %
     """
     plane, depth = plane_of(result), QUANTITIES["depth"].label
     marks = tuple(
@@ -135,7 +138,9 @@ def elevation_of(
 
 
 def plan_of(result: AnyResult, beside: Sequence[Shape] = ()) -> LinePicture:
-    """Return a line from above, its anchor, or the ship, at zero; shapes `beside` it too."""
+    """Return the view from above, with the anchor or the ship at zero, and optionally other
+    shapes.
+    """
     shapes = [(LineKind.BESIDE, shape) for shape in beside]
     shapes += [(LineKind.LINE, leg.shape) for leg in result.legs]
     return LinePicture(
@@ -150,18 +155,20 @@ def plan_of(result: AnyResult, beside: Sequence[Shape] = ()) -> LinePicture:
 def from_the_side(
     shape: Shape, plane: Floats, kind: LineKind = LineKind.LINE, label: str = ""
 ) -> Polyline:
-    """Return a shape in a vertical plane, distances along it and depths.
+    """Return a shape in a vertical plane, as distances in the plane and depths.
 
     Parameters
     ----------
     plane : (2,) direction of the plane, east and north
-    kind, label : what it stands for, and what a legend says of it
+    kind, label : kind of the line, and its text in a legend
     """
     return Polyline(kind, along(shape.x, shape.y, plane), shape.depth, label)
 
 
 def _beds(result: AnyResult) -> Iterator[Polyline]:
-    """The seabed about each anchor, if it slopes there or is not as deep as at the deepest one."""
+    """Yield the seabed about each anchor, if it slopes there or is shallower than at the deepest
+    anchor.
+    """
     plane, legs = plane_of(result), result.legs
     drawn = np.concatenate([along(leg.shape.x, leg.shape.y, plane) for leg in legs])
     stand = [leg for leg in legs if leg.leg.anchored]
@@ -177,7 +184,7 @@ def _beds(result: AnyResult) -> Iterator[Polyline]:
 
 
 def _band(uncertain: Uncertain) -> Polyline:
-    """The outline of the line between its 5 and 95 % of offset and depth."""
+    """Outline of the line between the 5 and 95 % values of its offset and depth."""
     (near, *_, far), (high, *_, low) = uncertain.offset, uncertain.depth_top
     return Polyline(
         LineKind.BAND,
@@ -188,28 +195,36 @@ def _band(uncertain: Uncertain) -> Polyline:
 
 
 def plane_of(result: AnyResult) -> Floats:
-    """Return the direction, east and north, from the anchor to the free end, or behind the ship.
+    """Return the horizontal direction (east, north) from the anchor to the free end, or behind the
+    ship.
 
-    It is east of a mooring that stands upright, and of a net the one in which it is widest.
+    For an upright mooring the direction is east; for a net it is the direction in which the net is
+    widest.
     """
-    if result.several:
-        x, y = (np.concatenate([getattr(leg.shape, name) for leg in result.legs]) for name in "xy")
+    return plane_of_legs(result.legs)
+
+
+def plane_of_legs(legs: Sequence[LegResult]) -> Floats:
+    """The same of one leg, or of those of a net."""
+    if len(legs) > 1:
+        depth = max(leg.water.depth for leg in legs)
+        x, y = (np.concatenate([getattr(leg.shape, name) for leg in legs]) for name in "xy")
         width, ways = np.linalg.eigh(np.cov(x, y))
-        wide = ways[:, 1] if width[1] > 1e-12 * result.water.depth**2 else (1.0, 0.0)
+        wide = ways[:, 1] if width[1] > 1e-12 * depth**2 else (1.0, 0.0)
         way = np.array(wide)
         return way if (way[0] + 1e-9 * way[1]) >= 0.0 else -way
-    if (tow := result.file.tow) is not None:
+    if (tow := legs[0].file.tow) is not None:
         heading = np.radians(tow.toward)
         return -np.array([np.sin(heading), np.cos(heading)])
-    top = result.legs[0].top
+    top = legs[0].top
     excursion = np.array([top.x, top.y])
     distance = np.linalg.norm(excursion)
     east = np.array([1.0, 0.0])
-    return excursion / distance if distance > 1e-6 * result.water.depth else east
+    return excursion / distance if distance > 1e-6 * legs[0].water.depth else east
 
 
 def levels_of(result: AnyResult) -> tuple[float, float]:
-    """Return the depths at the upper and the lower edge of a view from the side [m]."""
+    """Depths at the upper and the lower edge of a side view [m]."""
     highest = min(float(line.shape.depth.min()) for line in result.legs)
     if not result.towed:
         depth = seabed_of(result)
@@ -223,25 +238,26 @@ def levels_of(result: AnyResult) -> tuple[float, float]:
 
 
 def seabed_of(result: AnyResult) -> float:
-    """Return the depth of the water at the deepest anchor, or of a seabed drawn deeper [m]."""
+    """Water depth at the deepest anchor, or depth of a seabed drawn deeper [m]."""
     beds = (float(bed.y.max()) for bed in _beds(result))
     return max(*(float(one.water.depth) for one in (result, *result.legs)), *beds)
 
 
 def along(x: Floats | float, y: Floats | float, plane: Floats) -> Floats:
-    """Return the distance along the direction of a plane, of points east and north."""
+    """Distance of points (east, north) along a horizontal direction."""
     return np.asarray(x * plane[0] + y * plane[1], dtype=np.float64)
 
 
 def current_between(
     water: Water, top: float, bottom: float, samples: int = 200
 ) -> tuple[Floats, Floats, Floats]:
-    """Return depths, and the current east and north there [m/s], with the profile's own levels.
+    """Depths, and current east and north at these depths [m/s], including the levels of the
+    profile.
 
     Parameters
     ----------
-    top, bottom : depths between which it is wanted [m]
-    samples : how many depths, at least
+    top, bottom : range of depths [m]
+    samples : smallest number of depths
     """
     depth = np.union1d(np.linspace(top, bottom, samples), water.level)
     depth = depth[(depth >= top) & (depth <= bottom)]
@@ -250,9 +266,9 @@ def current_between(
 
 
 def water_past(result: AnyResult) -> tuple[Floats, Floats, Floats]:
-    """Return depths, and the speed of the water past the line there, east and north [m/s].
+    """Depths, and speed of the water past the line, east and north [m/s].
 
-    It is the current of a mooring and a net; a tow adds the speed of its ship.
+    This is the current for a mooring and a net; for a tow the ship's speed is added.
     """
     water, tow = result.water, result.file.tow
     if tow is None:
@@ -265,13 +281,13 @@ def water_past(result: AnyResult) -> tuple[Floats, Floats, Floats]:
 
 
 def along_the_line(shape: Shape) -> Floats:
-    """Return the (k,) stretched length from the first node to each node [m]."""
+    """(k,) stretched length from the first node to each node [m]."""
     steps = np.sqrt(np.diff(shape.x) ** 2 + np.diff(shape.y) ** 2 + np.diff(shape.depth) ** 2)
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def named_parts(result: AnyResult) -> list[PictureMark]:
-    """Return the floats, instruments, releases and the anchor, clamped ones too, in file order."""
+    """Floats, instruments, releases and anchors, including clamped items, in file order."""
     parts = []
     for row, clamps in rows_down(result):
         ends = (
@@ -288,10 +304,10 @@ def named_parts(result: AnyResult) -> list[PictureMark]:
 
 
 def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]]:
-    """Texts to write, each with the part it points at.
+    """Texts to write, each with the part that it refers to.
 
-    Neighbours of one component within `near` [m] of each other whose labels differ only by a
-    number at the end are named together: ``glass 1–6``.
+    Neighbours of the same component within `near` [m] of each other, whose labels differ only by a
+    number at the end, get a common text: ``glass 1–6``.
     """
     runs: list[list[PictureMark]] = []
     for part in parts:
@@ -305,22 +321,24 @@ def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]
 
 
 def alike(label: str, other: str) -> bool:
-    """Return whether two labels differ only by a number at the end."""
+    """Whether two labels differ only by a number at the end."""
     stems = [text.removesuffix(_number(text)) for text in (label, other)]
     return stems[0] == stems[1] and bool(_number(other))
 
 
 def together(labels: list[str]) -> str:
-    """One name for labels that are alike: ``glass 1–6``."""
+    """Common name for labels that differ only by a number: ``glass 1–6``."""
     return labels[0] if len(labels) == 1 else f"{labels[0]}–{_number(labels[-1])}"
 
 
 def spread(wanted: list[float], gap: float, start: float, end: float) -> list[float]:
-    """Positions at least `gap` apart, in the given ascending order, as near as can be to `wanted`.
+    """Find positions at least `gap` apart, in the given ascending order, as close as possible to
+    `wanted`.
 
-    The sum of the squared shifts is the least possible between `start` and `end`; where not all
-    fit, they pass the end. Once each position is reduced by the gaps before it, they only have to
-    ascend: what then descends is pooled at its mean (isotonic regression).
+    The sum of the squared shifts is the smallest possible between `start` and `end`; if not all
+    positions fit, they extend beyond the end. After subtraction of the gaps before each position,
+    the positions only need to ascend: descending runs are replaced by their mean (isotonic
+    regression).
     """
     pools: list[tuple[float, int]] = []
     for index, position in enumerate(wanted):
@@ -335,5 +353,5 @@ def spread(wanted: list[float], gap: float, start: float, end: float) -> list[fl
 
 
 def _number(label: str) -> str:
-    """The digits at the end of a label."""
+    """Digits at the end of a label."""
     return label[len(label.rstrip("0123456789")) :]

@@ -15,14 +15,17 @@ _PAGE = b"""#set page(width: auto, height: auto, margin: 0pt)
 
 
 def check_format(path: Path) -> None:
-    """Refuse a picture whose file name ends in none of the formats: UsageError, naming these."""
+    """Raise UsageError, with the allowed formats, if the file name of a picture has another
+    ending.
+    """
     if path.suffix.lower() not in FORMATS:
         allowed = f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]}"
         raise UsageError(f"cannot draw {path}: a picture's name ends in {allowed}")
 
 
 def image(svg: str, suffix: str) -> bytes:
-    """Convert a drawing to the bytes of an SVG, PNG or PDF file; a PDF page has its size.
+    """Convert a drawing to the bytes of an SVG, PNG or PDF file; a PDF page has the size of the
+    drawing.
 
     The suffix is one of `FORMATS`, in upper or lower case.
     """
@@ -45,34 +48,36 @@ def within_xml(text: str) -> str:
 
 
 def set_apart(svg: str, prefix: str) -> str:
-    """Add a prefix to the identifiers of a drawing, so that those of one page differ."""
+    """Prefix the identifiers of a drawing, so that drawings on one page do not share
+    identifiers.
+    """
     return re.sub(r"<[^<>]+>", lambda tag: re.sub(_IDENTIFIER, rf"\g<1>{prefix}-", tag[0]), svg)
 
 
-# Signs that XML has no place for, that command a terminal, or that turn other signs around.
+# characters that XML does not allow, that control a terminal, or that reverse the text direction
 _UNPRINTABLE = "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
 _IN_ASCII = str.maketrans({
-    **dict(zip("–−×·₀₁✓\u00a0", "--x*01+ ", strict=True)),
+    **dict(zip("–−×·₀₁✓◦≈█▒’“”\u00a0", "--x*01+o=#:'\"\" ", strict=True)),
     "°": "deg", "→": "->", "…": "...", "≤": "<=", "≥": ">=", "√": "sqrt", "²": "^2", "³": "^3",
     "\u2003": "  ",
 })  # fmt: skip
 
 
 def printable(text: str) -> str:
-    """A text in which a mark stands for what XML or a terminal cannot carry."""
+    """Replace characters that XML or a terminal cannot show by a mark."""
     return re.sub(_UNPRINTABLE, "\ufffd", text)
 
 
 def in_ascii(text: str) -> str:
-    """A text whose signs of units and of arithmetic are written out: ``27 deg`` for ``27°``.
+    """Write out the symbols of units and arithmetic in ASCII: ``27 deg`` for ``27°``.
 
-    Letters stay as they are.
+    Letters are not changed.
     """
     return re.sub(r"(?<=[0-9])°", " deg", text).translate(_IN_ASCII)
 
 
 def encodable(encoding: str | None, signs: str) -> bool:
-    """Return whether an output of this encoding has these signs."""
+    """Whether an output encoding has the given characters."""
     try:
         signs.encode(encoding or "ascii")
     except (UnicodeEncodeError, LookupError):

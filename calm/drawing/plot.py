@@ -8,13 +8,11 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from calm.drawing.line_drawing import LEAST_SPAN, LINE_COLOUR, SEABED_COLOUR, SIGNS, WATER_COLOUR
 from calm.drawing.line_picture import LineKind, LinePicture
 from calm.drawing.picture import within_xml
-from calm.errors import UsageError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,28 +26,22 @@ _STYLES: dict[LineKind, dict[str, Any]] = {
 }
 
 
-def require_matplotlib(what: str) -> None:
-    """Reject something that draws by matplotlib if that is not installed: UsageError."""
-    if find_spec("matplotlib") is None:
-        raise UsageError(f"{what} needs matplotlib: pip install 'calm-mooring[plot]'")
-
-
 def empty_figure(width: float, height: float, **options: Any) -> Figure:
-    """A figure of a size [inches] that belongs to no window."""
+    """Create a figure of a given size [inches] without a window."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), **options)
 
 
-# patterns are compiled where they are first used
+# patterns are compiled at their first use
 _PROLOGUE = r"(?s)^.*?(?=<svg\b)"
 _ASIDE = r"(?s)<metadata>.*?</metadata>|<style\b.*?</style>|<!--.*?-->\s*"
 
 
 def figure_svg(figure: Figure) -> str:
-    """The figure as SVG, its texts as text, without a prologue and metadata.
+    """Convert a figure to SVG, with texts as text, without prologue and metadata.
 
-    A style sheet of the drawing would apply to the whole page; its settings become attributes.
+    A style sheet in the drawing would apply to the whole page, so its settings become attributes.
     """
     import matplotlib
 
@@ -58,7 +50,7 @@ def figure_svg(figure: Figure) -> str:
         matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "calm"}),
         warnings.catch_warnings(),
     ):
-        # A label may hold signs that the font of matplotlib lacks.
+        # a label may contain characters that the font of matplotlib lacks
         warnings.filterwarnings("ignore", message="Glyph")
         figure.savefig(content, format="svg", metadata={"Date": None})
     text = re.sub(_PROLOGUE, "", content.getvalue().decode("utf-8"), count=1)
@@ -66,9 +58,8 @@ def figure_svg(figure: Figure) -> str:
 
 
 def plot_elevation(side: LinePicture, ax: Axes | None = None) -> Axes:
-    """Draw a line from the side on matplotlib axes, by default those of a new figure."""
+    """Draw a side view on matplotlib axes, by default on a new figure."""
     if ax is None:
-        require_matplotlib("plot")
         ax = empty_figure(6.0, 6.0, layout="constrained").subplots()
     if side.surface:
         ax.axhline(0.0, color=WATER_COLOUR, linewidth=1)

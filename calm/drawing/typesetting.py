@@ -1,6 +1,6 @@
-"""PDF and PNG, set by typst in the fonts of this package.
+"""PDF and PNG files, set by typst in the fonts of this package.
 
-Fonts of the system are not used, so that the same input gives the same bytes on every computer.
+System fonts are not used, so that the same input gives the same bytes on every computer.
 """
 
 from collections.abc import Iterable, Mapping
@@ -12,7 +12,10 @@ from typing import Literal
 import numpy as np
 
 FONTS = Path(str(files("calm.drawing") / "fonts"))
-"""Folder of DejaVu Sans, regular and bold, and its licence. Typst includes DejaVu Sans Mono."""
+"""Folder of DejaVu Sans and Source Sans 3, unmodified, with their licences.
+
+Typst includes DejaVu Sans Mono; signs that Source Sans lacks are set in DejaVu Sans.
+"""
 
 DOTS_PER_INCH = 200.0
 
@@ -23,12 +26,12 @@ def typeset(
     kind: Literal["pdf", "png"],
     timestamp: int | None = None,
 ) -> bytes:
-    """Set a typst template; a PNG has its first page.
+    """Set a typst template; a PNG contains its first page.
 
     Parameters
     ----------
-    inputs : texts that the template reads from `sys.inputs`: data, never markup
-    timestamp : date of a PDF, in seconds since 1970; without one it has none
+    inputs : texts that the template reads from `sys.inputs`, as data only
+    timestamp : date of a PDF, in seconds since 1970; None for no date
     """
     import typst
 
@@ -39,16 +42,16 @@ def typeset(
         sys_inputs=dict(inputs),
         format=kind,
         ppi=DOTS_PER_INCH,
-        pdf_tags=False,  # tags make the file ten times as large; a page for a browser has its own
+        pdf_tags=False,  # tags make the file ten times as large; an accessible HTML page exists
         timestamp=timestamp,
     )
 
 
 def lacking(texts: Iterable[str]) -> str:
-    """Find the characters of some texts that the fonts lack, each once, in order."""
+    """Characters of the texts that the fonts lack, each once, in order."""
     held, known = list(texts), signs()
     unknown = {sign for sign in set().union(*held) if sign.isprintable() and ord(sign) not in known}
-    if not unknown:  # as nearly always: a report has millions of signs
+    if not unknown:  # almost always, since a report has millions of characters
         return ""
     return "".join(dict.fromkeys(sign for text in held for sign in text if sign in unknown))
 
@@ -56,7 +59,7 @@ def lacking(texts: Iterable[str]) -> str:
 def legible(text: str) -> str:
     """Replace each character that the fonts lack by �.
 
-    A single one would otherwise have all of a drawing's label shown in boxes.
+    A single missing character would otherwise make typst show a drawing's whole label as boxes.
     """
     unknown = lacking([text])
     return text.translate(dict.fromkeys(map(ord, unknown), "\ufffd")) if unknown else text
@@ -64,7 +67,7 @@ def legible(text: str) -> str:
 
 @cache
 def signs() -> frozenset[int]:
-    """The code points of the regular font: groups of its `cmap`, a table of OpenType (format 12).
+    """Code points of the regular font, from the groups of its `cmap` table of OpenType (format 12).
 
     Source: OpenType 1.9, chapters `otff` and `cmap`.
     """

@@ -1,8 +1,9 @@
-"""A line as a chain: straight bars between nodes, and the loads that they carry.
+"""A line as a chain: straight bars between nodes, and the loads on the bars.
 
-A cable or chain is cut into bars, a rigid piece is one bar, and the pieces that are rigid with the
-free end are one together. The force of a load goes to the two nodes of its bar by the lever: in
-equilibrium a bar then lies along the mean of the forces at its ends, as everywhere in CALM.
+A cable or chain is cut into bars, a rigid piece is one bar, and all pieces rigidly connected to the
+free end form one bar. The force of a load is distributed to the two nodes of its bar by the lever
+rule: in equilibrium a bar then lies along the mean of the forces at its ends, as everywhere in
+CALM.
 """
 
 from dataclasses import dataclass
@@ -17,10 +18,11 @@ from calm.physics.reynolds import DragCurve
 from calm.physics.track import head_count
 
 LEAST = 0.12
-"""Of all bars: those of a cable or chain that is not short, since it may be the one that turns on
-the seabed."""
+"""Smallest share of all bars in a cable or chain that is not short, since it may be the one that
+lies down on the seabed.
+"""
 NOT_SHORT = 0.02
-"""Share of all cables and chains from which on one is not short."""
+"""Share of all cables and chains above which one is not short."""
 
 
 @dataclass(frozen=True)
@@ -29,18 +31,19 @@ class Elements:
 
     Attributes
     ----------
-    bar : (k,) the bar it is on
-    place : (k,) where on it, from 0 at its upper node to 1 at its lower
-    piece : (k,) that it is part of; -1 of a clamp
-    buoyancy, volume : (k,) whole, in reference water [N], [m³]
-    normal_drag, tangential_drag : (k,) Kn and Kt, whole [N/(m/s)²]
-    directional : (k,) False where the drag is Kn|V|V
-    flexible : (k,) whether it is cable or chain
+    bar : (k,) index of its bar
+    place : (k,) position on the bar, from 0 at its upper node to 1 at its lower node
+    piece : (k,) index of the piece that it belongs to; -1 for a clamp
+    buoyancy, volume : (k,) totals in reference water [N], [m³]
+    normal_drag, tangential_drag : (k,) total Kn and Kt [N/(m/s)²]
+    directional : (k,) False if the drag is Kn|V|V
+    flexible : (k,) whether it belongs to a cable or chain
     thinning, lift : (k,) as in `Line`
-    push : (3, k) of the wind [N]
-    height : (k,) of what is rigid, from its top to its lower end [m]
-    out : (k,) whether it stands on the float, and so out of the water where that is at the surface
-    curve : (k,) of smooth spheres and cylinders, None of others
+    push : (3, k) force of the wind [N]
+    height : (k,) length of a rigid load, from its top to its lower end [m]
+    out : (k,) whether it is mounted above the float, and so out of the water if the float is at the
+        surface
+    curve : drag curves (k,) of smooth spheres and cylinders, None for other loads
     """
 
     bar: Integers
@@ -61,16 +64,16 @@ class Elements:
 
     @cached_property
     def lifts(self) -> bool:
-        """Return whether the flow lifts any."""
+        """Whether at least one load has a lift coefficient."""
         return bool(self.lift.any())
 
     @cached_property
     def share(self) -> Floats:
-        """(2, k) of what acts on a load that its bar's upper and its lower node take."""
+        """(2, k) share of a load on its bar's upper node and on the lower node."""
         return np.stack([1.0 - self.place, self.place])
 
     def summed(self, per_load: Floats) -> Floats:
-        """(..., n) over the loads of every bar."""
+        """Sum values per load (..., k) over every bar, (..., n)."""
         total: Floats = np.add.reduceat(per_load, self._first, axis=-1)
         return total
 
@@ -85,12 +88,13 @@ class FloatOnChain:
 
     Attributes
     ----------
-    element : the load that it is
-    height : [m]
-    weight : in air [N]
-    draft : (m,) growing
-    immersed, drag : (m,) shares of the volume, and of the drag below the surface
-    push : (m, 2) of the wind to the east and north [N]
+    element : index of its load
+    height : height of the float [m]
+    weight : weight in air [N]
+    draft : (m,) draft, increasing
+    immersed, drag : (m,) immersed share of the volume, and drag as a share of the drag when
+        immersed
+    push : (m, 2) force of the wind to the east and north [N]
     """
 
     element: int
@@ -104,20 +108,21 @@ class FloatOnChain:
 
 @dataclass(frozen=True)
 class BarChain:
-    """n bars between n + 1 nodes, the free end first.
+    """n bars between n + 1 nodes, free end first.
 
     Attributes
     ----------
-    line : what it is the chain of
-    length : (n,) of the bars, unstretched [m]
-    piece : (n,) each bar's own; of the rigid head its last
+    line : line that the chain represents
+    length : (n,) unstretched length of the bars [m]
+    piece : (n,) piece of each bar; for the rigid head, its last piece
     compliance : (n,) 1/EA [1/N]
-    elongation : the bars of every cable that stretches by a curve, and the knots of the curve
+    elongation : the bars of every cable with an elongation curve, and the knots of the curve
     elements : the loads
-    bars : (p, 2) first bar of every piece, and the one behind its last; equal without length
-    span : (p, 2) where a piece begins on its first bar and ends on its last, 0 to 1
-    clamp_bar, clamp_place : (m,) where the clamps sit
-    afloat : the first float at the surface, None where its hull is not known
+    bars : (p, 2) first bar of every piece, and the bar after its last; equal for a piece without
+        length
+    span : (p, 2) position of a piece's ends on its first and on its last bar, 0 to 1
+    clamp_bar, clamp_place : (m,) bar of each clamp, and position on the bar
+    afloat : the first float at the surface, None if its hull is unknown
     """
 
     line: Line
@@ -134,16 +139,16 @@ class BarChain:
 
 
 def chain_of(line: Line, count: int) -> BarChain:
-    """The chain of a line whose cables and chains are cut into some `count` bars.
+    """Divide the cables and chains of a line into about `count` bars.
 
     Parameters
     ----------
-    line : above an anchor, free end first
+    line : line above an anchor, free end first
 
     Raises
     ------
     ValueError
-        A line without any length.
+        The line has no length.
     """
     length, piece, bars, span = _bars(line, count)
     if not len(length):
@@ -173,14 +178,14 @@ def chain_of(line: Line, count: int) -> BarChain:
 
 
 def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
-    """Length and piece of every bar; bars and span of every piece."""
+    """Length and piece of every bar, followed by bars and span of every piece."""
     pieces, head = len(line.length), head_count(line)
     cable = float(line.length[line.flexible].sum())
     share = line.length / max(cable, 1e-300)
     least = np.where(share > NOT_SHORT, count * LEAST, 1.0)
     cuts = np.where(line.flexible, np.ceil(np.maximum(share * count, least)), 1.0)
     cuts[line.length == 0.0] = 0.0
-    bars, span = np.zeros((pieces, 2), dtype=np.int64), np.zeros((pieces, 2))
+    bars, span = np.zeros((pieces, 2), dtype=np.intp), np.zeros((pieces, 2))
     length: list[float] = []
     owner: list[int] = []
     rigid = float(line.length[:head].sum())
@@ -196,27 +201,28 @@ def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
         length += [float(line.length[piece]) / max(parts, 1)] * parts
         owner += [piece] * parts
     for piece in np.flatnonzero(bars[:, 0] == bars[:, 1]).tolist():
-        # without length it is at the upper end of the bar below it, or the lower end of the last
+        # a piece without length is at the upper end of the bar below, or the lower end of the last
+        # bar
         below = bars[piece, 0] < len(length)
         span[piece] = (0.0, 0.0) if below else (1.0, 1.0)
         bars[piece] -= 0 if below else 1
-    return np.array(length), np.array(owner, dtype=np.int64), bars, span
+    return np.array(length), np.array(owner, dtype=np.intp), bars, span
 
 
 def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tuple[Integers, Floats]:
-    """Bar, and place on it, of points at a share of the way down their pieces."""
+    """Bar, and position on it, of points at a share of the length of their pieces."""
     first, end = bars[piece].T
     begin, stop = span[piece].T
     way = begin + share * (stop - begin)
     whole = way * np.maximum(end - first, 1)
-    bar = np.minimum(whole.astype(np.int64), np.maximum(end - first - 1, 0))
+    bar = np.minimum(whole.astype(np.intp), np.maximum(end - first - 1, 0))
     return first + bar, np.clip(whole - bar, 0.0, 1.0)
 
 
 def _elements(
     line: Line, bars: Integers, span: Floats, clamp_bar: Integers, clamp_place: Floats
 ) -> Elements:
-    """Return the loads: pieces, shared out over their bars, and clamps."""
+    """Return the loads: pieces, distributed over their bars, and clamps."""
     first, end = bars.T
     parts = np.maximum(end - first, 1)
     piece = np.repeat(np.arange(len(parts)), parts)
@@ -253,11 +259,13 @@ def _elements(
 
 
 _DRAFTS = 401
-"""Points of the table of a hull afloat."""
+"""Number of points in the table of a hull at the surface."""
 
 
 def afloat_of(line: Line, elements: Elements) -> FloatOnChain | None:
-    """Return how the first float of a line rides by its draft; None where its hull is not known."""
+    """Return the buoyancy and drag of a line's first float by its draft; None if its hull is
+    unknown.
+    """
     floating = line.floating
     if floating is None or floating.hull is None:
         return None
@@ -268,10 +276,10 @@ def afloat_of(line: Line, elements: Elements) -> FloatOnChain | None:
 
 @lru_cache(maxsize=4)
 def _afloat(floating: Floating, element: int, height: float) -> FloatOnChain:
-    """Return how a float with a hull rides that is a load of a height [m]."""
+    """Return the table of a float with a hull, for a load of a given height [m]."""
     hull = floating.hull
     assert hull is not None
-    # by the share immersed, finer where a hull is thin: at its keel and at its top
+    # by the immersed share, finer where a hull is thin: at its keel and at its top
     share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, _DRAFTS))
     net = share * (floating.weight + floating.lift) - floating.weight
     ridings = [floating.riding(used) for used in (net / floating.lift).tolist()]

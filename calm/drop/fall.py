@@ -1,4 +1,4 @@
-"""The drop of an anchor: the line is towed, let go, and comes to rest on its anchor."""
+"""The anchor drop: the line is towed, released, and settles on its anchor."""
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -11,23 +11,27 @@ from calm.drop.motion import ChainState, FallingAnchor, Mover, NoStep
 from calm.errors import NoEquilibrium, UsageError
 from calm.physics.line import Line, Water
 from calm.solve import Status
+from calm.solve.bracketed_root import bracketed_root
 
 SKIN, THICKEST_SKIN = 5e-4, 0.3
-"""Of the layer in which what floats loses its buoyancy: share of the depth, and at most [m]."""
+"""Thickness of the layer in which floats lose their buoyancy: share of the depth, and upper limit
+[m].
+"""
 AT_REST = 1e-7
-"""Share of the depth by which nothing moves any more, however long one waits."""
+"""Motion in a step, as a share of the depth, below which the line has settled."""
 LONG = 1e6
-"""The longest step [s]: at its end a line is at rest."""
+"""Length of the longest step [s], after which a line has settled."""
 SLOWEST_FLOW = 0.01
-"""Past a line that is streamed less far than the ship's speed takes it [m/s]."""
+"""Slowest flow past a line that is streamed less far than at the ship's speed [m/s]."""
 STREAMED_WITHIN = 1e-4
-"""Of the length of the line, to be streamed as far as asked."""
-PUSHED = 1e-4
-"""Of all weights: what a bar at rest is pushed with at least, to be laid down."""
+"""Tolerance of the streamed distance, as a share of the length of the line."""
+LEAST_COMPRESSION = 1e-4
+"""Smallest compression of a settled bar that is laid down, as a share of all weights."""
 _FALLS = 3
-HANDED = 0.6
-"""Share of the anchor's weight that the ship still bears in the second step, the same share of that
-in the third, and so on: it is let go, and not thrown."""
+RELEASED_SHARE = 0.6
+"""Share of the anchor's weight that the ship still carries in the second step, and factor on this
+share for each further step. The anchor is released gradually to avoid a jerk.
+"""
 _GROWTH = 1.3
 _REST_GROWTH = 1.6
 _SHORTEST = 1e-9
@@ -36,7 +40,7 @@ _MOST = 20
 
 @dataclass(frozen=True)
 class Fineness:
-    """Into how many bars cables and chains are cut, and the fall into how many steps, about."""
+    """Approximate number of bars of cables and chains, and of steps of the fall."""
 
     bars: int
     steps: int
@@ -44,10 +48,10 @@ class Fineness:
 
 @dataclass(frozen=True)
 class Ship:
-    """The ship that lets go: its velocity to the east and north over the ground [m/s].
+    """The ship that drops the anchor: its velocity to the east and north over the ground [m/s].
 
-    `streamed` is the horizontal distance from the anchor to the free end [m]; None leaves it as it
-    is towed.
+    `streamed` is the horizontal distance from the anchor to the free end [m]; None uses the
+    distance under tow.
     """
 
     east: float
@@ -57,7 +61,7 @@ class Ship:
 
 @dataclass(frozen=True)
 class Motion:
-    """Hold what a chain went through: states by growing time, each a step of the mover."""
+    """Motion of a chain: states in order of time, one for each step."""
 
     mover: Mover
     states: tuple[ChainState, ...]
@@ -66,18 +70,19 @@ class Motion:
 def towed(
     line: Line, water: Water, anchor: FallingAnchor, ship: Ship, fineness: Fineness
 ) -> ChainState:
-    """The line as it streams behind the ship, with its lower end at the surface, at the origin.
+    """Return the line as it streams behind the ship, with its lower end at the surface, at the
+    origin.
 
-    Streamed less far than the ship's speed takes it, it is as a slower ship streams it; farther,
-    its free end is held there.
+    For a shorter distance than at the ship's speed, the shape is that of a slower tow. For a longer
+    distance, its free end is held there.
 
     Raises
     ------
     NoEquilibrium
-        ``not-converged`` where no steady shape is found, ``no-equilibrium`` where nothing would
+        ``not-converged`` if no steady shape is found, ``no-equilibrium`` if there is no drag to
         limit the speed of the fall.
     UsageError
-        It streams farther than it is to be, however slow the ship.
+        The line streams farther than required even behind a very slow ship.
     """
     across = line.normal_drag[~line.directional]
     if not (anchor.drag or any(k.any() for k in (line.tangential_drag, across, line.clamp_drag))):
@@ -107,11 +112,11 @@ def towed(
 def fall(
     line: Line, water: Water, anchor: FallingAnchor, start: ChainState, fineness: Fineness
 ) -> Motion:
-    """The fall of a line from where it is towed until its anchor meets the seabed.
+    """Compute the fall of a line from its shape under tow until its anchor reaches the seabed.
 
-    The instant of the touchdown is interpolated within the step that passes it. NoEquilibrium:
-    ``anchor-lifts`` where the anchor does not come to the seabed, ``not-converged`` where a step is
-    not found.
+    The instant of the touchdown is interpolated within the last step. Raises NoEquilibrium:
+    ``anchor-lifts`` if the anchor does not reach the seabed, ``not-converged`` if a step is not
+    found.
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor)
     bottom = line.anchor_height - water.depth
@@ -123,14 +128,15 @@ def fall(
                 f"The anchor weighs {anchor.weight:.0f} N in water and does not pull the line to "
                 "the seabed."
             )
-        # let go at once, without inertia, the anchor would be upon the line beside it
-        borne = HANDED ** (len(states) - 1)
+        # released at once, without inertia, the anchor would pass the line next to it
+        borne = RELEASED_SHARE ** (len(states) - 1)
         lighter = replace(anchor, weight=(1.0 - borne) * anchor.weight)
         falling = mover if borne < 1e-3 else replace(mover, anchor=lighter)
         state = _stepped(falling, states[-1], step, water.depth)
         step = state.time - states[-1].time
         if state.node[-1, 2] <= bottom:
-            # the seabed would stop what is above the anchor in the part of the step beyond it
+            # in the part of the step beyond the touchdown, the seabed would stop the pieces above
+            # the anchor
             state = _stepped(replace(mover, bedded=False), states[-1], step, water.depth)
         speed = float(np.linalg.norm(state.velocity[-1]))
         step = min(_GROWTH * (state.time - states[-1].time), way / max(speed, 1e-300), LONG)
@@ -139,19 +145,21 @@ def fall(
 
 
 def nothing_limits() -> NoEquilibrium:
-    """Return the failure of a fall that has no speed, since nothing drags along its line."""
+    """Return the exception for a fall without a terminal speed, since the line has no tangential
+    drag.
+    """
     return Status.NO_EQUILIBRIUM.because(
-        "Nothing limits the speed of the line: neither it nor its anchor has any drag.",
-        advice="Give its pieces, or the anchor (`kt`), their drag.",
+        "The speed of the line is unlimited, since neither the line nor its anchor has drag.",
+        advice="Set the drag of its pieces, or `kt` of the anchor.",
     )
 
 
 def settle(
     line: Line, water: Water, anchor: FallingAnchor, landed: ChainState, fineness: Fineness
 ) -> Motion:
-    """Return how a line comes to rest on the anchor that holds it.
+    """Compute how a line settles on its anchor.
 
-    NoEquilibrium: ``not-converged`` where it does not.
+    Raises NoEquilibrium: ``not-converged`` if it does not settle.
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor, held=True)
     return Motion(mover, _settled(mover, landed, 0.2 * water.depth / fineness.steps))
@@ -162,7 +170,7 @@ def _sea(water: Water) -> WaterColumn:
 
 
 def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState:
-    """The state at which the lower end is at a height [m]."""
+    """Return the state at which the lower end is at a height [m]."""
     high, low = float(before.node[-1, 2]), float(after.node[-1, 2])
     share = (high - bottom) / (high - low)
     return ChainState(
@@ -174,7 +182,7 @@ def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState
 
 
 def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> ChainState:
-    """A step, or a shorter one where it is not found; NoEquilibrium: ``not-converged``."""
+    """Make a step, or a shorter one if necessary; NoEquilibrium: ``not-converged``."""
     shortest = _SHORTEST * depth
     ways = (False, True) if state.velocity.any() else (True,)
     while step > shortest:
@@ -183,15 +191,15 @@ def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> Chai
                 return mover.stepped(state, step, gently)
         step *= 0.4
     raise Status.NOT_CONVERGED.because(
-        f"The fall of the line could not be computed beyond {state.time:.1f} s after it was let go."
+        f"The fall of the line could not be computed beyond {state.time:.1f} s after its release."
     )
 
 
 def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, ...]:
-    """States from one on, in longer and longer steps, until nothing moves any more.
+    """Return the states in ever longer steps until the line has settled.
 
-    What then stands on its lower end, pushed and not pulled, is laid down: a long step holds it
-    upright as a short one would not.
+    Bars that then balance upright on their lower end, under compression, are laid down: a long step
+    keeps them upright, unlike a short step.
     """
     depth = mover.sea.water.depth
     states = [state]
@@ -203,7 +211,7 @@ def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, 
             states.append(after)
         moved = float(np.abs(states[-1].node - states[-2].node).max())
         if moved > AT_REST * depth:
-            raise Status.NOT_CONVERGED.because("The line does not come to rest.")
+            raise Status.NOT_CONVERGED.because("The line does not settle on the seabed.")
         laid = _laid_down(mover, states[-1])
         if laid is None:
             break
@@ -212,11 +220,11 @@ def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, 
 
 
 def _laid_down(mover: Mover, state: ChainState) -> ChainState | None:
-    """The state with the bars that are pushed along the next one above them that is not.
+    """Return the state with compressed bars aligned with the next bar above that is under tension.
 
-    None where no bar is.
+    None if no bar is compressed.
     """
-    pushed = state.tension < -PUSHED * mover.scale
+    pushed = state.tension < -LEAST_COMPRESSION * mover.scale
     if not pushed.any() or pushed[0]:
         return None
     node, axis = state.node.copy(), np.zeros(3)
@@ -230,17 +238,15 @@ def _laid_down(mover: Mover, state: ChainState) -> ChainState | None:
 
 
 def _streamed(state: ChainState) -> float:
-    """Horizontal distance from the lower end to the free one [m]."""
+    """Horizontal distance from the lower end to the free end [m]."""
     return float(np.linalg.norm(state.node[0, :2] - state.node[-1, :2]))
 
 
 def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
-    """The line in a flow so much slower that it streams to a distance [m].
+    """Return the line in a slower flow, in which it streams to a given distance [m].
 
-    A free end that is pushed nearer in the whole flow would bend the line as no rope bends.
+    If the free end were held closer in the full flow, the line would bend unlike a rope.
     """
-    from scipy.optimize import brentq
-
     sea = mover.sea
     reach = float(mover.chain.length.sum())
     current = sea.water.current_at(np.zeros(()))
@@ -254,14 +260,14 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
         return _streamed(state) - streamed
 
     share, least = 1.0, min(SLOWEST_FLOW / whole, 0.5)
-    # downwards by halves: a jump to a far slower flow may fold the line
+    # downwards in halves, since a jump to a far slower flow may fold the line
     while excess(share := max(0.5 * share, least)) > 0.0:
         if share == least:
             raise UsageError(
                 f"behind a ship that hardly moves the line still streams {_streamed(state):.1f} m: "
                 f"it cannot be streamed to {streamed:g} m"
             )
-    excess(brentq(excess, share, min(2.0 * share, 1.0), rtol=1e-7))
+    excess(bracketed_root(excess, share, min(2.0 * share, 1.0), rtol=1e-7))
     if abs(_streamed(state) - streamed) > STREAMED_WITHIN * reach:
         raise Status.NOT_CONVERGED.because(
             f"No speed of the ship streams the line to {streamed:g} m."
@@ -270,7 +276,7 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
 
 
 def _drawn(mover: Mover, state: ChainState, streamed: float) -> ChainState:
-    """The line with its free end held at a horizontal distance from the other [m]."""
+    """Return the line with its free end held at a horizontal distance from the other end [m]."""
     end = state.node[0, :2]
     here = float(np.linalg.norm(end))
     for share in np.linspace(0.0, 1.0, 21)[1:]:

@@ -14,22 +14,22 @@ from calm.files.pieces import clamps_in
 from calm.physics.line import Floats, Integers
 
 REPORTED_ROLES = ("float", "instrument", "release")
-"""Of pieces and clamps whose depth in the drop matters."""
+"""Roles of the pieces and clamps whose depths during the drop are reported."""
 MOMENTS = 5
-"""Shapes from letting go to the touchdown; one more is that at rest."""
+"""Number of shapes from release to touchdown; the shape at rest is added."""
 
 
 @dataclass(frozen=True)
 class DepthReached:
-    """Tell how deep a piece or clamp comes while the line falls and straightens.
+    """Largest depth of a piece or clamp while the line falls and straightens.
 
     Attributes
     ----------
     part : the piece or clamp
-    rest : its depth when all is at rest, of its lower end [m]
+    rest : depth of its lower end at rest [m]
     greatest : the largest depth of its lower end [m]
-    time : when, after the anchor was let go [s]
-    rating : the depth it is made for [m]; None where it is not known
+    time : time of the largest depth, after the release of the anchor [s]
+    rating : its depth rating [m]; None if unknown
     """
 
     part: Piece | Clamp
@@ -40,18 +40,18 @@ class DepthReached:
 
     @property
     def label(self) -> str:
-        """Of the piece or clamp."""
+        """Label of the piece or clamp."""
         return self.part.label
 
     @property
     def beyond(self) -> bool:
-        """Return whether it comes deeper than it is made for."""
+        """Whether the piece or clamp exceeds its depth rating."""
         return self.rating is not None and self.greatest > self.rating
 
 
 @dataclass(frozen=True)
 class Pull:
-    """The greatest tension in a piece during the fall [N], and when [s]."""
+    """Maximum tension in a piece during the fall [N], and its time [s]."""
 
     part: Piece
     tension: float
@@ -70,17 +70,16 @@ class ShapeInTime:
 
 @dataclass(frozen=True)
 class FallPath:
-    """Hold what happens over time, from the moment the anchor is let go to its touchdown; (t,)
-    each.
+    """Time series of the fall, from the release of the anchor to its touchdown, (t,) each.
 
     Attributes
     ----------
-    time : [s]
-    anchor_depth : of its foot [m]
-    anchor_speed : downward [m/s]
-    anchor_x, float_x : distance from where the anchor was let go, towards the float [m]
-    float_depth : of the free end [m]
-    anchor_tension : of the line at the anchor [N]
+    time : time since the release [s]
+    anchor_depth : depth of its foot [m]
+    anchor_speed : downward speed [m/s]
+    anchor_x, float_x : distance from the release position, towards the float [m]
+    float_depth : depth of the free end [m]
+    anchor_tension : tension of the line at the anchor [N]
     """
 
     time: Floats
@@ -93,27 +92,27 @@ class FallPath:
 
 
 def place_of(state: ChainState, bar: Integers, place: Floats) -> Floats:
-    """(m, 3) of points at places of bars [m]."""
+    """Positions (m, 3) of points on bars [m]."""
     share = place[:, np.newaxis]
     found: Floats = (1.0 - share) * state.node[bar] + share * state.node[bar + 1]
     return found
 
 
 def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
-    """(p, 3) of the upper and of the lower end of every piece [m]."""
+    """Positions (p, 3) of the ends of every piece, upper and lower [m]."""
     first, end = chain.bars.T
     last = np.maximum(end - 1, first)
     return place_of(state, first, chain.span[:, 0]), place_of(state, last, chain.span[:, 1])
 
 
 def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Floats:
-    """Return (n, 2) in every bar at its upper and at its lower end [N]; 0 in one that is pushed.
+    """Tensions (n, 2) of every bar at its upper and at its lower end [N]; 0 for a compressed bar.
 
     Parameters
     ----------
-    within : whether at the bar's side of what is at its very ends, else beyond that
+    within : whether loads at the very ends of a bar are excluded; otherwise they are included
 
-    In the first moment the anchor pushes what is beside it, where a real line goes slack.
+    In the first moment the anchor pushes the pieces next to it, where a real line becomes slack.
     """
     on = mover.chain.elements
     strain, _ = mover.strain(state.tension)
@@ -128,12 +127,12 @@ def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Fl
 
 
 def path_of(drop: Motion, toward: Floats, anchor_height: float) -> FallPath:
-    """The fall over time.
+    """Return the time series of a fall.
 
     Parameters
     ----------
     toward : (2,) horizontal unit vector from the anchor to the free end at the start
-    anchor_height : of the line's end above the anchor's foot [m]
+    anchor_height : height of the line's end above the anchor's foot [m]
     """
     states = drop.states
     foot, top = (np.array([state.node[i] for state in states]) for i in (-1, 0))
@@ -149,7 +148,7 @@ def path_of(drop: Motion, toward: Floats, anchor_height: float) -> FallPath:
 
 
 def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[ShapeInTime, ...]:
-    """Shapes at equal intervals from letting go to the touchdown, and at rest where known."""
+    """Shapes at equal intervals from release to touchdown, and the shape at rest if known."""
     times = np.array([state.time for state in drop.states])
     chosen = [int(np.argmin(np.abs(times - t))) for t in np.linspace(0.0, times[-1], MOMENTS)]
     shown = [drop.states[i] for i in chosen]
@@ -164,7 +163,7 @@ def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[Shape
 
 
 def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[DepthReached, ...]:
-    """Return how deep floats, instruments and releases come, from letting go to rest."""
+    """Largest depths of floats, instruments and releases, from release to rest."""
     parts: list[Piece | Clamp] = [*pieces[:-1], *clamps_in(pieces[:-1])]
     chain, states = drop.mover.chain, (*drop.states, *rest.states[1:])
     depth = np.array([_depths(chain, state) for state in states])
@@ -183,14 +182,14 @@ def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[Dept
 
 
 def _depths(chain: BarChain, state: ChainState) -> Floats:
-    """Of the deeper end of every piece, and of every clamp [m]."""
+    """Depths of every piece, at its deeper end, and of every clamp [m]."""
     upper, lower = piece_ends(chain, state)
     clamps = place_of(state, chain.clamp_bar, chain.clamp_place)
     return -np.append(np.minimum(upper[:, 2], lower[:, 2]), clamps[:, 2])
 
 
 def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
-    """Return the greatest tension in every piece from letting go to the touchdown."""
+    """Maximum tension in every piece from release to touchdown."""
     _, tension = piece_tensions(drop)
     latest = tension.argmax(axis=0).tolist()
     return tuple(
@@ -200,10 +199,12 @@ def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
 
 
 def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
-    """Return the tensions of every piece at its ends, (t-1, p, 2), and the greatest, (t-1, p) [N].
+    """Tensions of every piece at its ends, (t-1, p, 2), and their maximum over the piece, (t-1, p)
+    [N].
 
-    The first state is left out: the ship still tows, and the water flows past it otherwise.
-    Pieces that are rigid with the free end are one bar, and have the tensions of its ends.
+    The first state is omitted, since the ship still tows then and the flow past the line differs.
+    Pieces that are rigidly connected to the free end are one bar, and share the tensions of its
+    ends.
     """
     tension = np.array([end_tensions(drop.mover, one, within=True) for one in drop.states[1:]])
     ends = _ends_of_pieces(drop, tension)
@@ -215,21 +216,21 @@ def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
 
 
 def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
-    """Return (t, p, 2) of the pieces from (t, n, 2) of the bars [N]."""
+    """Tensions (t, p, 2) of the pieces from those (t, n, 2) of the bars [N]."""
     first, end = drop.mover.chain.bars.T
     last = np.maximum(end, first + 1) - 1
     found = np.stack([tension[:, first, 0], tension[:, last, 1]], axis=2)
-    # a piece without length is on the bar beside it
+    # a piece without length takes the values of the adjacent bar
     short = end == first
     found[:, short] = tension[:, first[short]].max(axis=2)[:, :, np.newaxis]
     return found
 
 
 def rest_difference(result: LegResult, rest: Motion) -> float:
-    """Farthest that an end of a piece comes to rest from its place in the equilibrium [m].
+    """Largest distance of a piece's end, at rest, from its equilibrium position [m].
 
-    Of a line that comes down on the seabed before its anchor, pieces that lie there are left out:
-    the equilibrium has them at the foot of the anchor, where here they go up to its top.
+    If the line has a touchdown before its anchor, pieces on the seabed are excluded: the
+    equilibrium has them at the foot of the anchor, while here they lead up to its top.
     """
     state = rest.states[-1]
     upper, lower = piece_ends(rest.mover.chain, state)
@@ -242,6 +243,6 @@ def rest_difference(result: LegResult, rest: Motion) -> float:
     )
     found = np.concatenate([upper, lower]) - [*state.node[-1, :2], 0.0]
     away = np.linalg.norm(found - expected, axis=1)
-    if result.anchor.grounded_length > 0.0:
+    if result.anchor_load.grounded_length > 0.0:
         away = away[expected[:, 2] > -result.leg.water.depth + 1e-6 * result.leg.water.depth]
     return float(away.max())

@@ -1,7 +1,7 @@
-"""The launch: what an anchor that is let go last does to the line above it, on its whole way down.
+"""Loads on the line during the descent of an anchor that is deployed last.
 
-The design check judges by it. The plan of the anchor drop (`calm.drop.plan`) is the same fall from
-the same start, in finer bars and steps, and told at length.
+The design check uses these values. The plan of the anchor drop (`calm.drop.plan`) is the same fall
+from the same start, with finer bars and steps, and more detailed results.
 """
 
 from dataclasses import dataclass, replace
@@ -17,40 +17,42 @@ from calm.drop.fall_record import piece_tensions
 from calm.drop.motion import FallingAnchor, NoStep
 from calm.errors import UsageError
 from calm.physics.line import Floats, Line, Water
-from calm.physics.track import head_count
 from calm.quantities import bearing_of
+from calm.solve import looped
 
 AXIAL_DRAG_BAND = 2.0
-"""Factor by which the drag along the line and of the anchor may be more, or less, than given."""
+"""Factor by which the tangential drag of the line and the drag of the anchor may be larger or
+smaller than specified.
+"""
 SHIP_SPEED = 1.0
-"""Of a ship that tows the line out [m/s]: some two knots."""
+"""Speed of a ship that tows the line out [m/s], about two knots."""
 SLOWEST_SHIP = 0.05
-"""Through the water, to stream a line at all [m/s]."""
-IN_SHORT = Fineness(bars=50, steps=50)
-"""For the design check: half as fine as the plan."""
+"""Lowest ship speed through the water that streams a line [m/s]."""
+CHECK_FINENESS = Fineness(bars=50, steps=50)
+"""Resolution for the design check, half the resolution of the plan."""
 
 
 @dataclass(frozen=True)
 class Launch:
     """The fall of a line behind its anchor, from a ship that tows it at 1 m/s against the current.
 
-    The jerk as the line comes straight, and its swing, are not in these figures.
+    The jerk as the line straightens, and its swing, are not included.
 
     Attributes
     ----------
-    fall_speed : that at which the anchor meets the seabed [m/s], + down
-    fall_speed_band : with the drag along cables, chains and cylinders, and the drag of the anchor,
-        doubled and halved in the last step: the slow and the fast speed [m/s]; nan where that
-        step is not found
-    anchor_tension : greatest pull of the line on the anchor [N]
+    fall_speed : touchdown speed of the anchor [m/s], positive down
+    fall_speed_band : slow and fast touchdown speed with the tangential drag of cables, chains and
+        cylinders, and the drag of the anchor, doubled and halved in the last step [m/s]; nan if
+        that step is not found
+    anchor_tension : maximum load of the line on the anchor [N]
     drift : velocity of the anchor to the east and to the north at touchdown [m/s]
-    tension_top, tension_bottom : (n,) greatest at the ends of every piece above the anchor, from
-        letting go to the touchdown [N]
-    anchor_drag_known : False where the anchor gives no `kt`: it is dragged as a cube
-    greatest_speed, greatest_tension : speed at touchdown [m/s] and tension of every piece (n,) [N];
-        where the anchor's drag is not known, those of one that has none in the last step, where
-        they are more
-    tangles : the pieces that have, or part of which has, been overtaken by what was above, at
+    tension_top, tension_bottom : (n,) maximum tension at the ends of every piece above the anchor,
+        from release to touchdown [N]
+    anchor_drag_known : False if the anchor has no `kt`; its drag is then that of a cube
+    greatest_speed, greatest_tension : largest touchdown speed [m/s] and tension of every piece (n,)
+        [N]; if the anchor's drag is unknown, also those without anchor drag in the last step, if
+        they are larger
+    tangles : pieces that have been overtaken, wholly or in part, by the line above them, at
         touchdown
     """
 
@@ -66,7 +68,7 @@ class Launch:
     tangles: tuple[int, ...]
 
     def components(self) -> list[dict[str, Any]]:
-        """Return the figures of the pieces above the anchor by their names."""
+        """Values of the pieces above the anchor, by their names in JSON."""
         pairs = zip(self.tension_top.tolist(), self.tension_bottom.tolist(), strict=True)
         return [
             {"index": index, "tension_top": top, "tension_bottom": bottom}
@@ -74,8 +76,8 @@ class Launch:
         ]
 
 
-def launch_of(leg: Leg, fineness: Fineness = IN_SHORT) -> Launch:
-    """Return the launch of a mooring, anchor last (NoEquilibrium: as `fall`)."""
+def launch_of(leg: Leg, fineness: Fineness = CHECK_FINENESS) -> Launch:
+    """Compute the launch of a mooring, anchor last. Raises NoEquilibrium, see `fall`."""
     line, water, anchor = falling_line(leg), leg.water, falling_anchor(leg)
     ship = ship_of(leg, SHIP_SPEED, course_into_current(water))
     drop = leg.memory.of(_let_go, line, water, anchor, ship, fineness)
@@ -120,17 +122,17 @@ def _let_go(
 
 
 def falling_line(leg: Leg) -> Line:
-    """Return the line of a mooring with the drag that its clamps have in the fall."""
+    """Return the line of a mooring with the drag of its clamps during the fall."""
     return with_axial_clamps(leg.line, leg.file.pieces[:-1])
 
 
 def falling_anchor(leg: Leg) -> FallingAnchor:
-    """Return the anchor of a mooring as it falls."""
+    """Return the falling anchor of a mooring."""
     return FallingAnchor(leg.anchor_weight, leg.anchor_drag)
 
 
 def course_into_current(water: Water) -> float:
-    """Return the course against the current at the surface, north where there is none [degrees]."""
+    """Course against the current at the surface, north in still water [degrees]."""
     east, north, _ = water.current_at(np.zeros(()))
     return bearing_of(-east, -north) if east or north else 0.0
 
@@ -140,13 +142,14 @@ def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None
 
     Parameters
     ----------
-    speed, course : over the ground [m/s], [degrees]
-    streamed : horizontal distance from the anchor to the free end [m]; as it is towed if not given
+    speed, course : speed and course over the ground [m/s], [degrees]
+    streamed : horizontal distance from the anchor to the free end [m]; by default the distance
+        under tow
 
     Raises
     ------
     UsageError
-        It makes no way through the water, or the line does not span the distance.
+        The ship does not move through the water, or the line is shorter than the distance.
     """
     east, north = speed * sin(radians(course)), speed * cos(radians(course))
     u, v, _ = leg.water.current_at(np.zeros(()))
@@ -166,11 +169,11 @@ def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None
 
 
 def _at_last(drop: Motion, fineness: Fineness, along: float, of_anchor: float) -> Motion:
-    """Return the last step of a fall with the drag along the line, and of the anchor, so many times
-    as great.
+    """Recompute the last step of a fall with the tangential drag of the line, and the drag of the
+    anchor, multiplied by factors.
     """
     landed, falling = drop.states[-1], drop.mover
-    # the step in which it landed ends there, and may be very short
+    # the step ends at the touchdown and may be very short
     least = 0.5 * falling.sea.water.depth / fineness.steps
     before = next(
         state for state in reversed(drop.states) if state.node[-1, 2] - landed.node[-1, 2] > least
@@ -184,8 +187,6 @@ def _at_last(drop: Motion, fineness: Fineness, along: float, of_anchor: float) -
 
 
 def _tangles(drop: Motion) -> tuple[int, ...]:
-    """Return the pieces with a bar whose lower end is up when the anchor lands."""
-    chain, height = drop.mover.chain, drop.states[-1].node[:, 2]
-    back = np.diff(height) > 0.0
-    pieces = np.unique(chain.piece[back])
-    return tuple(int(piece) for piece in pieces if piece >= head_count(chain.line))
+    """Pieces with a bar that is upside down at touchdown."""
+    chain = drop.mover.chain
+    return looped(chain.line, chain.piece, np.diff(drop.states[-1].node[:, 2]))

@@ -1,4 +1,4 @@
-"""Forces on the loads of a chain that moves, and how they change with its motion."""
+"""Forces on the loads of a moving chain, and their derivatives."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,19 +11,20 @@ from calm.physics.line import Floats, Water
 from calm.physics.seawater import REFERENCE_DENSITY
 
 SLOWEST = 1e-3
-"""Speed below which drag goes with the speed and not with its square [m/s]; else a line at rest
-would have nothing to keep it where it is."""
+"""Speed below which drag is proportional to the speed instead of its square [m/s]; otherwise a line
+at rest would have no resistance to motion.
+"""
 
 
 @dataclass(frozen=True)
 class WaterColumn:
-    """Water by depth with its gradients.
+    """Water by depth, with its gradients.
 
     Attributes
     ----------
     water : the sea
-    skin : thickness of the layer below the surface in which what floats there loses its buoyancy,
-        where nothing is known of its hull [m]
+    skin : thickness of the layer below the surface in which a float with an unknown hull loses its
+        buoyancy [m]
     """
 
     water: Water
@@ -31,7 +32,7 @@ class WaterColumn:
 
     @cached_property
     def _rows(self) -> tuple[Floats, Floats]:
-        """Rows u, v, w, density at every level, and their growth per metre below it."""
+        """Rows u, v, w, density at every level, and their increase per metre below it."""
         water = self.water
         values = np.stack([water.u, water.v, water.w, water.density])
         slopes = np.zeros((4, values.shape[1] + 1))
@@ -39,7 +40,7 @@ class WaterColumn:
         return values, slopes
 
     def at(self, depth: Floats) -> tuple[Floats, Floats, Floats]:
-        """Current (3, k), its growth per metre of depth (3, k), and density (k,)."""
+        """Current (3, k), its increase per metre of depth (3, k), and density (k,)."""
         values, slopes = self._rows
         interval = self.water.level.searchsorted(depth, side="right")
         origin = np.maximum(interval - 1, 0)
@@ -51,14 +52,14 @@ class WaterColumn:
 
 @dataclass(frozen=True)
 class Loads:
-    """Forces on the k loads of a chain and what they change by.
+    """Forces on the k loads of a chain, and their derivatives.
 
     Attributes
     ----------
-    force : (3, k) [N]
-    by_flow : (3, 3, k) per metre per second of the water past the load
-    by_axis : (3, 3, k) per unit that its bar's axis turns by, at right angles to it
-    by_height : (3, k) per metre upward, the current it meets there included
+    force : (3, k) force [N]
+    by_flow : (3, 3, k) derivative by the velocity of the water past the load [N/(m/s)]
+    by_axis : (3, 3, k) derivative by the unit axis of the bar, normal to this axis [N]
+    by_height : (3, k) derivative by height, including the change of the current [N/m]
     """
 
     force: Floats
@@ -77,16 +78,16 @@ def loads_on(
     variation: Floats,
     slowest: float = SLOWEST,
 ) -> Loads:
-    """The forces on a chain's loads.
+    """Compute the forces on the loads of a chain.
 
     Parameters
     ----------
-    height : (k,) of the loads above the surface [m]
-    velocity : (3, k) over the ground [m/s]
-    axis : (3, k) of their bars, unit, downward along the line
-    strain : (k,) of their bars
-    variation : (k,) how many times its constant drag a smooth body has
-    slowest : speed below which drag goes with the speed [m/s]
+    height : (k,) height of the loads above the surface [m]
+    velocity : (3, k) velocity over the ground [m/s]
+    axis : (3, k) unit axis of their bars, downward along the line
+    strain : (k,) strain of their bars
+    variation : (k,) ratio of a smooth body's drag to its constant drag
+    slowest : speed below which drag is linear in the speed [m/s]
     """
     on = chain.elements
     current, shear, density = sea.at(-height)
@@ -102,7 +103,7 @@ def loads_on(
     square, slope, aside, oblique = _friction(chain, kt, along, speed, slowest)
     sized = kn * size
     drag = sized * across + square * axis
-    # d(s n)/dn of the normal drag is s + n n/s; n = V - (V.t) t is at right angles to t
+    # d(s n)/dn of the normal drag is s + n n/s; n = V - (V.t) t is normal to t
     held, skewed = wet * sized, wet * (slope - on.directional * sized)
     turned = wet * square - along * held
     normal = (wet * kn / size * across)[:, np.newaxis] * across
@@ -133,16 +134,18 @@ _DIAGONAL = np.arange(3), np.arange(3)
 def _friction(
     chain: BarChain, kt: Floats, along: Floats, speed: Floats, slowest: float
 ) -> tuple[Floats, Floats, Floats | None, Floats | None]:
-    """Drag along the axis, its growth with the flow along it and, times the flow, with all of it.
+    """Return the tangential drag, its derivative by the tangential flow and, times the flow, its
+    derivative by the speed.
 
-    The last is of Hoerner's law: the drag that goes with the flow, over that flow. None is none.
+    The last result, for Hoerner's law only, is the drag parallel to the flow, divided by the flow.
+    None means zero.
     """
     law = chain.line.friction
     straight = kt * np.sqrt(along**2 + slowest**2)
     square, slope = straight * along, 2.0 * straight
     cable = chain.elements.flexible
     if law is Friction.CONSTANT:
-        # the whole of V², towards where the flow goes along the cable
+        # |V|² in the direction of the tangential flow
         sign = along / np.sqrt(along**2 + slowest**2)
         square = np.where(cable, kt * speed**2 * sign, square)
         slope = np.where(cable, kt * speed**2 * (1.0 - sign**2) / np.hypot(along, slowest), slope)
@@ -156,11 +159,10 @@ def _friction(
 def _afloat(
     chain: BarChain, sea: WaterColumn, height: Floats, density: Floats
 ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-    """Net force, its growth per metre upward, share of the drag and its growth, push of the wind.
+    """Return net force, its derivative by height, wetted share and its derivative, and wind force.
 
-    What lifts loses its buoyancy over the skin of the sea as its top comes out; where its mass is
-    known it then weighs on the line. A float whose hull is known loses it, and its drag, by its
-    draft.
+    Buoyant loads lose their buoyancy over the surface layer as their top emerges; a load of known
+    mass then weighs on the line. A float with a known hull loses buoyancy and drag by its draft.
     """
     on, gravity = chain.elements, sea.water.gravity
     net = on.buoyancy + (density - REFERENCE_DENSITY) * gravity * on.volume
@@ -193,4 +195,4 @@ def _afloat(
 
 
 _STEP = 1e-3
-"""Of a draft, to find what a hull's buoyancy grows by."""
+"""Step of the draft for the derivative of a hull's buoyancy."""

@@ -1,44 +1,48 @@
-"""A step of a chain without inertia: where its nodes are a moment later.
+"""A time step of a chain without inertia: positions of its nodes at the end of the step.
 
-The forces on every node cancel at the end of the step, with drag by the velocity V = (X - Xₙ)/Δt
-over it (implicit Euler), and every bar is as long as its tension makes it. Unknown are the nodes
-and the tensions, together: so a bar may be as stiff as it is, or inextensible. Newton's method; the
-matrix is a band.
+The forces on every node cancel at the end of the step, with drag for the velocity V = (X - Xₙ)/Δt
+over the step (implicit Euler), and the length of every bar follows from its tension. Nodes and
+tensions are unknown together, so that bars may be stiff or inextensible. The equations are solved
+by Newton's method; a node and the bar below it are one block of a block-tridiagonal matrix.
 """
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
 from calm.drop.chain import BarChain
 from calm.drop.loads import SLOWEST, Loads, WaterColumn, loads_on
-from calm.physics.line import Floats, Integers
+from calm.physics.line import Floats
 from calm.physics.reynolds import Smooth, drag_variation
 from calm.physics.seawater import REFERENCE_DENSITY
+from calm.solve.block_tridiagonal import solve_blocks
 
 MOST_ROUNDS = 16
-"""Of Newton's method; a step that takes more is too long."""
-GENTLE = 10.0
-"""Speed below which drag goes with the speed, in the first round of a step from rest [m/s]."""
+"""Largest number of Newton iterations; a step that needs more is too long."""
+LINEAR_DRAG_SPEED = 10.0
+"""Speed below which drag is linear in the speed, in the first iteration of a step from rest
+[m/s].
+"""
 CLOSE = 1e-5
-"""Last change of a place, as a share of the line, and of a tension, as one of all the weights; what
-is left is of the order of its square."""
+"""Tolerance of the last change of a position, as a share of the line, and of a tension, as a share
+of all weights; the remaining error is of the order of its square.
+"""
 SINKING = 1e-4
-"""Depth into the seabed at which it bears what lies there, as a share of the water's depth."""
+"""Penetration of the seabed at which it carries a node, as a share of the water depth."""
 
 _UNIT = np.eye(3)
 
 
 class NoStep(ArithmeticError):
-    """Newton's method does not find a step; it may find a shorter one."""
+    """Newton's method does not find a step, although it may find a shorter step."""
 
 
 def _overturned(before: Floats, after: Floats) -> bool:
-    """Return whether a bar has turned by more than 120°: it may then be pushed, not pulled."""
+    """Whether a bar has rotated by more than 120°, so that it may be under compression."""
     chords = before[1:] - before[:-1], after[1:] - after[:-1]
     along = np.einsum("ij,ij->i", *chords)
-    if along.min() >= 0.0:  # as nearly always
+    if along.min() >= 0.0:  # almost always
         return False
     sizes = np.prod([np.linalg.norm(chord, axis=1) for chord in chords], axis=0)
     return bool((along < -0.5 * sizes).any())
@@ -46,12 +50,12 @@ def _overturned(before: Floats, after: Floats) -> bool:
 
 @dataclass(frozen=True)
 class FallingAnchor:
-    """An anchor below a line that falls.
+    """An anchor below a falling line.
 
     Attributes
     ----------
-    weight : in the water at the seabed [N]
-    drag : K of its drag K|V|V in reference water [N/(m/s)²]; 0 where none is known
+    weight : weight in water at the seabed [N]
+    drag : K of its drag K|V|V in reference water [N/(m/s)²]; 0 if unknown
     """
 
     weight: float
@@ -60,14 +64,14 @@ class FallingAnchor:
 
 @dataclass(frozen=True)
 class ChainState:
-    """Hold where a chain is.
+    """State of a chain.
 
     Attributes
     ----------
-    time : since it was let go [s]
-    node : (n+1, 3) east, north, up [m]
-    tension : (n,) in the bars at their middle [N]
-    velocity : (n+1, 3) over the step that led here [m/s]
+    time : time since the release [s]
+    node : (n+1, 3) position of the nodes east, north, up [m]
+    tension : (n,) tension at the midpoint of the bars [N]
+    velocity : (n+1, 3) mean velocity over the last step [m/s]
     """
 
     time: float
@@ -78,13 +82,13 @@ class ChainState:
 
 @dataclass(frozen=True)
 class Mover:
-    """A chain in its sea.
+    """A chain in the sea.
 
     Attributes
     ----------
-    held : whether its lower end stays where it is; else it falls with the anchor
-    bedded : whether the seabed bears what comes to lie on it
-    tether : (2,) horizontal place to which its free end is brought [m]; None where that is free
+    held : whether its lower end is fixed; otherwise it falls with the anchor
+    bedded : whether the seabed supports the line
+    tether : (2,) horizontal position of its free end [m]; None if it is free
     """
 
     chain: BarChain
@@ -95,11 +99,11 @@ class Mover:
     tether: Floats | None = None
 
     def stepped(self, state: ChainState, step: float, gently: bool = False) -> ChainState:
-        """The state a time later [s].
+        """Return the state at the end of a time step [s].
 
-        A line at rest begins to move by rounds in which drag goes with the speed: they find the way
-        to where it goes with the square. So does one that is to be moved `gently`, as if it were at
-        rest. NoStep: where Newton's method does not find it.
+        For a line at rest, the first iterations use a drag that is linear in the speed, as a start
+        for the quadratic drag. `gently` does the same for a moving line. Raises NoStep if Newton's
+        method does not converge.
         """
         variation = self.variation(state)
         gently = gently or not state.velocity.any()
@@ -110,7 +114,7 @@ class Mover:
             node[0, :2] = self.tether
         tension = state.tension.copy()
         reach = float(self.chain.length.sum())
-        slowest = GENTLE if gently else SLOWEST
+        slowest = LINEAR_DRAG_SPEED if gently else SLOWEST
         nearer = np.inf
         for _ in range(MOST_ROUNDS):
             moved = self._change(state.node, node, tension, variation, step, slowest)
@@ -132,7 +136,7 @@ class Mover:
 
     @cached_property
     def scale(self) -> float:
-        """Return what forces are measured by [N]."""
+        """Scale of forces [N]: the weight of the anchor plus all absolute buoyancies."""
         return self.anchor.weight + float(np.abs(self.chain.elements.buoyancy).sum())
 
     def loads(
@@ -143,9 +147,9 @@ class Mover:
         variation: Floats,
         slowest: float = SLOWEST,
     ) -> tuple[Loads, Floats, Floats]:
-        """The forces on the loads, the axes (3, n) of the bars and their lengths (n,) [m].
+        """Return the forces on the loads, the axes (3, n) of the bars and their lengths (n,) [m].
 
-        Of nodes and velocities (3, n+1), and strains of bars (n,).
+        Inputs are positions and velocities of the nodes (3, n+1), and strains of the bars (n,).
         """
         on = self.chain.elements
         bar, (above, below) = on.bar, on.share
@@ -161,7 +165,9 @@ class Mover:
         return loads, axis, length
 
     def strain(self, tension: Floats) -> tuple[Floats, Floats]:
-        """(n,) of the bars and what it grows by [1/N]; a rope that is pushed is as one at rest."""
+        """Strain (n,) of the bars and its derivative [1/N]; a compressed rope has the strain at
+        zero tension.
+        """
         strain, growth = self.chain.compliance * tension, self.chain.compliance.copy()
         for bars, knots in self.chain.elongation:
             pull = np.maximum(tension[bars], 0.0)
@@ -174,7 +180,9 @@ class Mover:
     def anchor_force(
         self, node: Floats, velocity: Floats, slowest: float = SLOWEST
     ) -> tuple[Floats, Floats]:
-        """Weight and drag of the falling anchor (3,) [N], and its change with velocity (3, 3)."""
+        """Weight and drag of the falling anchor (3,) [N], and the derivative by its velocity (3,
+        3).
+        """
         current, _, density = self.sea.at(-node[2, -1:])
         flow = current[:, 0] - velocity[:, -1]
         k = self.anchor.drag * float(density[0]) / REFERENCE_DENSITY
@@ -183,7 +191,9 @@ class Mover:
         return force, -k * (speed * _UNIT + flow[:, np.newaxis] * flow / speed)
 
     def variation(self, state: ChainState) -> Floats:
-        """(k,) by how much a smooth body's drag differs from the constant one, as it moved last."""
+        """Ratio (k,) of a smooth body's drag to the constant drag, for the motion of the last
+        step.
+        """
         on = self.chain.elements
         variation = np.ones(len(on.bar))
         for element, curve in enumerate(on.curve):
@@ -211,14 +221,16 @@ class Mover:
         step: float,
         slowest: float,
     ) -> Floats:
-        """Return (n+1, 4) what nodes and tensions are too much by; the last tension is none's."""
+        """Return the Newton correction (n+1, 4) of nodes and tensions; the last tension is a
+        dummy.
+        """
         chain, on = self.chain, self.chain.elements
         node = np.ascontiguousarray(node.T)
         velocity = (node - before.T) / step
         strain, growth = self.strain(tension)
         loads, axis, length = self.loads(node, velocity, strain, variation, slowest)
         bars = len(length)
-        # of nodes and bars in turn, as the unknowns
+        # nodes and bars alternate, as do the unknowns
         residual = np.zeros((4, bars + 1))
         pull = tension * axis
         upper, lower = on.summed(on.share[:, np.newaxis] * loads.force)
@@ -229,7 +241,7 @@ class Mover:
         own = loads.by_flow / -step
         own[:, 2] += loads.by_height
         leaning = loads.by_axis / length[on.bar]
-        # by the place of the upper and of the lower end, each shared between the two
+        # derivatives by the positions of the upper and the lower end, distributed to both
         by_end = on.share[:, np.newaxis, np.newaxis] * own
         by_end[0] -= leaning
         by_end[1] += leaning
@@ -254,7 +266,7 @@ class Mover:
 
     @cached_property
     def _bearing(self) -> Floats:
-        """(n,) of the seabed on a node that has sunk in by `SINKING` [N]."""
+        """Reaction (n,) of the seabed on a node that has penetrated by `SINKING` [N]."""
         on = self.chain.elements
         weight = on.summed(np.abs(on.buoyancy))
         weight[1:] += weight[:-1]
@@ -263,17 +275,10 @@ class Mover:
 
     @cached_property
     def _fixed(self) -> tuple[int, ...]:
-        """The rows of the unknowns that are known: where the ends of the chain are held."""
+        """Indices of the known unknowns, at held ends of the chain."""
         last = 4 * len(self.chain.length)
         upper = () if self.tether is None else (0, 1)
         return (*upper, last, last + 1, last + 2) if self.held else upper
-
-
-_SIDE = 6
-"""Diagonals of the band on either side."""
-_MIDDLE = 2 * _SIDE
-"""Row of the main diagonal; those above the band are for the factors."""
-_ROWS = 3 * _SIDE + 1
 
 
 def _solved(
@@ -284,53 +289,31 @@ def _solved(
     slack: Floats,
     fixed: tuple[int, ...],
 ) -> Floats:
-    """(n+1, 4) what the nodes and tensions are too much by; 0 at the very last.
+    """Solve for the correction (n+1, 4) of nodes and tensions, with 0 for the last tension.
 
     Parameters
     ----------
-    residual : (4, n+1) of the forces on the nodes and of the lengths of the bars
-    diagonal : (3, 3, n+1) change of the force on a node with its own place
-    beside : (3, 3, n) each; that on the node above with the place of the one below, and the
-        other way round
-    axis : (3, n) of the bars, downward
-    slack : (n,) by how much a bar is longer with its tension, negative
-    fixed : rows of the unknowns that are known
+    residual : (4, n+1) residual forces on the nodes and residual lengths of the bars
+    diagonal : (3, 3, n+1) derivative of the force on a node by its own position
+    beside : (3, 3, n) each; derivative of the force on a node by the position of the node below,
+        and by that of the node above
+    axis : (3, n) axes of the bars, downward
+    slack : (n,) derivative of a bar's length by its tension, negative
+    fixed : rows of the known unknowns
     """
-    from scipy.linalg.lapack import dgbsv
-
-    size = 4 * len(slack) + 4
-    band = np.zeros((size, _ROWS))
-    blocks = (diagonal, *beside, axis, -axis, -axis, axis, slack)
-    band.reshape(-1)[_places(len(slack))] = np.concatenate([block.reshape(-1) for block in blocks])
-    equations = residual.T.reshape(-1)
-    band[-1, _MIDDLE], equations[-1] = 1.0, 0.0
-    for row in fixed:
-        columns = np.arange(max(row - _SIDE, 0), min(row + _SIDE + 1, size))
-        band[columns, _MIDDLE + row - columns] = 0.0
-        band[row, _MIDDLE], equations[row] = 1.0, 0.0
-    _, _, change, singular = dgbsv(
-        _SIDE, _SIDE, band.T, equations, overwrite_ab=True, overwrite_b=True
-    )
-    found: Floats = change.reshape(-1, 4)
-    return np.full_like(found, np.nan) if singular else found
-
-
-@lru_cache
-def _places(bars: int) -> Integers:
-    """Return where the blocks stand in the band, one column after another."""
-    node = np.arange(3)[:, np.newaxis] + 4 * np.arange(bars + 1)
-    pull = 4 * np.arange(bars) + 3
-    above, below = node[:, :-1], node[:, 1:]
-    rows_and_columns = (
-        (node[:, np.newaxis], node),
-        (above[:, np.newaxis], below),
-        (below[:, np.newaxis], above),
-        (above, pull),
-        (below, pull),
-        (pull, above),
-        (pull, below),
-        (pull, pull),
-    )
-    return np.concatenate(
-        [(column * _ROWS + _MIDDLE + row - column).reshape(-1) for row, column in rows_and_columns]
-    )
+    nodes, along = residual.shape[1], axis.T
+    own, upper = np.zeros((nodes, 4, 4)), np.zeros((nodes - 1, 4, 4))
+    lower, equations = np.zeros((nodes - 1, 4, 4)), residual.T.copy()
+    own[:, :3, :3] = diagonal.transpose(2, 0, 1)
+    own[:-1, :3, 3], own[:-1, 3, :3], own[:-1, 3, 3] = along, -along, slack
+    upper[:, :3, :3], lower[:, :3, :3] = (each.transpose(2, 0, 1) for each in beside)
+    upper[:, 3, :3], lower[:, :3, 3] = along, -along
+    for node, row in (divmod(each, 4) for each in (*fixed, 4 * nodes - 1)):
+        own[node, row], equations[node, row] = 0.0, 0.0
+        own[node, row, row] = 1.0
+        if node:
+            lower[node - 1, row] = 0.0
+        if node < nodes - 1:
+            upper[node, row] = 0.0
+    found: Floats = solve_blocks(own, upper, lower, equations[..., np.newaxis])[..., 0]
+    return found

@@ -1,4 +1,4 @@
-"""From a mooring and a ship to the plan of its anchor drop, which the ship has to know before."""
+"""Plan of an anchor drop, from a mooring and a ship, for use on board."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -15,28 +15,30 @@ from calm.drop.fall_record import rest_difference
 from calm.drop.motion import ChainState
 from calm.errors import NoEquilibrium
 from calm.files import Position
+from calm.files.definition import in_si
 from calm.physics.line import Floats
 from calm.positions import Frame
 from calm.quantities import bearing_of
 from calm.solve import Status
 
-ASTRAY = 1e-3
-"""Share of the depth by which the line may come to rest elsewhere than its equilibrium; beyond it
-nothing of what comes after the touchdown is shown."""
+REST_TOLERANCE = 1e-3
+"""Allowed distance between the line at rest and its equilibrium, as a share of the depth; beyond
+it, results after the touchdown are not shown.
+"""
 
-BRIEF = 60.0
-"""Fall time below which what is left out, inertia, shows in the figures [s]."""
+SHORT_FALL = 60.0
+"""Fall time below which the neglected inertia affects the results noticeably [s]."""
 
 
 @dataclass(frozen=True)
 class RunStart:
-    """Hold where the first piece goes over the side, and how long the run is.
+    """Start of the run, when the first piece is deployed, and length of the run.
 
     Attributes
     ----------
-    distance : before the target, along the ship's course; negative beyond it [m]
-    time : until the anchor is let go [s]
-    place : east and north of the target [m]
+    distance : distance to the target, along the ship's course; negative past the target [m]
+    time : time until the release of the anchor [s]
+    place : position east and north of the target [m]
     """
 
     distance: float
@@ -46,35 +48,37 @@ class RunStart:
 
 @dataclass(frozen=True)
 class DropPlan:
-    """The drop of a mooring's anchor, the line streamed behind the ship, anchor last.
+    """Anchor drop of a mooring, anchor last, with the line streamed behind the ship.
 
-    Lengths and depths [m], times [s], speeds [m/s], forces [N], directions [degrees] clockwise
-    from north. Distances are positive towards the float, which is where the line streams.
+    Lengths and depths are in m, times in s, speeds in m/s, forces in N, and directions in degrees
+    clockwise from north. Distances are positive towards the float, which is the direction in which
+    the line streams.
 
     Attributes
     ----------
-    ship_speed, course : of the ship over the ground
-    streamed : horizontal distance from the anchor to the free end when the anchor is let go
-    astern : direction from the anchor to the free end then
-    fall_time : until the anchor stands on the seabed
-    fall_back : how far from where it was let go it lands, towards the float
-    aside : how far it lands to the right of that direction, seen from where it was let go
-    time_error, distance_error : of `fall_time` and of `fall_back`, `aside`: twice what steps of
-        twice the length change and bars of twice the length do, together; of the time 0.05 % at
-        least
-    fall_time_band, fall_back_band : with the anchor's drag halved and doubled, the less first
-    touchdown_speed : of the anchor as it meets the seabed
-    greatest_tension : in the line, from letting go to the touchdown
-    tow_past : how far along its course the ship tows beyond the target before it lets go
-    let_go : where the anchor is let go, east and north of the target
-    deck_time : of handling a piece, by its role [s]; None where it is not given
-    start : of the run, with the float put out first; None without a deck time
-    anchor_drag : K of the anchor [N/(m/s)²]; `drag_known` is False where it is that of a cube,
-        since the file gives none
-    path, moments, depths, pulls : over time; shapes; of floats, instruments and releases, empty
-        where the line comes to rest away from its equilibrium; of pieces
-    rest_difference : farthest that a piece comes to rest from its place in the equilibrium; None
-        where still water leaves the line slack, so that it has no single one
+    ship_speed, course : speed and course of the ship over the ground
+    streamed : horizontal distance from the anchor to the free end at the release of the anchor
+    astern : direction from the anchor to the free end at the release
+    fall_time : time until the touchdown of the anchor
+    fall_back : horizontal distance from the release to the touchdown, towards the float
+    aside : distance of the touchdown to the right of this direction, seen from the release
+    time_error, distance_error : errors of `fall_time`, and of `fall_back` and `aside`: twice the
+        sum of the changes for steps of twice the length and bars of twice the length; for the time
+        at least 0.05 % least
+    fall_time_band, fall_back_band : range for half and twice the anchor's drag, the smaller value
+        first
+    touchdown_speed : speed of the anchor at touchdown
+    greatest_tension : maximum tension in the line, from release to touchdown
+    tow_past : distance past the target, along the course, at which the anchor is released
+    let_go : release position of the anchor, east and north of the target
+    deck_time : time to handle a piece, by its role [s]; None if not specified
+    start : start of the run, with the float deployed first; None without a deck time
+    anchor_drag : K of the anchor [N/(m/s)²]; `drag_known` is False if it is that of a cube,
+        since the file has no value
+    path, moments, depths, pulls : time series; shapes; depths of floats, instruments and releases,
+        empty if the line settles away from its equilibrium; tensions of pieces
+    rest_difference : largest distance of a piece at rest from its equilibrium position; None
+        if the line is slack in still water and has no unique equilibrium
     """
 
     mooring: Design = field(repr=False)
@@ -104,9 +108,10 @@ class DropPlan:
     rest_difference: float | None
 
     def position(self, place: tuple[float, float]) -> Position | None:
-        """The position of a place east and north of the target [m]; None where the target has none.
+        """Geographic position of a point east and north of the target [m]; None if the target has
+        none.
 
-        On WGS 84; by the tangent plane, within 1 m up to 10 km away.
+        Uses the tangent plane of the WGS 84 ellipsoid, accurate within 1 m up to 10 km away.
         """
         target = self.mooring.file.position
         if target is None:
@@ -117,37 +122,35 @@ class DropPlan:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Return what makes the plan less certain than it looks."""
+        """Warnings about assumptions and doubtful results of the plan."""
         said = []
         if not self.drag_known:
-            said.append(
-                "The anchor gives no `kt`: its drag is taken to be that of a cube of its volume."
-            )
+            said.append("The anchor has no `kt`; the drag of a cube of equal volume is assumed.")
         if self.rest_difference is None:
             said.append(
-                "In still water the line is slack and has no single shape at rest: where it comes "
-                "to rest is not compared with an equilibrium."
+                "In still water the line is slack and its shape is not unique, so the line at rest "
+                "is not compared with an equilibrium."
             )
-        elif self.rest_difference > ASTRAY * self.mooring.water.depth:
+        elif self.rest_difference > REST_TOLERANCE * self.mooring.water.depth:
             said.append(
-                f"The line comes to rest {self.rest_difference:.2f} m from its equilibrium, more "
-                "than a thousandth of the depth: the depths of instruments are not shown, and the "
-                "fall is doubtful as well."
+                f"The line settles {self.rest_difference:.2f} m from its equilibrium, more than a "
+                "thousandth of the depth. The depths of instruments are not shown, and the results "
+                "of the fall are uncertain."
             )
-        if self.fall_time < BRIEF:
+        if self.fall_time < SHORT_FALL:
             said.append(
-                f"The fall takes {self.fall_time:.0f} s only: inertia, which is neglected, may "
-                "add half a second and change the fall-back by a metre."
+                f"The fall takes only {self.fall_time:.0f} s. Inertia is neglected; it may add "
+                "half a second and change the fall-back by a metre."
             )
         if self.mooring.line.strumming is not None:
-            said.append("Strumming is neglected: cables have their drag at rest.")
+            said.append("Strumming is neglected; the drag of cables is that at rest.")
         names = ", ".join(each.label for each in self.depths if each.beyond)
         if names:
-            said.append(f"Below their depth rating during the drop: {names}.")
+            said.append(f"Depth rating exceeded during the drop: {names}.")
         return tuple(said)
 
     def to_dict(self) -> dict[str, Any]:
-        """The plan as JSON; figures in SI."""
+        """Return the plan as a JSON object, in SI units."""
         let_go, start = self.position(self.let_go), self.start
         first = None if start is None else self.position(start.place)
         return {
@@ -185,55 +188,62 @@ _AS_THEY_ARE = (
     *("fall_time", "fall_back", "touchdown_speed", "greatest_tension", "tow_past", "aside"),
     *("streamed", "ship_speed", "course", "astern", "anchor_drag", "rest_difference"),
 )
-"""Figures of a plan that its JSON has under their own names."""
+"""Values of a plan that have the same names in its JSON."""
 
 FINE = Fineness(bars=100, steps=100)
 FINEST = 4
-"""Times as many bars at most, until the line comes to rest in its equilibrium."""
+"""Largest factor by which the number of bars is increased, until the line settles in its
+equilibrium.
+"""
 DRAG_BAND = 2.0
-"""By how many times the anchor's drag may be more, or less, than given."""
-CAUTION = 2.0
-"""How many times what steps and bars of twice the length change the stated errors are."""
+"""Factor by which the anchor's drag may be larger or smaller than specified."""
+ERROR_SAFETY = 2.0
+"""Safety factor on the changes for steps and bars of twice the length, in the stated errors."""
 LEAST_TIME_ERROR = 5e-4
-"""Of the fall time, where the changes by steps and bars happen to be small."""
+"""Smallest relative error of the fall time, in case the changes happen to be small."""
 
 
 def drop_plan(
     mooring: Design,
-    ship_speed: float = launch.SHIP_SPEED,
-    streamed: float | None = None,
-    course: float | None = None,
+    ship_speed: float | str = launch.SHIP_SPEED,
+    streamed: float | str | None = None,
+    course: float | str | None = None,
     result: Result | None = None,
     fineness: Fineness = FINE,
     deck_time: Mapping[str, float] | None = None,
 ) -> DropPlan:
-    """The drop of a mooring's anchor from a ship that streams the line, the anchor last.
+    """Plan the anchor drop of a mooring from a ship that streams the line, anchor last.
 
     Parameters
     ----------
-    ship_speed : over the ground [m/s]
-    streamed : horizontal distance from the anchor to the free end when it is let go [m]; that of
-        the line as it is towed where not given
-    course : of the ship over the ground [degrees]; against the current at the surface where not
-        given, and north where there is none
-    result : of the mooring in the same environment, where it is solved already
-    fineness : of the chain and its steps
-    deck_time : of handling a piece before it goes over, by its role [s]; without it no start of the
-        run is given, since most of the time goes there
+    ship_speed : speed of the ship over the ground [m/s]; `ship_speed`, `streamed` and `course` may
+        be texts with a unit, such as ``"2 knot"``
+    streamed : horizontal distance from the anchor to the free end at the release [m]; by default
+        the distance under tow
+    course : course of the ship over the ground [degrees]; by default against the current at the
+        surface, or north in still water
+    result : result of the mooring in the same environment, if already solved
+    fineness : resolution of the chain and its steps
+    deck_time : time to handle a piece before it goes over the side, by its role [s]; without it the
+        start of the run is not computed, since handling takes most of the time
 
     Raises
     ------
     UsageError
-        A ship that makes no way through the water, or a distance that the line does not span; a
-        tow, or several legs.
+        The ship does not move through the water, the line is shorter than the distance, or the file
+        has a tow, or several legs.
     NoEquilibrium
-        As `Design.solve`; ``anchor-lifts`` where the anchor does not draw the line down,
-        ``not-converged`` where no step is found.
+        As `Design.solve`; ``anchor-lifts`` if the anchor does not pull the line down,
+        ``not-converged`` if no step is found.
     """
     leg = mooring.moored
+    ship_speed = in_si("ship_speed", ship_speed, "speed")
+    streamed = None if streamed is None else in_si("streamed", streamed, "length")
+    if course is None:
+        course = launch.course_into_current(leg.water)
+    course = in_si("course", course, "angle") % 360.0
     if result is None:
         result = _equilibrium(mooring)
-    course = launch.course_into_current(leg.water) if course is None else course % 360.0
     ship = launch.ship_of(leg, ship_speed, course, streamed)
     anchor, falling = launch.falling_anchor(leg), launch.falling_line(leg)
     water = leg.water
@@ -242,14 +252,14 @@ def drop_plan(
         return fall(falling, water, replace(anchor, drag=drag), start, fineness)
 
     def dropped(fine: Fineness) -> tuple[ChainState, Motion, Motion, float | None]:
-        """The line as it is towed, its fall and its rest, and how far from its equilibrium."""
+        """Return the line under tow, its fall, its rest, and the distance from its equilibrium."""
         start = towed(falling, water, anchor, ship, fine)
         drop = let_go(start, anchor.drag, fine)
         rest = settle(leg.line, water, anchor, drop.states[-1], fine)
         return start, drop, rest, None if result is None else rest_difference(result.leg, rest)
 
     def is_astray(difference: float | None) -> bool:
-        return difference is not None and difference > ASTRAY * water.depth
+        return difference is not None and difference > REST_TOLERANCE * water.depth
 
     fine = fineness
     start, drop, rest, difference = dropped(fine)
@@ -272,7 +282,7 @@ def drop_plan(
     ]
     landed, late = drop.states[-1], slower.states[-1]
     back, aside = _split(landed, toward)
-    # of steps twice as long, and of bars
+    # changes for steps and for bars of twice the length
     missed = [
         np.subtract(_split(other.states[-1], toward), (back, aside)) for other in (slower, coarser)
     ]
@@ -292,8 +302,8 @@ def drop_plan(
         fall_time=landed.time,
         fall_back=back,
         aside=aside,
-        time_error=max(CAUTION * sum(map(abs, delays)), LEAST_TIME_ERROR * landed.time),
-        distance_error=CAUTION * sum(float(np.linalg.norm(each)) for each in missed),
+        time_error=max(ERROR_SAFETY * sum(map(abs, delays)), LEAST_TIME_ERROR * landed.time),
+        distance_error=ERROR_SAFETY * sum(float(np.linalg.norm(each)) for each in missed),
         fall_time_band=(min(times), max(times)),
         fall_back_band=(min(*backs, back), max(*backs, back)),
         touchdown_speed=-float(landed.velocity[-1, 2]),
@@ -313,13 +323,15 @@ def drop_plan(
 
 
 def _one_or_all(times: Mapping[str, float] | None) -> float | dict[str, float] | None:
-    """Return the time of a piece where it is the same for all, else that by role."""
+    """Return the handling time of a piece if it is the same for all roles, else the times by
+    role.
+    """
     once = set((times or {}).values())
     return once.pop() if len(once) == 1 else None if times is None else dict(times)
 
 
 def _equilibrium(mooring: Design) -> Result | None:
-    """The mooring at rest; None where it has no unique shape, longer than still water is deep."""
+    """Solve the mooring, or return None if it is slack in still water and has no unique shape."""
     try:
         return mooring.solve()
     except NoEquilibrium as failure:
@@ -329,7 +341,7 @@ def _equilibrium(mooring: Design) -> Result | None:
 
 
 def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
-    """Return where the anchor is: towards the float, and to the right of that [m]."""
+    """Return the position of the anchor: distance towards the float, and to the right of it [m]."""
     (east, north), (x, y) = state.node[-1, :2].tolist(), toward.tolist()
     return east * x + north * y, east * y - north * x
 
@@ -337,13 +349,13 @@ def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
 def _run_start(
     leg: Leg, way: Floats, speed: float, past: float, deck_time: Mapping[str, float]
 ) -> RunStart:
-    """Return where the run begins, at the ship's speed, with the cables paid out as fast.
+    """Return the start of the run, with cables paid out at the ship's speed.
 
     Parameters
     ----------
     way : (2,) direction of the ship
-    speed : of the ship over the ground [m/s]
-    past : how far beyond the target the anchor is let go, along the course [m]
+    speed : speed of the ship over the ground [m/s]
+    past : distance past the target at which the anchor is released, along the course [m]
     deck_time : see `drop_plan`
     """
     pieces = leg.file.pieces[:-1]

@@ -1,4 +1,4 @@
-"""Give the anchors of an imported design weights that hold its line."""
+"""Set anchor weights that hold the line of an imported design."""
 
 from pathlib import Path
 
@@ -10,18 +10,18 @@ from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.physics.materials import STEEL_DENSITY
 from calm.quantities import rounded
 
-_HOLDS = 1e8  # N: holds whatever is tied to it
+_HOLDS = 1e8  # N: holds any line
 _IN_WATER = (1.0 - CATALOGUE_DENSITY / STEEL_DENSITY) * STANDARD_GRAVITY  # N of a kilogram of steel
-_DIGITS = 2  # that a guessed weight keeps
-_LEAST = 100.0  # N of a guessed weight
+_DIGITS = 2  # digits of a guessed weight
+_LEAST = 100.0  # smallest guessed weight in N
 
 
 def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
-    """Give each anchor a weight where the file gives none, or one that the line would lift.
+    """Set the weight of each anchor that has none in the file, or that the line would lift.
 
-    The shape of the line does not depend on it. The weight is what `calm check` asks for in this
-    current. A line without an equilibrium is left to `calm run`, which says so. The mooring file is
-    to stand at `output`.
+    The shape of the line does not depend on this weight, which is the weight required by `calm
+    check` in this current. A line without an equilibrium is left unchanged; `calm run` reports it.
+    The mooring file will be written to `output`.
     """
     last = design.items if design.legs else design.items[-1:]
     anchors = [item.component for item in last if item.component.kind == "anchor"]
@@ -34,14 +34,14 @@ def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
             continue
         anchor.figures.pop("mass", None)
         anchor.guesses.pop("mass", None)
-        reason = "the file gives no weight; 1.5 × (V + H/0.6) in this current"
+        reason = "no weight in the file; 1.5 × (V + H/0.6) in this current"
         anchor.figures["weight"] = rounded(max(required, _LEAST), _DIGITS, up=True)
         if pull is None:
-            reason = "the file gives no weight; this holds anything"
+            reason = "no weight in the file; this value holds any line"
             anchor.figures["weight"] = _HOLDS
         elif given is not None:
             reason = (
-                f"the file's {given:.5g} N would be lifted: the line pulls up with {pull:.5g} N"
+                f"the vertical load of {pull:.5g} N exceeds the weight of {given:.5g} N in the file"
             )
         anchor.guesses["weight"] = reason
 
@@ -49,7 +49,9 @@ def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
 def _pulls(
     design: model.ImportedDesign, anchors: list[model.ImportedComponent], output: Path
 ) -> list[tuple[model.ImportedComponent, float | None, float]]:
-    """Return each anchor, the upward pull of the line on it and the weight that holds it [N]."""
+    """Return each anchor with the vertical load of the line on it, and the weight that holds it
+    [N].
+    """
     before = [anchor.figures for anchor in anchors]
     for anchor in anchors:
         anchor.figures = {k: one for k, one in anchor.figures.items() if k != "mass"}

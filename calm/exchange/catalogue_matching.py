@@ -1,4 +1,4 @@
-"""Use entries of the catalogue for imported components that agree with them in name and figures."""
+"""Use catalogue entries for imported components with matching names and values."""
 
 import re
 from dataclasses import dataclass
@@ -13,27 +13,28 @@ from calm.files import Anchor, Catalogue, Rigid
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
 
 _TOLERANCE = 0.05
-"""Share by which size, net force and drag may differ from those of a catalogue entry."""
+"""Relative tolerance of size, net buoyancy and drag for a match with a catalogue entry."""
 
-_COMMON_WORDS = 0.5  # share of the words of a name that an entry must have, two at least
+_COMMON_WORDS = 0.5  # share of the words of a name that an entry must contain, at least two words
 _GRADE = re.compile(r"\b(?:g|gr|grade)[ -]?(\d{1,3})\b", re.I)
 
 
 @dataclass(frozen=True)
 class CatalogueMatch:
-    """Name a component, as the file has it, and the catalogue entry used in its place."""
+    """Name of an imported component, and the catalogue entry used for it."""
 
     name: str
     entry: str
 
 
 def match_catalogue_entries(design: model.ImportedDesign) -> tuple[CatalogueMatch, ...]:
-    """Use catalogue entries for the components whose name and figures agree with one.
+    """Replace imported components by catalogue entries with matching names and values.
 
-    A component is of the same kind, shares half the words of its name, and is within `_TOLERANCE`
-    in diameter, length, net force, normal drag, stiffness and loads, as far as both give them.
-    Where both names tell a grade, it is the same one. Of several entries that agree, the one whose
-    id or name is that of the component is taken, or else the one that shares most words.
+    An entry matches if it has the same kind, contains half the words of the component's name, and
+    agrees within `_TOLERANCE` in diameter, length, net buoyancy, normal drag, stiffness and loads,
+    as far as both have values. If both names contain a grade, the grades must agree. Among several
+    matches, an entry whose id or name equals the component's name is preferred, then the entry with
+    the most common words.
     """
     catalogue = Catalogue.load()
     entries = {id: entry for id, entry in catalogue.all().items() if isinstance(entry, Component)}
@@ -66,8 +67,8 @@ def _model(component: model.ImportedComponent) -> Component | None:
 
 
 def _likeness(name: str, id: str, other: str) -> float:
-    """Return how alike a name and an entry are called: inf if they are called the same, else the
-    share of all their words that both have; 0 where they may not be the same.
+    """Similarity of two names: inf if they are equal, else the share of common words, 0 if they do
+    not match.
     """
     if name.casefold() in (id, other.casefold()):
         return inf
@@ -83,7 +84,9 @@ def _likeness(name: str, id: str, other: str) -> float:
 
 
 def _agree(one: Component, other: Component, *, sizeless: bool) -> bool:
-    """Return whether two agree in figures; one that is `sizeless` in the file, in net force."""
+    """Whether two components agree in their values; only net buoyancy is compared if one is
+    `sizeless` in the file.
+    """
     pairs: list[tuple[float | None, float | None]] = [(one.net_buoyancy, other.net_buoyancy)]
     if sizeless:
         if not isinstance(other, Rigid):
@@ -93,7 +96,7 @@ def _agree(one: Component, other: Component, *, sizeless: bool) -> bool:
     else:
         keys = ("diameter", "length", "stiffness", "breaking_load", "working_load")
         pairs += [(getattr(one, key, None), getattr(other, key, None)) for key in keys]
-        # at 1 m/s across it [N], of a cable or chain per metre
+        # normal drag at 1 m/s [N], per metre for a cable or chain
         pairs.append((drag_of(one)[0], drag_of(other)[0]))
     given = [(a, b) for a, b in pairs if a is not None and b is not None]
     return all(abs(a - b) <= _TOLERANCE * max(abs(a), abs(b)) for a, b in given)

@@ -1,4 +1,4 @@
-"""Make ids of the mooring file from the names that other programs give their parts."""
+"""Ids of the mooring file from the names of parts in other programs."""
 
 import re
 import unicodedata
@@ -12,7 +12,7 @@ _SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&
 
 
 def _kebab(name: str) -> str:
-    """Return a name as an id: ``3/8" wire rope`` becomes ``3-8in-wire-rope``."""
+    """Convert a name to an id: ``3/8" wire rope`` becomes ``3-8in-wire-rope``."""
     text = "".join(_SIGNS.get(sign, sign) for sign in name)
     text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
     text = re.sub(r"(?<=\d)\.(?=\d)", "p", text)
@@ -20,9 +20,10 @@ def _kebab(name: str) -> str:
 
 
 def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
-    """Return the id of every component, by its `id()`; those with the same figures share one.
+    """Choose the id of every component, by Python's `id()`; components with equal values share an
+    id.
 
-    None is one that is `taken` by something else.
+    Ids in `taken` are not used.
     """
     components = list(components)
     ids: dict[int, str] = {}

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 @dataclass(eq=False)
 class CurrentRecord:
-    """Hold currents at several times: `u`, `v`, `w` [m/s] by time and level, `depth` [m].
+    """Currents at several times: `u`, `v`, `w` [m/s] by time and level, `depth` [m].
 
-    `days` count from `epoch`, a date.
+    `days` are counted from the date `epoch`.
     """
 
     days: NDArray[np.float64]
@@ -22,7 +22,7 @@ class CurrentRecord:
 
 
 def record_file(record: CurrentRecord, source: str) -> bytes:
-    """Return a record as a classic NetCDF file by the CF conventions."""
+    """Convert a record to a classic NetCDF file with CF conventions."""
     import xarray as xr
 
     speeds = {
@@ -37,7 +37,7 @@ def record_file(record: CurrentRecord, source: str) -> bytes:
             ("w", "upward_sea_water_velocity", record.w),
         )
     }
-    seconds = np.rint(record.days * 86_400e3) / 1e3  # days hold a millisecond, hardly more
+    seconds = np.rint(record.days * 86_400e3) / 1e3  # the precision of days is about a millisecond
     time = {
         "standard_name": "time",
         "units": f"seconds since {record.epoch}",

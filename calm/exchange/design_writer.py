@@ -1,4 +1,4 @@
-"""Write a design as a mooring file, with a comment for every guess in its line."""
+"""Write a design as a mooring file, with a comment for each guessed value."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
@@ -26,7 +26,7 @@ _FORCES = {"buoyancy", "weight"}
 
 @dataclass
 class _Page:
-    """Hold the lines so far, and the guesses in their comments."""
+    """The lines written so far, and the guesses noted in their comments."""
 
     lines: list[str] = field(default_factory=list)
     guessed: list[model.Remark] = field(default_factory=list)
@@ -45,7 +45,7 @@ class _Page:
 
 
 def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[model.Remark]]:
-    """Return the text of the mooring file of a design from a file, and what was guessed in it."""
+    """Return the text of the mooring file of a design, and the guesses in it."""
     page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
     page.remark(f"Imported from {of}, by CALM {__version__} with its own figures.")
     for note in design.notes:
@@ -101,12 +101,12 @@ def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[m
 
 
 def _number(value: float) -> str:
-    """Return a number as people write it, with nine digits at most."""
+    """Format a number with at most nine digits."""
     return f"{value:.9g}"
 
 
 def quoted(text: str) -> str:
-    """Return a text in one line as YAML has it, plain where it can be."""
+    """Format a text as a single line of YAML, without quotes if possible."""
     return written(one_line(text), flow=True)
 
 
@@ -145,10 +145,10 @@ def _keyed(page: _Page, key: str, value: str, water: model.ImportedWater) -> Non
 
 
 def _counted(items: list[model.ImportedPiece]) -> list[model.ImportedPiece]:
-    """Equal items that follow each other as one with a count."""
+    """Combine equal successive items to one item with a count."""
 
     def what(item: model.ImportedPiece) -> object:
-        if item.clamps or item.guess or item.label or item.serial:
+        if item.clamps or item.guess or _called(item):
             return id(item)
         return item.component.identity(), item.length, item.component.entry
 
@@ -179,7 +179,9 @@ def _write_item(page: _Page, item: model.ImportedPiece, ids: dict[int, str]) -> 
 
 def _called(item: model.ImportedPiece | model.ImportedClamp) -> list[str]:
     named = (("label", item.label), ("serial", item.serial))
-    return [f"{key}: {quoted(text)}" for key, text in named if text]
+    planned = item.planned_depth
+    depth = [] if planned is None else [f"planned_depth: {_number(planned)} m"]
+    return [f"{key}: {quoted(text)}" for key, text in named if text] + depth
 
 
 def _write_component(
@@ -207,13 +209,13 @@ def _write_component(
 
 
 def figure_text(key: str, value: model.FigureOrWord, *, per_metre: bool, in_kilograms: bool) -> str:
-    """Return a figure of a component as the mooring file has it.
+    """Format a value of a component for the mooring file.
 
     Parameters
     ----------
     key : field of the component
-    value : in SI
-    per_metre : whether forces and masses are those of a metre
+    value : value in SI units
+    per_metre : whether forces and masses are per metre
     in_kilograms : whether forces are shown in kilograms-force
     """
     if isinstance(value, str):

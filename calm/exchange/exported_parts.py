@@ -1,4 +1,4 @@
-"""Define a mooring or a tow for other programs: parts with their net force and drag."""
+"""A mooring or a tow for other programs: parts with their net buoyancy and drag."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from calm.physics.line import Floats
 from calm.physics.seawater import REFERENCE_DENSITY
 
 AS_A_POINT = (
-    "that the drag of the float acts at its middle and by its axis: its point has the pull found "
-    "here"
+    "the drag of the float at its midpoint and by its inclination: the float is a point with the "
+    "pull computed by CALM"
 )
-"""What is said where a float is written as `ExportedLine.float_as_point` has it."""
+"""Loss reported for a float written as in `ExportedLine.float_as_point`."""
 
-_LEAST_MASS = 0.1  # of what its net force weighs
+_LEAST_MASS = 0.1  # smallest mass, as a share of the mass with its net force as weight
 
 Coordinates = tuple[float, float, float]
 """East and north of the anchor, and depth [m]."""
@@ -34,20 +34,20 @@ Levels = tuple[tuple[float, float, float, float, float], ...]
 
 @dataclass(frozen=True)
 class ExportedPart:
-    """Describe a piece, or what is clamped on one.
+    """A piece, or an item clamped on a piece.
 
     Attributes
     ----------
     use, label, role : as in the mooring file
-    component : its definition
-    flexible : whether it is a cable or chain, whose figures are per metre
-    length : unstretched [m]
-    buoyancy : net force in water of the reference density, + up [N or N/m]
-    net, density : the same, and the density [kg/m³], in the water where it stands upright
-    kn, kt : drag across and along it at 1 m/s and 1025 kg/m³ [N/(m/s)², per metre where flexible]
+    component : definition of the component
+    flexible : whether it is a cable or chain, whose values are per metre
+    length : unstretched length [m]
+    buoyancy : net buoyancy in reference water, positive up [N or N/m]
+    net, density : net buoyancy, and density of the water [kg/m³], at its depth in the upright line
+    kn, kt : normal and tangential drag at 1 m/s and 1025 kg/m³ [N/(m/s)², per metre if flexible]
     directional : whether its drag depends on its axis
-    stiffness : EA [N]; 0 where it does not stretch
-    clamps : with their distance from its upper end [m]
+    stiffness : EA [N]; 0 if inextensible
+    clamps : clamps, with their distance from its upper end [m]
     """
 
     use: str
@@ -67,17 +67,17 @@ class ExportedPart:
 
     @property
     def diameter(self) -> float:
-        """The diameter of its definition; 0 for a body [m]."""
+        """Diameter of its definition [m]; 0 for a body."""
         return float(getattr(self.component, "diameter", 0.0))
 
     @property
     def mass(self) -> float | None:
-        """The mass in air, where it is known [kg or kg/m]."""
+        """Mass in air, or None if unknown [kg or kg/m]."""
         return getattr(self.component, "mass", None)
 
     @property
     def likely_mass(self) -> float:
-        """The mass in air [kg, kg/m]: as given, or from weight and size."""
+        """Mass in air [kg or kg/m], as specified or from weight and size."""
         if self.mass is not None:
             return self.mass
         hull = getattr(self.component, "hull", None)
@@ -92,13 +92,13 @@ class ExportedPart:
         return max(REFERENCE_DENSITY * volume - weighed, _LEAST_MASS * abs(weighed))
 
     def area(self, density: float | None = None, *, along: bool = False) -> float:
-        """Return drag coefficient times area [m²], of a cable per metre.
+        """Drag coefficient times area [m²], per metre for a cable.
 
         Parameters
         ----------
-        density : of a program that has a single one [kg/m³]: the area that drags there as the part
-            does in its own water
-        along : whether it is that along the line, not across it
+        density : density of a program with uniform density [kg/m³]: the area with the same drag in
+            this program as the part in its own water
+        along : whether to return the tangential drag area instead of the normal one
         """
         own = (self.kt if along else self.kn) / (0.5 * REFERENCE_DENSITY)
         return own if density is None else own * self.density / density
@@ -106,14 +106,14 @@ class ExportedPart:
 
 @dataclass
 class PartLoad:
-    """Add up what parts do at one point, or in one stiff length.
+    """Sum of the loads of parts at one point, or on one stiff length.
 
     Attributes
     ----------
-    density : of the water, the same everywhere [kg/m³]
-    names : of the parts
+    density : uniform density of the water [kg/m³]
+    names : names of the parts
     net, mass : net force [N] and mass [kg]
-    area, along : drag areas across and along the line [m²]
+    area, along : normal and tangential drag areas [m²]
     """
 
     density: float
@@ -124,7 +124,7 @@ class PartLoad:
     along: float = 0.0
 
     def merge(self, other: PartLoad) -> None:
-        """Add what another does."""
+        """Add another load."""
         self.names += other.names
         self.net += other.net
         self.mass += other.mass
@@ -132,30 +132,31 @@ class PartLoad:
         self.along += other.along
 
     def add(self, part: ExportedPart, share: float = 1.0) -> None:
-        """Add a part without its clamps; `share` is of its drag."""
+        """Add a part without its clamps; `share` is the counted share of its drag."""
         areas = (share * part.area(self.density, along=along) for along in (False, True))
         self.merge(PartLoad(self.density, [part.use], part.net, part.likely_mass, *areas))
 
     def add_whole(self, part: ExportedPart, share: float = 1.0) -> None:
-        """Add a part with what is clamped on it; `share` is of its own drag."""
+        """Add a part with its clamps; `share` is the counted share of its own drag."""
         self.add(part, share)
         for clamp, _ in part.clamps:
             self.add(clamp)
 
     def per_metre(self, length: float) -> PartLoad:
-        """Return the same load, spread over a length [m]."""
+        """Return the load per metre for a length [m]."""
         figures = (self.net, self.mass, self.area, self.along)
         return PartLoad(self.density, self.names, *(each / length for each in figures))
 
 
 def unique_name(known: dict[str, str], name: str, figures: str) -> str:
-    """Keep figures under a name, and return it: another where it is taken by other figures.
+    """Store values under a name, and return the name; a different name is chosen if it is taken by
+    other values.
 
     Parameters
     ----------
-    known : figures by name, to which these are added
-    name : that they are to have
-    figures : as the file has them
+    known : values by name, to which these are added
+    name : preferred name
+    figures : values in the format of the file
     """
     chosen, number = name, 1
     while known.setdefault(chosen, figures) != figures:
@@ -165,7 +166,7 @@ def unique_name(known: dict[str, str], name: str, figures: str) -> str:
 
 
 def place_along(path: Floats, share: float) -> Coordinates:
-    """Return the place at a share of the length of a part, whose nodes (n, 3) are its `path`."""
+    """Position at a share of the length of a part, whose nodes (n, 3) are its `path`."""
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     east, north, depth = (float(np.interp(share * along[-1], along, each)) for each in path.T)
@@ -174,7 +175,7 @@ def place_along(path: Floats, share: float) -> Coordinates:
 
 @dataclass(frozen=True)
 class ExportedTow:
-    """Hold the speed of the ship east and north [m/s], and the height of the sheave [m]."""
+    """Speed of the ship east and north [m/s], and height of the sheave [m]."""
 
     east: float
     north: float
@@ -183,24 +184,24 @@ class ExportedTow:
 
 @dataclass(frozen=True)
 class ExportedLine:
-    """Hold the parts of a line from its first piece to its last, the anchor apart.
+    """Parts of a line from its first piece to its last, without the anchor.
 
     Attributes
     ----------
-    name : of the file
-    parts : of a mooring from the top, of a tow from the ship
-    anchor : the anchor, and its weight with what is clamped on it [N]; None for a tow
-    depth, levels : of the water [m], the first level at the surface
-    gravity : [m/s²]
-    wind : to the east and to the north [m/s]
+    name : name of the file
+    parts : parts of a mooring from the top, or of a tow from the ship
+    anchor : the anchor, and its weight including clamps [N]; None for a tow
+    depth, levels : water depth [m], and levels, the first at the surface
+    gravity : acceleration of gravity [m/s²]
+    wind : wind velocity to the east and to the north [m/s]
     tow : None for a mooring
     afloat, has_draft : whether the line reaches the surface, and whether its float has a draft
-    riding : share of its buoyancy that the float uses here, and of its drag that acts on it; 1, 1
+    riding : shares in use of the buoyancy of the float, and of its drag; 1, 1
         below the surface
-    windage : of the float: its area in the air here [m²], and its drag coefficient there
-    omitted : what other programs cannot hold
-    solve : finds the equilibrium
-    ends : what holds the upper and the lower end of a leg of a net; None for a line of its own
+    windage : wind area of the float [m²], and its drag coefficient
+    omitted : features that other programs cannot represent
+    solve : function that finds the equilibrium
+    ends : supports of the upper and the lower end of a leg of a net; None for a single line
     """
 
     name: str
@@ -221,24 +222,24 @@ class ExportedLine:
 
     @property
     def mean_density(self) -> float:
-        """The density for programs that have a single one [kg/m³]."""
+        """Density for programs with a uniform density [kg/m³]."""
         return sum(row[4] for row in self.levels) / len(self.levels)
 
     def losses(self, more: Sequence[str]) -> tuple[str, ...]:
-        """Return what another program cannot hold, each remark once, `more` first."""
+        """Features that another program cannot represent, each once, with `more` first."""
         return tuple(dict.fromkeys((*more, *self.omitted)))
 
     def paths(self) -> list[Floats]:
-        """Return where each part lies in equilibrium, from the top down: `Coordinates` of nodes.
+        """Position of each part in equilibrium, from the top down, as `Coordinates` of nodes.
 
-        NoEquilibrium: there is none.
+        Raises NoEquilibrium if there is none.
         """
         result = self.solve()
         nodes = np.column_stack([result.shape.x, result.shape.y, result.shape.depth])
         row = result.components[0]
         upper = np.array([row.x_top, row.y_top, row.depth_top])
         if np.linalg.norm(nodes[0] - upper) > np.linalg.norm(nodes[-1] - upper):
-            nodes = nodes[::-1]  # a leg that hangs is found from its lower end
+            nodes = nodes[::-1]  # the solution of a hanging leg begins at its lower end
         paths, start = [], 0
         for row in (result.components[i] for i in range(len(self.parts))):
             low = np.array([row.x_bottom, row.y_bottom, row.depth_bottom])
@@ -250,11 +251,11 @@ class ExportedLine:
         return paths
 
     def float_as_point(self, density: float) -> tuple[float, float]:
-        """Return net force [N] and drag area [m²] of a float below the surface as a point.
+        """Net force [N] and drag area [m²] of a float below the surface, represented as a point.
 
         It is for programs in which a float is a point at the line's end, in water of a density
-        [kg/m³]: its drag is in the flow there, not at its middle, and has no axis. Force and area
-        are such that it pulls as it does here; without an equilibrium they are its own.
+        [kg/m³]: its drag is computed there, not at its midpoint, and without an axis. Force and
+        area give the same pull as in CALM; without an equilibrium they are those of the float.
         """
         part = self.parts[0]
         own = part.net, part.area(density)
@@ -277,7 +278,7 @@ class ExportedLine:
 
 @dataclass(frozen=True)
 class ExportedDesign:
-    """A design for another program: its name, and the legs of a net or else a single line."""
+    """A design for another program: its name, and the legs of a net or a single line."""
 
     name: str
     legs: tuple[ExportedLine, ...]

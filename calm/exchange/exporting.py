@@ -23,7 +23,7 @@ from calm.physics.line import Water
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.records.profile_tables import components
 
-_DIGITS = 9  # of a speed in m/s
+_DIGITS = 9  # digits of a speed in m/s
 
 
 def export_file(
@@ -87,8 +87,9 @@ def _exported_line(leg: Leg, solve: Solve) -> ExportedLine:
     if file.environment.fluid == "air":
         raise UsageError(f"{file.path} is towed in air; the other programs know only water")
     secant = _secants(leg, solve)
-    depths = np.cumsum(line.length) - line.length / 2.0  # of the middles, hanging down
-    if not leg.towed:  # standing upright
+    # depth of the middle of each piece, in a tow
+    depths = np.cumsum(line.length) - line.length / 2.0
+    if not leg.towed:  # a mooring: heights are counted from the seabed
         depths += float(water.depth) - line.anchor_height - float(line.length.sum())
     depths = np.maximum(depths, 0.0)
     parts = []
@@ -148,7 +149,10 @@ def _exported_line(leg: Leg, solve: Solve) -> ExportedLine:
 def _at_the_surface(
     leg: Leg, solve: Solve
 ) -> tuple[bool, tuple[float, float], tuple[float, float]]:
-    """Return `afloat`, `riding` and `windage` of `ExportedLine`; by length without equilibrium."""
+    """Return `afloat`, `riding` and `windage` of `ExportedLine`.
+
+    Without an equilibrium, the line is afloat if it is at least as long as the water is deep.
+    """
     below, line = (False, (1.0, 1.0), (0.0, 1.0)), leg.line
     if leg.towed:
         return below
@@ -171,7 +175,9 @@ def _at_the_surface(
 
 
 def _secants(leg: Leg, solve: Solve) -> dict[int, float]:
-    """Stiffness of the pieces that stretch by a table, as it is at their tension here [N]."""
+    """Return the stiffness [N] of the pieces with an elongation table, by index: the secant of the
+    table at the tension in equilibrium.
+    """
     curves = leg.line.elongation
     if not any(curves):
         return {}
@@ -186,7 +192,7 @@ def _secants(leg: Leg, solve: Solve) -> dict[int, float]:
 
 
 def _levels(water: Water, deepest: float) -> Levels:
-    """Rows of depth, u, v, w and density, from the surface to the seabed."""
+    """Return rows of depth, u, v, w and density from the surface to the seabed."""
     inside = [float(depth) for depth in water.level if 0.0 < depth < deepest]
     rows = []
     for depth in (0.0, *inside, deepest):
@@ -199,7 +205,7 @@ def _levels(water: Water, deepest: float) -> Levels:
 
 
 def _omitted(leg: Leg) -> tuple[str, ...]:
-    """Return what a mooring file says that other programs do not know."""
+    """Return the features of a mooring file that no other program can represent."""
     file = leg.file
     omitted = ["limits of the design check, strengths, ratings and tilts of components"]
     if file.solver.strumming is not None:

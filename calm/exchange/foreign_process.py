@@ -1,7 +1,8 @@
 """Run the readers of foreign binary files in a process of their own.
 
-Libraries that read MATLAB files and workbooks are written in C and Rust: on a damaged file they may
-end the process, panic, or ask for all memory. Here that ends the child alone, and is an error.
+The libraries that read MATLAB files and workbooks are written in C and Rust. On a damaged file they
+may end the process, panic, or request all memory. Here only the child process ends, which is
+reported as an error.
 """
 
 import os
@@ -16,16 +17,20 @@ _Given = ParamSpec("_Given")
 _Found = TypeVar("_Found")
 
 MOST_MEMORY = 3_000_000_000
-"""Bytes that a reader may take beside what the program has; on Linux alone."""
+"""Memory that a reader may use in addition to that of the program [bytes]; limited on Linux
+only.
+"""
 
 MOST_SECONDS = 120.0
-"""Time that a reader may take."""
+"""Time after which a reader is stopped [s]."""
 
 
 def read_apart(
     reader: Callable[_Given, _Found], *given: _Given.args, **named: _Given.kwargs
 ) -> _Found:
-    """Return what a reader, which is of a module so that another process finds it, makes of a file.
+    """Call a reader in a child process, and return its result.
+
+    The reader must be a function of a module, so that the child process can import it.
 
     ValueError: the reader failed, crashed, or took too much time or memory.
     """
@@ -55,7 +60,7 @@ def read_apart(
 def _read(
     pipe: Connection, reader: Callable[..., Any], given: tuple[Any, ...], named: dict[str, Any]
 ) -> None:
-    """Send what a reader finds, or what is wrong; what it prints is not for people."""
+    """Send the result of a reader, or its error message; its printed output is discarded."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     _limit_memory()
     try:

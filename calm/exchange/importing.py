@@ -1,6 +1,7 @@
-"""Import a file of another program: its format is found, it is read, written, and read back.
+"""Import files of other programs: find the format, read the file, and write a mooring file.
 
-The design is completed: an anchor that holds, entries of the catalogue, an environment.
+The design is completed with an anchor that holds, entries of the catalogue and an environment. The
+mooring file is read back as a check.
 """
 
 from __future__ import annotations
@@ -28,17 +29,17 @@ _HEAD = 70_000  # bytes from which a format is recognised
 
 @dataclass(frozen=True)
 class Imported:
-    """Hold a mooring file made of another program's file.
+    """A mooring file made from a file of another program.
 
     Attributes
     ----------
-    file : that it comes from
+    file : the file that was read
     format : name of its format
-    text : of the mooring file
-    guessed, dropped : what was guessed, and what was left out
-    matched : components that the catalogue has
-    record : currents at several times, where the file has them
-    understood : how the file was read; empty where its format leaves no choice
+    text : text of the mooring file
+    guessed, dropped : remarks about what was guessed, and about what was left out
+    matched : components that were replaced by entries of the catalogue
+    record : currents at several times; None if the file has none
+    understood : how the file was interpreted; empty if its format leaves no choice
     """
 
     file: Path
@@ -64,16 +65,16 @@ def import_file(
 
     Parameters
     ----------
-    output : path of the mooring file to come; nothing is written here
-    format : name of a format that is read, as `registry.register_format` has it; found from the
-        content when not given
-    environment : an environment file, in place of what the file has
-    match_catalogue : use catalogue entries for what agrees with them
+    output : path of the mooring file that will be written; this function does not write it
+    format : name of the format, as in `registry.register_format`; by default it is found from the
+        content
+    environment : an environment file that replaces the environment of the file
+    match_catalogue : whether components are replaced by catalogue entries that agree with them
 
     Raises
     ------
     InputError
-        The file is damaged or holds what CALM cannot represent: each by name.
+        The file is damaged, or holds something that CALM cannot represent; the message names it.
     UsageError
         There is no such format.
     """
@@ -110,9 +111,9 @@ def import_file(
 
 
 def _format_of(path: Path, name: str | None, *, listed: bool = False) -> FileFormat:
-    """Return the format of a file: as named, or by its content.
+    """Return the format of a file, by its name or from its content.
 
-    One that is `listed` is a list where it is of no other format, even with a single column.
+    With `listed`, a file of no other format is read as a list, even one with a single column.
     """
     if name is not None:
         return _format_named(name)
@@ -139,7 +140,9 @@ def _readable() -> list[FileFormat]:
 
 
 def _check(path: Path, output: Path, text: str) -> None:
-    """Read the mooring file as `calm run` will; a mistake in it is one of its source."""
+    """Check that `calm run` can read the mooring file; report a mistake as one of its source
+    file.
+    """
     try:
         read_mooring(output, text=text)
     except InputError as error:
@@ -155,7 +158,8 @@ def _check(path: Path, output: Path, text: str) -> None:
 
 
 def environment_lines(path: Path, output: Path) -> list[str]:
-    """Return the `environment` of a file, its paths relative to the folder of the mooring file.
+    """Return the lines of the `environment` key of a file, with paths relative to the folder of the
+    mooring file.
 
     InputError: the file cannot be read, or has no `environment`.
     """

@@ -1,7 +1,7 @@
-"""Read the variables of a `.mat` file, whatever program and version wrote it.
+"""Read the variables of a `.mat` file of any program and version.
 
-Nothing in such a file is executed or unpickled: MATLAB 4 and 5 are read by scipy, HDF5 (MATLAB 7.3
-and Octave) by h5py, Octave's text, compressed or not, by the reader below.
+No content of such a file is executed or unpickled. MATLAB 4 and 5 are read by scipy, HDF5 (MATLAB
+7.3 and Octave) by h5py, and the text format of Octave, compressed or not, by this module.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from calm.exchange.foreign_process import read_apart
 from calm.whole_file import read_content
 
 LARGEST = 200_000_000
-"""Bytes of a file."""
+"""Largest size of a file, also after decompression [bytes]."""
 
 _GZIP = b"\x1f\x8b"
 _OCTAVE_BINARY = b"Octave-1-"
@@ -40,9 +40,9 @@ RealArray = NDArray[np.float64]
 
 
 def read_variables(path: Path, wanted: Collection[str]) -> MatVariables:
-    """Return the wanted variables that a file has.
+    """Return the wanted variables, as far as a file has them.
 
-    InputError: the file is no `.mat` file, or a damaged one.
+    InputError: the file is not a `.mat` file, or is damaged.
     """
     content = _inflated(read_content(path, largest=LARGEST), LARGEST + 1)
     if len(content) > LARGEST:
@@ -74,7 +74,9 @@ def is_mat(content: bytes) -> bool:
 
 
 def _inflated(content: bytes, most: int) -> bytes:
-    """Return the first bytes of what is compressed, as far as it is whole; else all as it is."""
+    """Return the first `most` bytes of gzip content that can be decompressed, or other content
+    unchanged.
+    """
     if not content.startswith(_GZIP):
         return content
     try:
@@ -84,7 +86,9 @@ def _inflated(content: bytes, most: int) -> bytes:
 
 
 def _is_version_4(content: bytes) -> bool:
-    """Return whether its first header has a type, rows, columns and the length of a name."""
+    """Return whether the first header of a file is one of MATLAB 4: a type, rows, columns and the
+    length of a name.
+    """
     for order in ("<", ">"):
         head = np.frombuffer(content[:20], f"{order}i4") if len(content) > 20 else np.zeros(0)
         if head.size == 5 and 0 <= head[0] < 5000 and 1 < head[4] < 64 and head[3] in (0, 1):
@@ -109,7 +113,7 @@ def _is_octave_text(content: bytes) -> bool:
 
 
 def read_octave_text(text: str) -> dict[str, MatValue]:
-    """Every variable that can be read; the others are left out.
+    """Return every variable of a text file of Octave that can be read; the others are left out.
 
     ValueError: a matrix has fewer numbers than its header says, or a header cannot be read.
     """
@@ -131,7 +135,7 @@ def read_octave_text(text: str) -> dict[str, MatValue]:
 
 
 def _blocks(lines: list[str]) -> Iterator[tuple[str, dict[str, str], list[str]]]:
-    """Each variable: name, header and the lines below the header."""
+    """Yield the name, the header and the lines below the header of each variable."""
     name, header, rows = "", dict[str, str](), list[str]()
     for line in lines:
         key, value = _header(line)
@@ -148,7 +152,7 @@ def _blocks(lines: list[str]) -> Iterator[tuple[str, dict[str, str], list[str]]]
 
 
 def _header(line: str) -> tuple[str, str]:
-    """Key and value of a line such as ``# rows: 3``, with or without its colon."""
+    """Return the key and the value of a line such as ``# rows: 3``, with or without its colon."""
     if not line.lstrip().startswith("#"):
         return "", ""
     body = line.lstrip()[1:].strip()
@@ -168,7 +172,7 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
         words = (word for row in bare for word in row.replace(",", " ").split())
         numbers = np.array([float(word) for word in words])
     except ValueError:
-        return None  # a structure, or complex numbers: none of those that matter here
+        return None  # a structure or complex numbers, which no importer needs
     if kind.endswith("range") and len(numbers) == 3:
         return _spread(name, *numbers.tolist())
     if "scalar" in kind or kind == "bool":
@@ -184,7 +188,7 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
 
 
 def _spread(name: str, first: float, last: float, step: float) -> MatValue:
-    """Return the numbers of a range, the last included where a step ends at it."""
+    """Return the numbers of a range, including the last if a step ends there."""
     count = (last - first) / step * (1 + 1e-12) + 1 if step else 0.0
     if not 0.0 <= count <= _MOST:
         raise ValueError(f"the range `{name}` has {count:g} numbers")
@@ -209,12 +213,12 @@ def _texts(rows: list[str]) -> list[MatValue]:
 
 
 def _is_hdf5(content: bytes) -> bool:
-    """Return whether a file is HDF5, by its first bytes or those after MATLAB's header."""
+    """Return whether a file is HDF5, by its first bytes or by those after MATLAB's header."""
     return _SIGNATURE in (content[:8], content[512:520])
 
 
 def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
-    """Return the wanted variables that a file has; links to other files are not followed."""
+    """Return the wanted variables of an HDF5 file; links to other files are not followed."""
     import h5py
 
     with h5py.File(io.BytesIO(content), "r") as file:
@@ -224,7 +228,9 @@ def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def _variable(file: Any, node: Any, depth: int) -> MatValue:
-    """Return a dataset, as MATLAB writes it, or one of Octave's, which are in groups."""
+    """Return a dataset as written by MATLAB, or a group as written by Octave; cells are read
+    recursively.
+    """
     import h5py
 
     if depth > _DEEPEST:
@@ -245,7 +251,7 @@ def _variable(file: Any, node: Any, depth: int) -> MatValue:
 
 
 def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
-    """Return the values of a dataset; HDF5 has the dimensions in reverse order."""
+    """Return the values of a dataset, whose dimensions HDF5 stores in reverse order."""
     import h5py
 
     if not isinstance(node, h5py.Dataset) or node.is_virtual or node.external:
@@ -274,12 +280,12 @@ def _text_of(value: object) -> str:
 
 
 class MatVariables(dict[str, MatValue]):
-    """Hold variables of a file by their names."""
+    """The variables of a file by name."""
 
     def reals(self, name: str) -> RealArray:
-        """Return a variable as numbers; an empty array where there is none.
+        """Return a variable as numbers; an empty array if there is no such variable.
 
-        ValueError: it holds no real numbers.
+        ValueError: the variable does not hold real numbers.
         """
         value = self.get(name)
         if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
@@ -289,27 +295,29 @@ class MatVariables(dict[str, MatValue]):
         raise ValueError(f"`{name}` holds no real numbers")
 
     def row(self, name: str) -> RealArray:
-        """Return a variable as numbers in a row; none where it holds something else."""
+        """Return a variable as a one-dimensional array; an empty one if it does not hold real
+        numbers.
+        """
         try:
             return self.reals(name).ravel()
         except ValueError:
             return np.zeros(0)
 
     def first(self, name: str) -> float:
-        """Return the first number of a variable; 0 where it has none."""
+        """Return the first number of a variable; 0 if it has none."""
         row = self.row(name)
         return float(row[0]) if row.size else 0.0
 
 
 def _fits(name: str, shape: tuple[int, ...]) -> bool:
-    """Return True; raise ValueError where a variable of a shape may not be read at all."""
+    """Return True; raise ValueError if a variable of this shape is too large to be read."""
     if math.prod(shape) > _MOST:
         raise ValueError(f"`{name}` has {math.prod(shape)} elements")
     return True
 
 
 def names(value: MatValue | None) -> list[str]:
-    """Return a variable as texts: a character matrix, a cell array, or codes of characters."""
+    """Return a variable as texts, from a character matrix, a cell array or character codes."""
     if value is None:
         return []
     if isinstance(value, str):

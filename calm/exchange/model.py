@@ -1,6 +1,6 @@
-"""Define what a file of another program says, in CALM's terms: the model that every importer fills.
+"""Define the design that every importer returns, in the terms of a mooring file.
 
-Figures are SI and degrees under the names of the mooring file; depths are positive down.
+Figures are in SI units and degrees, under the names of the mooring file; depths are positive down.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ FigureOrWord = float | str
 
 @dataclass(frozen=True)
 class ImportOptions:
-    """Hold how a file is to be read.
+    """Options of reading a file.
 
     Attributes
     ----------
-    defines : macros of WHOI Cable; ids of the catalogue by the names of oceanarray
-    columns : the headings of a table, by what they hold
-    elements : a library with the figures that a table lacks
-    allow_include : whether a file may include another from outside its folder
+    defines : macros of WHOI Cable; or catalogue ids by the names that oceanarray uses
+    columns : the headings of a table, by the name of the column in CALM
+    elements : a library with the figures missing in a table
+    allow_include : whether a file may include one from outside its folder
     """
 
     defines: Mapping[str, str] = field(default_factory=dict)
@@ -40,7 +40,7 @@ class ImportOptions:
 
 @dataclass(frozen=True)
 class Remark:
-    """Say that something was guessed, or left out: where it stands, and what."""
+    """A remark about something that was guessed or left out, and its place in the design."""
 
     where: str
     what: str
@@ -51,17 +51,17 @@ class Remark:
 
 @dataclass(eq=False)
 class ImportedComponent:
-    """Hold a definition, with the figures of the file it comes from.
+    """Definition of a component, with the figures of the file it comes from.
 
     Attributes
     ----------
-    name : as that file calls it
+    name : its name in that file
     kind : sphere, cylinder, body, cable, chain or anchor
-    figures : by the fields of `kind`; of cables and chains per metre
-    guesses : why a field is not from the file
-    comment : what a reader should know about where the figures come from
-    hull : draft [m], displaced volume [m³] and immersed area [m²], rows
-    entry : id of the catalogue entry that stands in its place
+    figures : figures by the fields of `kind`; those of cables and chains are per metre
+    guesses : for each field that is not from the file, why
+    comment : comment about the source of the figures
+    hull : rows of draft [m], displaced volume [m³] and immersed area [m²]
+    entry : id of the catalogue entry that replaces it, if any
     """
 
     name: str
@@ -76,42 +76,43 @@ class ImportedComponent:
     def of_line(
         cls, name: str, weight: float, figures: dict[str, FigureOrWord]
     ) -> ImportedComponent:
-        """Make a cable, or a chain where it is called one and sinks.
+        """Make a cable, or a chain if it is called one and sinks.
 
         Parameters
         ----------
-        name : as that file calls it
-        weight : of a metre in water, negative for what floats [N]
-        figures : its diameter and drag, to which the weight is added
+        name : its name in that file
+        weight : weight in water per metre, negative for a line that floats [N]
+        figures : its diameter and drag; the weight is added here
         """
         figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
         kind = "chain" if weight >= 0.0 and is_called(name, "chain") else "cable"
         return cls(name, kind, figures)
 
     def number(self, field: str) -> float:
-        """Return a figure; 0 where it has none."""
+        """Return a figure; 0 if it is missing."""
         return float(self.figures.get(field, 0.0))
 
     def identity(self) -> tuple[object, ...]:
-        """Return all its figures: components with the same figures are one definition."""
+        """Return all figures as a key: components with equal keys share one definition."""
         figures = tuple(sorted(self.figures.items(), key=lambda pair: pair[0]))
         return self.name, self.kind, figures, self.hull
 
 
 @dataclass(eq=False)
 class ImportedClamp:
-    """Represent a component clamped on a piece, `at` metres from the piece's upper end."""
+    """Represent a component clamped on a piece, `at` metres below the piece's upper end."""
 
     component: ImportedComponent
     at: float
     guess: str = ""
     label: str = ""
     serial: str = ""
+    planned_depth: float | None = None
 
 
 @dataclass(eq=False)
 class ImportedPiece:
-    """Represent a piece of the line; `length` [m] is that of a cable or chain."""
+    """Represent a piece of the line; `length` [m] is given for cables and chains only."""
 
     component: ImportedComponent
     length: float | None = None
@@ -120,24 +121,25 @@ class ImportedPiece:
     label: str = ""
     count: int = 1
     serial: str = ""
+    planned_depth: float | None = None
 
     @property
     def extent(self) -> float:
-        """The length of a line, or that of its component [m]."""
+        """Length of the piece [m]: its own, or that of its component."""
         return self.component.number("length") if self.length is None else self.length
 
     def clamp(
         self, component: ImportedComponent, at: float, guess: str = "", label: str = "",
         serial: str = "",
     ) -> None:  # fmt: skip
-        """Clamp a component on it, after those that sit above.
+        """Clamp a component on this piece, below the clamps above it.
 
         Parameters
         ----------
-        component : that is clamped on
+        component : the component
         at : distance from its upper end [m]
-        guess : why the place is not from the file
-        label, serial : its name in results, and its number
+        guess : why the place is guessed; empty if it is from the file
+        label, serial : its name in results, and its serial number
         """
         self.clamps.append(ImportedClamp(component, at, guess, label, serial))
         self.clamps.sort(key=lambda clamp: clamp.at)
@@ -145,8 +147,10 @@ class ImportedPiece:
 
 @dataclass(eq=False)
 class ImportedLeg:
-    """Represent a leg of a net: its pieces from its upper end, and its ends as the file has them,
-    such as ``{join: A}``; empty where the key is not needed.
+    """Represent a leg of a net.
+
+    `items` are its pieces from the upper end. `top` and `bottom` are the keys of its ends as in a
+    mooring file, such as ``{join: A}``; empty if the key is not needed.
     """
 
     name: str
@@ -156,33 +160,36 @@ class ImportedLeg:
 
 
 def held_at(depth: float, east: float, north: float) -> str:
-    """Return the key of an end of a leg that is held at a depth and a place [m]."""
+    """Return the key of a leg's end that is held at a depth and a place [m]."""
     return f"{{held: {{depth: {depth:.9g} m, at: [{east:.9g} m, {north:.9g} m]}}}}"
 
 
 def anchored_at(east: float, north: float, depth: float | None = None) -> str:
-    """Return the key of a lower end with an anchor [m]; its depth where it is not the water's."""
+    """Return the key of a leg's lower end that has an anchor at a place [m].
+
+    `depth` [m] is given if the anchor is not at the depth of the water.
+    """
     deeper = "" if depth is None else f", depth: {depth:.9g} m"
     return f"{{anchor: {{at: [{east:.9g} m, {north:.9g} m]{deeper}}}}}"
 
 
 def joined_at(node: str) -> str:
-    """Return the key of an end that joins others at a node."""
+    """Return the key of a leg's end that joins other legs at a node."""
     return f"{{join: {node}}}"
 
 
 @dataclass(eq=False)
 class ImportedWater:
-    """Hold the environment of the line.
+    """The water, the current and the wind of the design.
 
     Attributes
     ----------
-    depth : of the water [m]; None in a tow whose file gives none
-    density : [kg/m³], or rows of depth and density; None where the file does not say
-    gravity : [m/s²]
-    current : rows of depth, and speed to the east, to the north and up [m/s]
-    wind : speed [m/s] and where it blows to [degrees]
-    guesses : why a field is not from the file
+    depth : depth of the water [m]; None in a tow whose file gives none
+    density : density [kg/m³], or rows of depth and density; None if the file gives none
+    gravity : gravitational acceleration [m/s²]
+    current : rows of depth [m] and speeds east, north and up [m/s]
+    wind : speed [m/s] and the direction toward which it blows [degrees]
+    guesses : for each field that is not from the file, why
     """
 
     depth: float | None
@@ -195,7 +202,9 @@ class ImportedWater:
 
 @dataclass(eq=False)
 class ImportedTow:
-    """Hold speed [m/s], course [degrees], height of the sheave above the water [m]."""
+    """The speed [m/s] and course [degrees] of a tow, and the height of the sheave above the
+    water [m].
+    """
 
     speed: float
     toward: float
@@ -204,24 +213,24 @@ class ImportedTow:
 
 @dataclass(eq=False)
 class ImportedDesign:
-    """Hold a mooring or a tow as another program's file gives it.
+    """A mooring or a tow as the file of another program describes it.
 
     Attributes
     ----------
-    program : that wrote the file
-    items : from the top down; of a tow, from the ship; of a net, one leg after the other
-    legs : of a net
-    water : None where the file gives no environment
-    environment : lines of the `environment` key in its place
-    solver : keys of `solver`, each with a comment
-    guessed : guesses that belong to no figure; figures carry their own
-    dropped : what the file says and CALM cannot use
-    notes : what else the heading of the mooring file says
-    heading : further keys of the mooring file, as it has them
-    in_kilograms : whether the file counts forces in kilograms-force
-    sunken : the uppermost component where the line, once solved, leaves it under water; None where
-        there is no question
-    understood : how the file was read, for people; empty where its format leaves no choice
+    program : the program that wrote the file
+    items : pieces from the top down (in a tow from the ship, in a net leg after leg)
+    legs : the legs of a net
+    water : the environment; None if the file gives none
+    environment : lines of the `environment` key that replaces `water`
+    solver : keys of `solver`, each with its value and a comment
+    guessed : guesses about the design; those about a figure are kept with it
+    dropped : what the file gives but CALM cannot use
+    notes : further comments at the head of the mooring file
+    heading : further keys of the mooring file, as text
+    in_kilograms : whether the file gives forces in kilograms-force
+    sunken : definition of the uppermost component if it turns out to be submerged once the line is
+        solved; None if the file decides this
+    understood : how the file was interpreted, as a text; empty if its format leaves no choice
     """
 
     program: str
@@ -243,12 +252,14 @@ class ImportedDesign:
     understood: str = ""
 
     def lay(self, items: list[ImportedPiece], top: str, bottom: str) -> None:
-        """Add a leg, from its upper end, to those of a net."""
+        """Add a leg to the net; its pieces are listed from the upper end."""
         self.legs.append(ImportedLeg(f"leg-{len(self.legs) + 1}", items, top, bottom))
         self.items += items
 
     def components(self) -> Iterator[ImportedComponent]:
-        """Every definition in use, those of clamps after that of their piece; repeats included."""
+        """Yield the definition of every piece, then the definitions of its clamps, with
+        repetitions.
+        """
         for item in self.items:
             yield item.component
             for clamp in item.clamps:

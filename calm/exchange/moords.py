@@ -1,4 +1,4 @@
-"""Read a design of moords: rows of elements of Mooring Design & Dynamics, from the anchor up."""
+"""Read a design of moords: a list of elements of Mooring Design & Dynamics, from the anchor up."""
 
 import csv
 import io
@@ -13,18 +13,21 @@ from calm.whole_file import read_text
 
 _MARKS = {"name", "length", "buoyancy", "bool_line", "bool_clampon", "height_along_inline"}
 _FIGURES = ("length", "buoyancy", "material", "width", "diameter", "drag")
-_OFF = 1e-6  # m by which a clamp may stand off its piece
+_OFF = 1e-6  # m: distance by which a clamp may lie beyond its piece
 _NOTE = "It solves the equations of Mooring Design & Dynamics. See `calm docs import-table`."
 
 
 def is_moords(content: bytes) -> bool:
-    """Return whether a file is such a design, by its headings."""
+    """Return whether a file is a design of moords, by its headings."""
     head = content.split(b"\n", 1)[0].decode("utf-8", "replace")
     return set(head.strip().split(",")) >= _MARKS
 
 
 def read_moords(path: Path) -> model.ImportedDesign:
-    """Read a design (InputError: its headings or figures are not those of that program)."""
+    """Read a design.
+
+    InputError: its headings or figures are not those of moords.
+    """
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:
         raise refused(path, "is not a design of moords: its headings are others")
@@ -33,7 +36,7 @@ def read_moords(path: Path) -> model.ImportedDesign:
     problems: list[str] = []
     elements = [_element(row, place, problems) for place, row in enumerate(rows, 2)]
     if not problems and rows[0].get("bool_clampon") == "True":
-        problems.append("row 2: a clamp stands before the first piece")
+        problems.append("row 2: a clamp is listed before the first piece")
     if problems:
         raise refused(path, *problems)
     anchor = anchor_of(elements[0])

@@ -1,8 +1,9 @@
 """Read the configuration of a mooring in oceanarray, a file `NAME.mooring.yaml`.
 
-`inline` names the pieces of the line and `clamp` the instruments beside it, both with heights above
-the bottom and most without any figure: those come from a library of elements or the catalogue.
-Where no rope is listed between two pieces, there is one as long as their heights leave room for.
+`inline` lists the pieces of the line, and `clamp` the instruments clamped on it, both with heights
+above the seabed. Most have no other figures, which are looked up in a library of elements or in the
+catalogue. If no rope is listed between two pieces, one is inserted with the length that their
+heights require.
 """
 
 import re
@@ -28,25 +29,28 @@ from calm.files.yaml_document import Document, read_document
 from calm.positions import plain_degrees
 
 ROPE = "rope"
-"""The name of what is between pieces where the file lists nothing."""
-_NAMES = ("component_id", "label", "hardware_type", "category", "instrument")  # of what it is
+"""The name of the rope that is inserted between pieces."""
+# keys that may name a component
+_NAMES = ("component_id", "label", "hardware_type", "category", "instrument")
 _CLOSE = 0.05  # m between pieces that touch
-_OFF, _ROUNDED = 0.02, 0.5  # of a length, and m, that heights may differ by: most are whole metres
+# relative difference, and difference in metres, allowed between heights: most are whole metres
+_OFF, _ROUNDED = 0.02, 0.5
 _MARKS = re.compile(rb"^(clamp|inline|instruments) *:", re.M)
-_PLACES = ("seabed", "deployment", "planned", "")  # of a position, the most exact first
+# prefixes of the keys of a position, the most exact first
+_PLACES = ("seabed", "deployment", "planned", "")
 _MASS = re.compile(r"(\d+(?:\.\d+)?) *kg\b")
 
 
 def is_oceanarray(content: bytes) -> bool:
-    """Return whether a file is such a configuration, by its keys."""
+    """Return whether a file is a configuration of oceanarray, by its keys."""
     return re.search(rb"^waterdepth *:", content, re.M) is not None and bool(_MARKS.search(content))
 
 
 def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
-    """Read such a configuration.
+    """Read a configuration of oceanarray.
 
-    InputError: it lists no line, a height or length is missing or wrong, or nothing is known of a
-    name.
+    InputError: it lists no line, a height or length is missing or wrong, or a name is known neither
+    in the library nor in the catalogue.
     """
     document, problems = read_document(path), list[Problem]()
     library = {} if options.elements is None else read_library(options.elements)
@@ -76,19 +80,38 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
     return design
 
 
+def listed_instruments(path: Path) -> list[tuple[int, str, str, float]]:
+    """Return line, label, serial number and height above the bottom [m] of each instrument.
+
+    One without a serial number or a height is left out. InputError: the file is damaged.
+    """
+    document, problems = read_document(path), list[Problem]()
+    reading = _Reading(document, problems)
+    reading.depth = reading.metres(document.data, (), "waterdepth")
+    entries = [one for key in ("inline", "clamp", "instruments") for one in reading.entries(key)]
+    if problems:
+        raise InputError(problems)
+    return [
+        (document.problem(one.place, "").line, one.label, one.serial, one.height)
+        for one in entries
+        if one.serial and one.height is not None
+    ]
+
+
 _Location = tuple[str | int, ...]
-"""Where something stands in the file: keys, and numbers of items."""
+"""The place of an item in the file: keys, and indices in lists."""
 
 _Found = tuple[model.ImportedComponent, str]
-"""What a name stands for, and what of that is guessed."""
+"""The component that a name means, and what about it is guessed."""
 
 
 @dataclass(frozen=True)
 class _Entry:
-    """Hold what an item of the file says; heights are above the bottom [m].
+    """An item of the file; heights are above the seabed [m].
 
-    `place` is where it stands, `names` what it is called, the most exact first, `instrument` the
-    word of oceanarray for one; of `middle`, `bottom` and `top` one is known, or none.
+    `place` is its location in the file, `names` are its names, the most exact first, and
+    `instrument` is oceanarray's word for the kind of instrument. At most one of `middle`, `bottom`
+    and `top` is given.
     """
 
     place: _Location
@@ -104,17 +127,16 @@ class _Entry:
 
     @property
     def height(self) -> float | None:
-        """Return its height, by whichever is given."""
+        """Return the height of its middle, bottom or top, whichever is given [m]."""
         given = (self.middle, self.bottom, self.top)
         return next((one for one in given if one is not None), None)
 
     @property
     def is_anchor(self) -> bool:
-        """Return whether it is called an anchor."""
         return is_called(" ".join(self.names), "anchor")
 
     def lower_end(self, extent: float) -> float | None:
-        """Return the height of its lower end, so long as it is [m]."""
+        """Return the height of its lower end [m], for a piece of length `extent`."""
         if self.is_anchor:
             return 0.0
         if self.bottom is not None:
@@ -126,18 +148,18 @@ class _Entry:
 
 @dataclass
 class _Reading:
-    """Read the items of the file; what is wrong with it is added to `problems`."""
+    """Read the items of the file, and add messages about mistakes to `problems`."""
 
     document: Document
     problems: list[Problem]
     depth: float | None = None
 
     def refuse(self, place: _Location, said: str) -> None:
-        """Add what is wrong at a place."""
+        """Add a problem at a place of the file."""
         self.problems.append(self.document.problem(place, said))
 
     def metres(self, item: Mapping[str, Any], place: _Location, key: str) -> float | None:
-        """Return a length or height of an item [m]; None where there is none."""
+        """Return a length or height of an item [m]; None if it is missing or wrong."""
         if item.get(key) is None:
             return None
         found = number(str(item[key]))
@@ -186,7 +208,7 @@ class _Reading:
 
 @dataclass
 class _Parts:
-    """Look names up: in the catalogue as asked, in the library, or in the catalogue."""
+    """Find components by name in the user's definitions, in the library or in the catalogue."""
 
     reading: _Reading
     stands_for: Mapping[str, str]
@@ -195,12 +217,14 @@ class _Parts:
     _known: dict[tuple[str, ...], _Found | None] = field(default_factory=dict)
 
     def of(self, entry: _Entry) -> _Found | None:
-        """Return what an item is, and what of that is guessed; None where nothing is known."""
+        """Return the component of an item, and what about it is guessed; None if nothing is
+        known.
+        """
         said = f"neither the library nor the catalogue has `{entry.names[0]}`"
         return self._named(entry.names, entry.instrument, entry.place, said)
 
     def rope(self, entry: _Entry, between: str) -> _Found | None:
-        """Return the rope below an item, between pieces where none is listed."""
+        """Return the rope that is inserted below an item."""
         return self._named((ROPE,), "", entry.place, f"no line is listed {between}")
 
     def _named(
@@ -209,7 +233,7 @@ class _Parts:
         if names not in self._known:
             self._known[names] = self._found(names, instrument)
             if self._known[names] is None:
-                said += f'; give it in --elements FILE, or an id for it: --define "{names[0]}=ID"'
+                said += f'; add it to --elements FILE, or give its id: --define "{names[0]}=ID"'
                 self.reading.refuse(place, said)
         return self._known[names]
 
@@ -253,7 +277,9 @@ class _Parts:
 
 @dataclass(frozen=True)
 class _Strung:
-    """A line with the heights of its pieces' lower ends, as the file has them and by lengths."""
+    """The pieces of a line and the heights of their lower ends [m]: `nominal` ones as in the
+    file, and `height` from the lengths.
+    """
 
     items: list[model.ImportedPiece]
     nominal: list[float]
@@ -261,7 +287,9 @@ class _Strung:
 
 
 def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> _Strung:
-    """Return the pieces from the anchor up, ropes between them, and put them into the design."""
+    """Return the pieces from the anchor up, with ropes inserted between them, and add them to the
+    design.
+    """
     items: list[model.ImportedPiece] = []
     nominal, height = [0.0], [0.0]  # of lower ends; the last is that of the piece to come
     if not line[-1].is_anchor:
@@ -306,7 +334,7 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
                 )
                 design.guessed.append(model.Remark(entry.label, said))
             elif gap < -_CLOSE:
-                said = f"stands {-gap:.3g} m within what is below it: put on top of that"
+                said = f"overlaps the piece below by {-gap:.3g} m; it is placed on top"
                 design.guessed.append(model.Remark(entry.label, said))
                 lower = nominal[-1]
             at, below, roped = lower, f"`{entry.label}`", 0.0
@@ -327,19 +355,19 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
 
 
 def _hang(beside: list[_Entry], strung: _Strung, parts: _Parts) -> None:
-    """Clamp instruments on the lines at their heights, or at the nearest end of one."""
+    """Clamp the instruments on the lines at their heights, or at the nearest end of a line."""
     lines = [i for i, one in enumerate(strung.items) if one.component.kind in FLEXIBLE_KINDS]
     if beside and not lines and not parts.reading.problems:
         parts.reading.refuse(("inline",), "has no line to clamp instruments on")
     nominal, height = np.array(strung.nominal), np.array(strung.height)
     for entry in beside:
-        found, asked = parts.of(entry), entry.height
-        if asked is None:
+        found, wanted = parts.of(entry), entry.height
+        if wanted is None:
             said = f"`{entry.label}` needs `hab`, its height above the bottom"
             parts.reading.refuse(entry.place, said)
-        if found is None or asked is None or not lines:
+        if found is None or wanted is None or not lines:
             continue
-        top = float(np.interp(asked, nominal, height)) + max(asked - float(nominal[-1]), 0.0)
+        top = float(np.interp(wanted, nominal, height)) + max(wanted - float(nominal[-1]), 0.0)
         own = min(lines, key=lambda i: max(height[i] - top, top - height[i + 1], 0.0))
         at = float(np.clip(height[own + 1] - top, 0.0, height[own + 1] - height[own]))
         off = abs(float(height[own + 1]) - at - top)
@@ -347,7 +375,7 @@ def _hang(beside: list[_Entry], strung: _Strung, parts: _Parts) -> None:
         if off > _CLOSE:
             guess = f"{guess}; " * bool(guess) + f"moved by {off:.3g} m onto the nearest line"
         host = strung.items[own]
-        host.clamp(found[0], round(at, 3), guess, f"{entry.label} {asked:g}", entry.serial)
+        host.clamp(found[0], round(at, 3), guess, f"{entry.label} {wanted:g}", entry.serial)
 
 
 def _heading(reading: _Reading) -> dict[str, str]:

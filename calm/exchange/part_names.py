@@ -1,4 +1,4 @@
-"""What the names of parts say about them, in the languages of their lists."""
+"""Recognise the kind of a part by its name, in several languages."""
 
 import re
 
@@ -31,30 +31,32 @@ _NAMES = {
         r"|braid|strand|\b\d{1,2}x\d{1,2}\b(?!.*(?:\bgla|\bball|verre|vidrio|\bin\b|[\"\u2033]))|\bmanila\b|sisal|hemp\b|umbilical|\bcoax"
     ),
 }
-"""Names of parts in the languages of their lists, by what these are."""
+"""Patterns of the names of parts in several languages, by kind."""
 
 _HEAVY = 20.0  # N: nothing that only joins weighs more, whatever it is called
 _LONG, _SLENDER = 3.0, 60.0
-"""Metres, and diameters, of which a piece is longer where it is a line, whatever it is called."""
+"""A piece longer than both this length [m] and this number of diameters is a line, whatever its
+name.
+"""
 
 _LONGEST_PIECE = 20.0  # m of a rigid piece
 
 
 def is_called(name: str, *what: str) -> bool:
-    """Return whether a name is that of a release, chain, connector, anchor, line or rigid part.
+    """Return whether a name belongs to a part of one of the given kinds.
 
-    Connectors are shackles, swivels and links; lines are wires, ropes and chains; floats,
-    instruments and fittings, or their kinds and families, are rigid.
+    The kinds are release, chain, connector (shackles, swivels, links), anchor, line (wires, ropes,
+    chains) and rigid (floats, instruments and fittings, and the names of their families).
     """
     return any(re.search(_NAMES[each], name, re.I) for each in what)
 
 
 def is_long(name: str, length: float, across: float) -> bool:
-    """Return whether a piece is a line by its size, whatever it is called.
+    """Return whether a piece is a line, by its size alone.
 
     Parameters
     ----------
-    length, across : of the piece [m]; 0 where it is not known how wide it is
+    length, across : length and diameter of the piece [m]; `across` is 0 if it is unknown
     """
     if is_called(name, "release", "connector"):
         return False
@@ -67,9 +69,10 @@ def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
 
     Parameters
     ----------
-    name : as its program calls it
+    name : its name in the other program
     buoyancy : net force in water, positive up [N]
-    fastener : whether its program marks it so, which may mark instruments and floats too
+    fastener : whether the other program marks it as a fastener; it may mark instruments and floats,
+        too
     """
     if is_called(name, "release"):
         return "release"
@@ -81,7 +84,7 @@ def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
 
 
 def size_in(name: str) -> float:
-    """Return a diameter in a name such as `8 mm wire` or `3/8" chain` [m]; 0 without one."""
+    """Return the diameter in a name such as `8 mm wire` or `3/8" chain` [m]; 0 if there is none."""
     found = re.search(r"(\d+(?:[.,]\d+)?)\s*mm\b", name, re.I)
     if found:
         return float(found[1].replace(",", ".")) / 1000.0

@@ -1,4 +1,4 @@
-"""Tell whether the float of an imported design is one at the surface, by the solved line."""
+"""Decide from the solved line whether the float of an imported design is at the surface."""
 
 from pathlib import Path
 
@@ -9,10 +9,11 @@ from calm.exchange.design_writer import mooring_text
 
 
 def sink_what_stays_under_water(design: model.ImportedDesign, output: Path) -> None:
-    """Put `sunken` in the place of a float that the line leaves under water when nothing moves.
+    """Replace the upper float by `sunken` if it is under water in still water.
 
-    What a current pulls under is still a float at the surface, and one too small. A line without
-    an equilibrium is left as it is. The mooring file is to stand at `output`.
+    A float that is under water only in a current remains a surface float, although one that is too
+    small. A line without an equilibrium is not changed. `output` is the path of the mooring file
+    that will be written.
     """
     if design.sunken is None:
         return

@@ -1,4 +1,6 @@
-"""Mooring files and catalogues: text in, validated models in SI out. Nothing is computed here."""
+"""Read mooring files and catalogues: from text to validated models in SI units. No physics is
+computed here.
+"""
 
 from calm.files.catalogue import Assembly, Catalogue
 from calm.files.check_limits import Accept, Checks, SafetyFactors

@@ -1,7 +1,8 @@
-"""The component catalogue: shipped, the user's own, files given with a command, and in-file ones.
+"""The component catalogue: shipped components, those of the user, of given files, and of the
+mooring file.
 
-Definitions are kept as written and validated when they are asked for, so that a run pays only for
-the components it uses. A user's files are read again only where they changed.
+Definitions are kept as text and validated on first use, so that unused components take no time.
+The user's files are read again only if they have changed.
 """
 
 from __future__ import annotations
@@ -32,10 +33,10 @@ FAMILY_ROLES = {
     "connectors": "connector",
     "anchors": "anchor",
 }
-"""The families of the catalogue, one file each, and what their components are for."""
+"""The families of the catalogue, one file each, and the role of their components."""
 
 _HEAD = re.compile(r"^(?=[^ \n#])(?:([\w.-]+): *(?:#.*)?$)?", re.MULTILINE | re.ASCII)
-"""A line that is not indented; its group is the id where it is one and nothing else."""
+"""An unindented line; the group is the id if the line contains only an id."""
 
 
 class Assembly(Definition):
@@ -53,13 +54,13 @@ Defined = Component | Assembly | Outline
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Hold definitions in levels, the nearest first: it hides those of the same id below."""
+    """Definitions in levels, the nearest first, which hide those of their id in later levels."""
 
     levels: tuple[Level, ...]
 
     @classmethod
     def load(cls, files: Sequence[str | Path] = ()) -> Catalogue:
-        """Load the shipped catalogue, the user's own above it, and the files given on top.
+        """Load the shipped catalogue, with the user's own above it and the given files on top.
 
         InputError: a catalogue of the user cannot be read.
         """
@@ -84,14 +85,15 @@ class Catalogue:
         return cls((UnreadLevel(_shipped_files()),))
 
     def under(self, definitions: SourceMapping) -> Catalogue:
-        """Lay this catalogue under the `components:` of a mooring file."""
+        """Return a catalogue with the `components:` of a mooring file above this one."""
         entries = map(self._completed, entries_of(definitions, None))
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def _completed(self, entry: CatalogueEntry) -> CatalogueEntry:
-        """Return an entry; one without `kind` completes the definition of its id below.
+        """Return an entry; one without `kind` completes the definition of the same id in this
+        catalogue.
 
-        Keys without a value are left out. An assembly has no figures of its own to complete.
+        Keys without a value are left out. Assemblies have no figures to complete.
         """
         section, below = entry.section, self.entry(entry.id)
         kind = None if below is None else below.section.data.get("kind")
@@ -103,15 +105,17 @@ class Catalogue:
         return CatalogueEntry(entry.id, below.family, whole)
 
     def ids(self) -> list[str]:
-        """Return every id, in the order of the files."""
+        """Return all ids in the order of the files."""
         return list(dict.fromkeys(id for level in reversed(self.levels) for id in level))
 
     def entry(self, id: str) -> CatalogueEntry | None:
-        """Return the definition of an id as written; None when there is none."""
+        """Return the unvalidated definition of an id; None if there is none."""
         return next(self._of(id), None)
 
     def hidden(self, id: str) -> CatalogueEntry | None:
-        """Return the definition that a nearer one of the same id hides."""
+        """Return the definition that a nearer definition of the same id hides; None if there is
+        none.
+        """
         return next(islice(self._of(id), 1, None), None)
 
     def _of(self, id: str) -> Iterator[CatalogueEntry]:
@@ -122,11 +126,11 @@ class Catalogue:
         return {id: next(self._of(id)) for id in self.ids()}
 
     def nearest(self, id: str) -> str | None:
-        """Return the id most like a text."""
+        """Return the id most similar to a text."""
         return nearest(id, self.ids())
 
     def of_a_sort(self, word: str) -> list[str]:
-        """Return the first ids of a family, role or kind, none where the word is none of these."""
+        """Return the first six ids of a family, role or kind; none for any other word."""
         sort = word.casefold().rstrip("s")
         return [
             id
@@ -137,14 +141,14 @@ class Catalogue:
         ][:6]
 
     def get(self, id: str) -> Defined:
-        """Return what an id stands for, validated.
+        """Return the validated definition of an id.
 
         Raises
         ------
         UsageError
             There is no such id.
         InputError
-            Its definition is wrong.
+            Its definition has mistakes.
         """
         entry = self.entry(id)
         if entry is None:
@@ -156,9 +160,9 @@ class Catalogue:
         return definition
 
     def all(self) -> dict[str, Defined]:
-        """Return everything in the catalogue, validated.
+        """Return all definitions of the catalogue, validated.
 
-        InputError: with the mistakes of all definitions.
+        InputError: definitions have mistakes; those of all definitions are listed.
         """
         problems: list[Problem] = []
         found = {
@@ -171,9 +175,9 @@ class Catalogue:
         return found
 
     def same_thing(self, id: str) -> list[str]:
-        """Return the ids of the same thing as an id, the one to use first; the id alone if none.
+        """Return the ids of all definitions of the same product, the preferred one first.
 
-        Those are the id that it prefers and all that prefer the same.
+        These are the id that this one prefers, and all ids that prefer the same.
         """
         preferred = {each: entry.section.data.get("prefer") for each, entry in self._all().items()}
         first = preferred.get(id) or id
@@ -185,7 +189,9 @@ def _shipped_files() -> list[Path]:
 
 
 def user_folder() -> Path:
-    """Return the user's own catalogue: `CALM_CATALOG_DIR`, or a folder in the home folder."""
+    """Return the folder of the user's catalogue: `CALM_CATALOG_DIR`, or a folder in the home
+    folder.
+    """
     if folder := os.environ.get("CALM_CATALOG_DIR"):
         return Path(folder)
     configuration = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")
@@ -199,14 +205,14 @@ def define(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> Defined | None:
-    """Return the model of an entry, or of a section laid over it; None when it has mistakes.
+    """Return the model of an entry, or of an entry with overrides; None if it has mistakes.
 
     Parameters
     ----------
     entry : CatalogueEntry
-    section : of the entry, or laid over it
-    also_allowed : keys that stand beside and belong to something else
-    context : None or, where it is to be used in air, `IN_AIR`
+    section : the section of the entry, or of its overrides
+    also_allowed : keys in the section that do not belong to the component
+    context : `IN_AIR` for a component used in air, or None
     """
     kind = section.data.get("kind")
     if kind is None:
@@ -234,7 +240,7 @@ def _kinds() -> str:
 
 @dataclass(frozen=True, eq=False)
 class CatalogueEntry:
-    """Hold a definition as written, with the name of the family (the file) it belongs to."""
+    """A definition as in the file, and its family, named after the file."""
 
     id: str
     family: str | None
@@ -242,14 +248,14 @@ class CatalogueEntry:
 
     @property
     def replaces(self) -> list[str]:
-        """Return the keys in place of those of a definition that the entry completes."""
+        """Return the keys that replace values of the definition which this entry completes."""
         base = self.section.base
         given = frozenset[str]() if base is None else self.section.own & base.data.keys()
         return sorted(given - {"source", "sources", "searched", "note", "date"})
 
     @property
     def place(self) -> str:
-        """Return where the definition is, for people."""
+        """Return the place of the definition, for messages."""
         place = self.section.problem((), "")
         return f"{place.path}:{place.line}" if place.line else place.path
 
@@ -258,20 +264,20 @@ Level = Mapping[str, CatalogueEntry]
 
 
 class UnreadLevel(Level):
-    """Hold the entries of files whose mistakes need not be known before they matter.
+    """Entries of catalogue files, each read on first use.
 
-    Only the ids are looked for beforehand, by the lines that are not indented; an entry is read
-    when it is asked for. Where such a line is anything else, or an entry turns out to be wrong,
-    all files are read whole. An id alone in a line within a text in quotes would be taken for one.
+    Only the ids are searched at first, in the lines that are not indented. All files are read
+    completely if one of these lines is not an id, or if an entry has a mistake. An id alone in a
+    line of a multi-line quoted text would be mistaken for a definition.
 
     Parameters
     ----------
-    paths : of the files
+    paths : paths of the files
 
     Raises
     ------
     InputError
-        A file cannot be read; or, as soon as that is seen, with the mistakes of all.
+        A file cannot be read, or has mistakes; those of all files are listed.
     """
 
     def __init__(self, paths: Sequence[Path]) -> None:
@@ -311,7 +317,7 @@ class UnreadLevel(Level):
 
 
 def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
-    """Read the entries of files, which together define an id once."""
+    """Read the entries of files, in which an id may be defined only once."""
     level: dict[str, CatalogueEntry] = {}
     for path in paths:
         try:
@@ -329,7 +335,7 @@ def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
 
 
 def entries_of(definitions: SourceMapping, family: str | None) -> list[CatalogueEntry]:
-    """Return the entries of a mapping of definitions by id; the family is None in a mooring."""
+    """Return the entries of a mapping of definitions by id; `family` is None in a mooring file."""
     entries = []
     for id, fields in definitions.data.items():
         if isinstance(fields, dict):
@@ -346,9 +352,9 @@ def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEn
 
 
 def _cuts(path: Path) -> Iterator[tuple[str | None, str]]:
-    """Yield the id of each definition, None where it does not begin plainly, and its text.
+    """Yield the id and the text of each definition; the id is None if it cannot be recognised.
 
-    That is as far down as in the file, below empty lines.
+    Empty lines are put above the text, so that its line numbers are those of the file.
     """
     text = read_text(path)
     heads, above, end = list(_HEAD.finditer(text)), 0, 0
@@ -362,7 +368,7 @@ _LOADED: FileCache[Catalogue] = FileCache()
 
 
 def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
-    """Return the component that values define, None where they do not, and what is wrong."""
+    """Return the component that values define, or None, and the mistakes in the values."""
     problems: list[Problem] = []
     section = SourceMapping.of(Document(id, {id: dict(values)}), problems).child(id)
     definition = define(CatalogueEntry(id, None, section), section)
@@ -370,5 +376,5 @@ def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple
 
 
 def tidy_id(text: str) -> str:
-    """Return a text as the id of a component: small letters, figures and hyphens."""
+    """Return a text as an id: lower-case letters, digits and hyphens."""
     return re.sub(r"[^a-z0-9]+", "-", text.casefold()).strip("-")

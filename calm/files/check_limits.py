@@ -1,6 +1,6 @@
-"""`checks:` of a mooring file: the limits of the design check, and the findings that it accepts.
+"""The key `checks:` of a mooring file: limits of the design check, and accepted findings.
 
-Each limit has its default and the source of that; each finding accepted has a reason.
+Each limit has a default and the source of the default. Each accepted finding has a reason.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from pydantic import AfterValidator, WithJsonSchema, model_validator
 
 from calm.errors import shown, unknown
 from calm.files import definition
-from calm.files.rule_texts import ACCEPTABLE, RULES
+from calm.files.rule_texts import ACCEPTABLE, LOADED, RULES
 from calm.files.yaml_document import SourceMapping
 
 _FACTOR = definition.QuantityField("number", above=0)
 _SAFETY = definition.QuantityField("number", at_least=1)
-"""At least 1: a smaller factor would pass what breaks, or an anchor that is lifted."""
+"""At least 1: with a smaller factor, a piece that breaks or an anchor that is lifted would pass."""
 _FRICTION = definition.QuantityField("number", above=0, at_most=1)
 _SHARE = definition.QuantityField("number", at_least=0, at_most=1)
 _SPEED = definition.QuantityField("speed", at_least=0)
@@ -32,12 +32,12 @@ THE_DESIGN = "the design"
 
 @dataclass(frozen=True)
 class Limit:
-    """Annotate a key of `checks:` with who gives its default.
+    """Annotate a key of `checks:` with the source of its default.
 
     Attributes
     ----------
-    source : of the default; of one that is judged only where it is given, the design
-    default : [SI, degrees] where the model has None: it is judged all the same
+    source : source of the default; `THE_DESIGN` for a limit without a default
+    default : default [SI, degrees] of a key whose value in the model is None if it is not given
     """
 
     source: str = THIS_PROGRAM
@@ -55,7 +55,7 @@ _URI = "URI GSO mooring program"
 
 
 class SafetyFactors(definition.Model):
-    """Least breaking load over tension."""
+    """Minimum ratios of breaking load to tension, by material."""
 
     steel: Annotated[float, _SAFETY, Limit(_UFC)] = definition.described(
         "of steel and everything that is not rope", 3, default=3.0
@@ -64,12 +64,12 @@ class SafetyFactors(definition.Model):
         "of synthetic rope", 5, default=5.0
     )
     surface: Annotated[float, _SAFETY, Limit(_PRACTICE)] = definition.described(
-        "of all pieces of a surface mooring", 5, default=5.0
+        "for all pieces of a surface mooring", 5, default=5.0
     )
 
 
 class MinimumTensions(definition.Model):
-    """Least tension above the release [N]."""
+    """Minimum tensions above the release [N]."""
 
     wire: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = definition.described(
         "in wire", "500 N", default=500.0
@@ -80,9 +80,9 @@ class MinimumTensions(definition.Model):
 
 
 class Checks(definition.Model):
-    """Limits of the design check, and what of its findings is accepted.
+    """Limits of the design check, and the findings that are accepted.
 
-    A limit without a default is judged only when given.
+    A limit without a default is checked only if it is given.
     """
 
     safety_factor: SafetyFactors = definition.described(
@@ -96,7 +96,7 @@ class Checks(definition.Model):
         default=1.5,
     )
     anchor_friction: Annotated[float, _FRICTION, Limit(_DEWEY)] = definition.described(
-        "friction of an anchor on the seabed that gives none", 0.6, default=0.6
+        "default friction coefficient of an anchor on the seabed", 0.6, default=0.6
     )
     minimum_tension: MinimumTensions = definition.described(
         "above the release", {"wire": "500 N", "rope": "300 N"}, default_factory=MinimumTensions
@@ -114,7 +114,7 @@ class Checks(definition.Model):
         "working load over tension there", 1, default=1.0
     )
     waves_safety_factor: Annotated[float, _SAFETY, Limit(_2SK)] = definition.described(
-        "breaking load over greatest tension in waves", 1.67, default=1.67
+        "breaking load over maximum tension in waves", 1.67, default=1.67
     )
     fatigue_factor: Annotated[float, _SAFETY, Limit(_LIFE)] = definition.described(
         "life in waves over `service_time`", 3, default=3.0
@@ -129,31 +129,31 @@ class Checks(definition.Model):
         "margin to keep to a depth rating", "100 m", default=100.0
     )
     maximum_knockdown: Annotated[float | None, definition.POSITIVE_LENGTH, Limit(THE_DESIGN)] = (
-        definition.optional("greatest allowed knockdown of the top", "50 m")
+        definition.optional("maximum knockdown of the top", "50 m")
     )
     maximum_excursion: Annotated[float | None, definition.POSITIVE_LENGTH, Limit(THE_DESIGN)] = (
-        definition.optional("greatest allowed offset of the top", "200 m")
+        definition.optional("maximum offset of the top", "200 m")
     )
     maximum_tilt: Annotated[
         float | None, definition.QuantityField("angle", above=0, at_most=90), Limit(THE_DESIGN)
-    ] = definition.optional("greatest allowed tilt of a piece", "30 deg")
+    ] = definition.optional("maximum tilt of a piece", "30 deg")
     minimum_top_depth: Annotated[
         float | None, definition.LENGTH, Limit(THIS_PROGRAM, default=10.0)
     ] = definition.optional(
-        "least depth of the top of a sub-surface line, at low water too", "10 m"
+        "minimum depth of the top of a subsurface line, also at low water", "10 m"
     )
     planned_depth_warning: Annotated[float, definition.LENGTH, Limit()] = definition.described(
-        "distance from the planned depth beyond which the check warns, unless 2 % of that is more",
+        "distance from the planned depth above which the check warns, if above 2 % of that depth",
         "10 m",
         default=10.0,
     )
     planned_depth_limit: Annotated[float, _SHARE, Limit()] = definition.described(
-        "distance from the planned depth, as a share of it, beyond which the check fails",
+        "distance from the planned depth above which the check fails, as a share of that depth",
         "10 %",
         default=0.1,
     )
     fishbite_depth: Annotated[float, definition.LENGTH, Limit(_BERTEAUX)] = definition.described(
-        "depth down to which fish bite synthetic rope; 0 m for nowhere", "1500 m", default=1000.0
+        "maximum depth at which fish bite synthetic rope; 0 m for none", "1500 m", default=1000.0
     )
     accept: tuple[AcceptKeys, ...] = definition.described(
         "findings that this design accepts, each with its reason",
@@ -162,30 +162,34 @@ class Checks(definition.Model):
     )
 
 
-GREATER_FLATTERS = (
+LENIENT_IF_GREATER = (
     *("breaking_load", "working_load", "opening_load", "grip"),
     *("depth_rating", "max_tilt", "warn_tilt", "buoyancy"),
 )
-"""Limits by which a component is judged, and its lift: each flatters the greater it is."""
-LESSER_FLATTERS = (
+"""Limits of a component, and its buoyancy, for which a larger value makes the check more
+lenient.
+"""
+LENIENT_IF_LESS = (
     *("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt"),
     *("k_surface", "wind_area", "wind_cd"),
 )
-"""Weight and drag of a component, each of which flatters the less it is; an anchor's do not."""
+"""Weight and drag of a component, for which a smaller value makes the check more lenient, except
+for anchors.
+"""
 
 
 @dataclass(frozen=True)
 class LimitKey:
-    """Represent a key of `checks:`, such as ``safety_factor.steel``.
+    """A key of `checks:`, such as ``safety_factor.steel``.
 
     Attributes
     ----------
-    name : dotted
-    dimension : of `calm.units`
-    value : in use [SI, degrees]; None where it is not judged
-    default : None where there is none
-    source : of the default
-    backed : whether the design says where its own value comes from
+    name : name of the key, with dots
+    dimension : dimension, as in `calm.units`
+    value : value in use [SI, degrees]; None if the limit is not checked
+    default : default [SI, degrees]; None if there is none
+    source : source of the default
+    backed : whether the design gives the source of its own value
     """
 
     name: str
@@ -197,14 +201,14 @@ class LimitKey:
 
     @property
     def departs(self) -> bool:
-        """Return whether the design has another limit than the default."""
+        """Return whether the value of the design differs from the default."""
         return self.default is not None and self.value != self.default
 
 
 def limit_keys(checks: definition.Model, prefix: str = "") -> Iterator[LimitKey]:
-    """Return every limit of `checks:`, those that are not given with their default.
+    """Return all limits of `checks:`, with their defaults if they are not given.
 
-    `prefix` is that of the names where the model stands under a key of another one.
+    `prefix` is put before the names, for a model that is the value of another key.
     """
     for name, field in type(checks).model_fields.items():
         value, quantity = getattr(checks, name), definition.quantity_of(field)
@@ -230,7 +234,7 @@ def _said(text: str) -> str:
     if not text.strip():
         raise ValueError("`reason` is blank")
     if not any(sign.isalnum() for sign in text):
-        raise ValueError(f"`reason: {shown(text)}` gives no reason; say it in words")
+        raise ValueError(f"`reason: {shown(text)}` contains no words; give a reason")
     return text.strip()
 
 
@@ -239,7 +243,7 @@ Day = Annotated[
     AfterValidator(_day),
     WithJsonSchema({"type": "string", "pattern": r"^\d{4}-\d{2}-\d{2}$"}),
 ]
-"""A day such as 2027-06-30; such texts sort by date."""
+"""A date such as 2027-06-30. Dates sort correctly as texts."""
 
 Reason = Annotated[definition.Text, AfterValidator(_said)]
 
@@ -248,10 +252,10 @@ class AcceptKeys(definition.Model):
     """An item of `checks: accept:`."""
 
     rule: Annotated[definition.Text, WithJsonSchema({"enum": list(ACCEPTABLE)})] = (
-        definition.described("of the design check", "knockdown")
+        definition.described("rule of the design check", "knockdown")
     )
     reason: Reason = definition.described(
-        "why the finding is accepted", "the maker gives no load; hung on chain"
+        "reason for accepting the finding", "no load is published; hung on chain"
     )
     component: definition.Text | None = definition.optional(
         "label of the line, or a pattern of labels; all when absent", "glass *"
@@ -259,6 +263,9 @@ class AcceptKeys(definition.Model):
     by: definition.Text | None = definition.optional("who accepts it", "A. Martin")
     date: Day | None = definition.optional("day, e.g. 2026-11-20", "2026-11-22")
     until: Day | None = definition.optional("last day on which it counts", "2027-12-31")
+    load: Annotated[float | None, definition.QuantityField("force", above=0)] = definition.optional(
+        "maximum tension accepted, such as a proof load", "25 kN"
+    )
 
     @model_validator(mode="after")
     def _ends_after_it_begins(self) -> AcceptKeys:
@@ -268,21 +275,21 @@ class AcceptKeys(definition.Model):
 
 
 class Accept(AcceptKeys):
-    """Say what is accepted of a mooring.
+    """An accepted finding of a mooring.
 
-    `labels` are those of the pieces and clamps that it stands for, None for every finding of the
-    rule; `line` is its own in the mooring file.
+    `labels` are the pieces and clamps to which it applies; None means all findings of the rule.
+    `line` is the line number in the mooring file.
     """
 
     labels: tuple[str, ...] | None
     line: int
 
     def covers(self, rule: str, component: str | None) -> bool:
-        """Return whether it is of that rule and component."""
+        """Return whether a finding of a rule about a component is accepted."""
         return self.rule == rule and (self.labels is None or component in self.labels)
 
     def counts_on(self, day: calendar_date) -> bool:
-        """Return whether it has not ended before that day, and is not dated after it."""
+        """Return whether a day is within the period of the acceptance."""
         begun = self.date is None or self.date <= day.isoformat()
         return begun and (self.until is None or day.isoformat() <= self.until)
 
@@ -290,12 +297,12 @@ class Accept(AcceptKeys):
 def read_accepts(
     keys: Sequence[AcceptKeys], labels: Sequence[str] | None, top: SourceMapping
 ) -> tuple[Accept, ...]:
-    """Return what a mooring file accepts, the most specific first.
+    """Return the findings that a mooring file accepts, the most specific first.
 
     Parameters
     ----------
-    labels : of the line; None where the line has mistakes of its own
-    top : the mooring file
+    labels : labels of the line; None if the line has mistakes
+    top : top level of the mooring file
     """
     found = [_accept(one, number, labels, top) for number, one in enumerate(keys)]
     known = labels or ()
@@ -310,6 +317,9 @@ def _accept(
         rule = shown(keys.rule)
         message = unknown(f"no rule that can be accepted is called `{rule}`", rule, ACCEPTABLE)
         top.refuse((*here, "rule"), message)
+    if keys.load is not None and keys.rule not in LOADED:
+        message = f"`load` is a tension, and `{keys.rule}` judges none"
+        top.refuse((*here, "load"), message)
     covered = None
     if keys.component is not None and labels is not None:
         covered = tuple(matching(keys.component, labels))
@@ -320,10 +330,10 @@ def _accept(
 
 
 def matching(component: str, labels: Iterable[str]) -> list[str]:
-    """Return the labels that a label or a pattern of labels stands for.
+    """Return the labels that match a label or a pattern of labels.
 
-    A text that is a label is that label alone, whatever signs it has. Otherwise ``*`` stands for
-    any signs, ``?`` for one, ``[ab]`` for a or b; capitals count.
+    A text equal to a label matches only that label. In other texts ``*`` matches any characters,
+    ``?`` one character, and ``[ab]`` a or b; case matters.
     """
     labels = list(labels)
     if component in labels:

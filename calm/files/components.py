@@ -1,9 +1,9 @@
 """The kinds of components that a catalogue, or `components:` of a mooring file, can define.
 
-Some figures are alternatives: a body gives its drag as `kn` or as `drag_area` with `cd`; a net
-force is given, or follows from mass and volume. An override that gives one alternative drops the
-others; whatever it does not contradict stays. Lengths, masses and forces of cables and chains are
-per metre.
+Some figures are alternatives: a body has its drag as `kn`, or as `drag_area` and `cd`; a net force
+is given, or is computed from mass and volume. An override with one alternative removes the others,
+and keeps all figures that it does not contradict. Lengths, masses and forces of cables and chains
+are per metre.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ Elongation = Annotated[
     ],
     AfterValidator(_refuse_what_is_no_curve),
 ]
-"""Load over breaking load, and the strain under it: rows by growing load."""
+"""Rows of load over breaking load and the strain at that load, with increasing loads."""
 
 
 WeightPerMetre = Annotated[
@@ -68,7 +68,7 @@ MassPerMetre = Annotated[
 
 
 class Flexible(definition.Definition):
-    """A cable or chain: all its figures are per metre."""
+    """A cable or chain; all its figures are per metre."""
 
     role: definition.Role = "line"
     diameter: definition.Diameter
@@ -82,7 +82,7 @@ class Flexible(definition.Definition):
     )
 
     def strain_under(self, load: float) -> float:
-        """Return the strain under a load ≥ 0 [N], as the solver has it; 0 without a stiffness."""
+        """Return the strain under a load ≥ 0 [N], as in the solver; 0 without a stiffness."""
         return load / self.stiffness if self.stiffness is not None else 0.0
 
 
@@ -94,25 +94,25 @@ class Cable(Flexible):
         "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)", "0.1 N/m"
     )
     finish: Literal["smooth", "rough", "very-rough"] | None = optional(
-        "of the surface of a cable", "rough"
+        "surface finish of a cable", "rough"
     )
-    torque_balanced: bool | None = optional(
-        "of a wire rope: whether it does not turn under load", True
-    )
+    torque_balanced: bool | None = optional("whether a wire rope does not rotate under load", True)
     elongation: Elongation | None = optional(
         "rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
         [[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]],
     )
     dynamic_stiffness: definition.PositiveForce = optional(
-        "EA under the quick loads of waves, greater than that of a slow load", "600 kN"
+        "EA under the rapid loads of waves, larger than that under a slow load", "600 kN"
     )
     permanent_elongation: Annotated[
         float | None, QuantityField("number", at_least=0, at_most=1)
-    ] = optional("of a rope that has been loaded, at every tension, e.g. 4 %", "4 %")
+    ] = optional("strain that remains in a rope after loading, at every tension", "4 %")
 
     @property
     def net_buoyancy(self) -> float:
-        """Return the net force of a metre in water, positive up; of a mass alone, in air [N/m]."""
+        """Return the net force of a metre in water, positive up [N/m]; with a mass but no density,
+        that in air.
+        """
         if self.buoyancy is not None:
             return self.buoyancy
         if self.weight is not None:
@@ -123,7 +123,9 @@ class Cable(Flexible):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Return the volume displaced by a metre [m³/m], None if the mass is unknown, or is all."""
+        """Return the volume displaced by a metre [m³/m]; None if the mass is unknown, or is the
+        only figure.
+        """
         if self._gives_no_force and self.density is None:
             return None
         return definition.volume_from_weights(self.mass, self.net_buoyancy)
@@ -156,7 +158,7 @@ class Cable(Flexible):
         return self
 
     def strain_under(self, load: float) -> float:
-        """Return the strain under a load ≥ 0 [N]: by its `elongation`, where it gives one."""
+        """Return the strain under a load ≥ 0 [N], from the table `elongation` or the stiffness."""
         if self.elongation is None:
             return super().strain_under(load)
         assert self.breaking_load is not None
@@ -165,7 +167,7 @@ class Cable(Flexible):
 
 
 class Chain(Flexible):
-    """A chain; `diameter` is that of its bar."""
+    """A chain; `diameter` is that of the bar."""
 
     kind: Literal["chain"] = Field(description="which kind of component it is")
     weight: WeightPerMetre = Field(default=None, examples=["27 N/m"])
@@ -173,7 +175,7 @@ class Chain(Flexible):
 
     @property
     def net_buoyancy(self) -> float:
-        """Return the net force in water of a metre, positive up [N/m]."""
+        """Return the net force of a metre in water, positive up [N/m]."""
         if self.weight is not None:
             return -self.weight
         mass = 19.9e3 * self.diameter**2 if self.mass is None else self.mass
@@ -181,7 +183,7 @@ class Chain(Flexible):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Return the volume displaced by a metre [m³/m], None when only its weight is known."""
+        """Return the volume displaced by a metre [m³/m]; None if only the weight is known."""
         if self.mass is not None or self.weight is not None:
             return definition.volume_from_weights(self.mass, self.net_buoyancy)
         return 19.9e3 * self.diameter**2 / (self.density or STEEL_DENSITY)
@@ -193,7 +195,7 @@ class Chain(Flexible):
 
 
 class Anchor(definition.Definition):
-    """The lower end: stands on the seabed, carries no drag."""
+    """The anchor at the lower end, which has no drag in equilibrium."""
 
     role: definition.Role = "anchor"
     kind: Literal["anchor"] = Field(description="which kind of component it is")
@@ -210,7 +212,7 @@ class Anchor(definition.Definition):
 
     @property
     def net_buoyancy(self) -> float:
-        """Return the net force in water, positive up: the weight negated [N]."""
+        """Return the net force in water, positive up [N]: the negative weight."""
         if self.weight is not None:
             return -self.weight
         assert self.mass is not None
@@ -219,17 +221,17 @@ class Anchor(definition.Definition):
 
     @property
     def material_known(self) -> bool:
-        """Return whether its weight in water is given, or follows from a known material."""
+        """Return whether the weight in water is given, or follows from a known material."""
         return self.weight is not None or self.material_density is not None
 
     @property
     def material_density(self) -> float | None:
-        """Return the density given, or that of its material [kg/m³]; None if unknown."""
+        """Return the given density, or that of the material [kg/m³]; None if unknown."""
         return self.density or density_of(self.material)
 
     @property
     def displaced_volume(self) -> float | None:
-        """Return the volume of water displaced [m³], None when only the weight is known."""
+        """Return the volume of water displaced [m³]; None if only the weight is known."""
         return definition.volume_from_weights(self.mass, self.net_buoyancy)
 
     @model_validator(mode="after")
@@ -255,10 +257,10 @@ KINDS: dict[str, type[Component]] = {
 }
 
 FLEXIBLE_KINDS = frozenset(kind for kind, model in KINDS.items() if issubclass(model, Flexible))
-"""Those whose figures are per metre, and that are cut to a length."""
+"""Kinds whose figures are per metre, and that are cut to a length."""
 
 RIGID_KINDS = frozenset(kind for kind, model in KINDS.items() if issubclass(model, Rigid))
-"""Those of a fixed length, which may be clamped on a line too."""
+"""Kinds of a fixed length, which may also be clamped on a line."""
 
 
 _DRAG_KEYS = frozenset(key for form in DRAG_FORMS for key in form) | {"kt"}
@@ -271,11 +273,13 @@ _ESSENTIAL = {
     "weight": {"weight", "buoyancy", "density"},
     "drag_area": _DRAG_KEYS,
 }
-"""Figures that a component cannot do without, and the keys that give each."""
+"""Figures that every component needs, and for each the keys from which it can be computed."""
 
 
 class Outline(definition.Definition):
-    """A product without figures that its kind needs, `searched` in vain: its line gives them."""
+    """A product without figures that its kind needs and that no source publishes; the mooring file
+    must give them.
+    """
 
     model_config = ConfigDict(extra="allow")
 
@@ -297,33 +301,33 @@ class Outline(definition.Definition):
 
     @property
     def lacks(self) -> list[str]:
-        """Return the keys that a line has to give."""
+        """Return the keys that are missing and needed in the mooring file."""
         return lacking(self.model_dump(exclude_none=True))
 
     def asks(self, id: str) -> str:
-        """Return what a line is to give, for people."""
+        """Return a message about the figures missing in the definition."""
         given = self.model_dump(exclude_none=True)
         also = [key for key in self.searched or () if key not in (*given, *self.lacks)]
         keys, judged = (", ".join(f"`{key}`" for key in each) for each in (self.lacks, also))
-        said = f"no source prints {keys} of `{id}`: measure or ask the maker, and give it here"
+        said = f"no source gives {keys} of `{id}`: measure or ask the maker, and give it here"
         said += f", with {judged} for the design check" if judged else ""
         return f"{said} (the rest is from: {self.source})" if self.source else said
 
 
 def lacking(fields: Mapping[str, Any]) -> list[str]:
-    """Return the keys under `searched` that a component needs, and that it does not give."""
+    """Return the keys listed under `searched` that are necessary and missing."""
     sought = fields.get("searched")
     known = sought if isinstance(sought, list | tuple) else ()
     return [key for key, ways in _ESSENTIAL.items() if key in known and not fields.keys() & ways]
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
-    """Return the keys of a definition that an override of it makes void.
+    """Return the keys of a definition that an override makes invalid.
 
     Parameters
     ----------
-    kind : of the definition
-    base, override : the keys that the definition and the override give
+    kind : kind of the definition
+    base, override : keys of the definition and of the override
 
     Notes
     -----
@@ -370,13 +374,13 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
 def odd_overrides(
     use: str, defined: Component, component: Component, given: Set[str]
 ) -> Iterator[str]:
-    """Yield what is odd about values that a line gives in place of a definition's.
+    """Yield messages about implausible overrides of a definition.
 
     Parameters
     ----------
     use : id of the definition
-    defined, component : before and after
-    given : the keys of the line
+    defined, component : the component before and after the overrides
+    given : keys of the overrides
     """
     if "mass" in given and component.net_buoyancy == defined.net_buoyancy:
         yield (
@@ -387,7 +391,7 @@ def odd_overrides(
         share = 1.0 - CATALOGUE_DENSITY / (defined.material_density or STEEL_DENSITY)
         in_air = defined.net_buoyancy / -share
         if abs((component.weight or 0.0) - in_air) < 0.01 * in_air:
-            yield f"`weight` of {use} is what it weighs in air; `weight` is that in water"
+            yield f"`weight` of {use} equals its weight in air; `weight` means weight in water"
     fibre = fibre_of(defined.material)
     if fibre is not None and fibre_of(component.material) is None:
         yield (

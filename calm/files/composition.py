@@ -1,7 +1,8 @@
-"""YAML text to a tree of nodes, each with its place and span, by the events of PyYAML.
+"""Parse YAML text to a tree of nodes, each with its place in the text, from the events of PyYAML.
 
-libyaml, where PyYAML has it, is some thirty times as fast as the parser in Python. A file means the
-same with both: what they read differently, and what libyaml refuses, is read by the one in Python.
+libyaml, if PyYAML has it, is about thirty times as fast as the parser in Python. Both must give the
+same result: text that they read differently, and text that libyaml refuses, is read by the parser
+in Python.
 """
 
 from __future__ import annotations
@@ -16,14 +17,14 @@ from yaml.error import MarkedYAMLError, YAMLError
 from yaml.events import CollectionEndEvent
 
 _DEEPEST = 100
-"""Mappings and lists within others; the time to read brackets grows with the square of this."""
+"""Maximum depth of nested collections. The time to read brackets increases with its square."""
 
-# In YAML 1.2 they break no line, but PyYAML is of 1.1.
+# These are no line breaks in YAML 1.2, but they are in YAML 1.1, which PyYAML reads.
 _NO_BREAKS = str.maketrans(dict.fromkeys("\x85\u2028\u2029", " "))
 
 _TAG = re.compile(r"(?<![^\s\[{,])!")
 
-# They would move the cursor of a terminal, turn the figures beside them round, or be no text.
+# These could move the cursor of a terminal or reverse the digits next to them, or are not text.
 _CONTROL_CHARACTER = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
@@ -42,7 +43,7 @@ _PLAIN_TAGS = frozenset(
 
 
 class _Parser(yaml.SafeLoader):
-    """Parse in Python, reading tabs and question marks within brackets as libyaml does."""
+    """Parser in Python that reads tabs and question marks inside brackets as libyaml does."""
 
     _within_plain = False
 
@@ -59,17 +60,17 @@ class _Parser(yaml.SafeLoader):
         return token
 
     def peek(self, index: int = 0) -> str:
-        # Here a question mark would end a plain text; what is taken of it comes from the buffer.
+        # A question mark would end a plain text here; the text itself is taken from the buffer.
         sign = super().peek(index)
         return "x" if self._within_plain and sign == "?" else sign
 
 
 class _TooDeep(Exception):
-    """Too many collections stand within others."""
+    """Collections are nested too deeply."""
 
 
 def compose(text: str) -> Composition:
-    """Return the nodes of a YAML text, before which a byte order mark may stand."""
+    """Return the nodes of a YAML text, with or without a byte-order mark."""
     start = int(text.startswith("\ufeff"))
     plain = text[start:] if text.isascii() else text[start:].translate(_NO_BREAKS)
     try:
@@ -84,7 +85,9 @@ def compose(text: str) -> Composition:
 
 
 def _is_read_differently(text: str) -> bool:
-    """Return whether the parser in Python sees other tabs, byte order marks or tags in it."""
+    """Return whether the parser in Python reads tabs, byte-order marks or tags of the text
+    differently.
+    """
     return "\t" in text or "\ufeff" in text or ("!" in text and _TAG.search(text) is not None)
 
 
@@ -99,7 +102,9 @@ def _composed_by_python(text: str, start: int, plain: str) -> Composition:
 
 
 def _syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Refusal]:
-    """Show every tab in the indentation, the usual cause; else what the parser says."""
+    """Return a problem for every tab in the indentation, the usual cause, or else that of the
+    parser.
+    """
     if "\\t" in str(error.problem):
         found = [
             (number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
@@ -116,13 +121,13 @@ def _syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Refusal]:
 
 
 class _Reader:
-    """Turn the events of a text into nodes, noting what is not allowed.
+    """Convert the events of a text to nodes, and collect the refused parts.
 
     Parameters
     ----------
     text : str
-    start : where in it that begins which the events are of
-    next_event : gives one after the other
+    start : index in the text at which the parsed part begins
+    next_event : returns the next event
     """
 
     def __init__(self, text: str, start: int, next_event: Callable[[], events.Event]) -> None:
@@ -147,7 +152,7 @@ class _Reader:
         return Composition(root, tuple(self._refusals))
 
     def _node(self, event: events.NodeEvent, depth: int) -> Node:
-        """Return the node that an event begins, and all below it."""
+        """Return the node that begins with an event, with all nodes below it."""
         if depth > _DEEPEST:
             raise _TooDeep
         mark = event.start_mark
@@ -187,14 +192,16 @@ class _Reader:
         return Node(kind, start, end, *place, style, data, tuple(keys), tuple(children))
 
     def _items(self, depth: int) -> tuple[list[Node], CollectionEndEvent]:
-        """Return the items of a sequence, and what ends it."""
+        """Return the items of a sequence, and the event that ends it."""
         items = []
         while not isinstance(event := self._next(), CollectionEndEvent):
             items.append(self._node(event, depth))
         return items, event
 
     def _entries(self, keys: list[Node], depth: int) -> tuple[list[Node], CollectionEndEvent]:
-        """Return the values of a mapping, whose keys are put into `keys`, and what ends it."""
+        """Return the values of a mapping and the event that ends it; the keys are appended to
+        `keys`.
+        """
         lines: dict[str, int] = {}
         values = []
         while not isinstance(event := self._next(), CollectionEndEvent):
@@ -223,7 +230,7 @@ class _Reader:
         return values, event
 
     def _refused(self, event: events.NodeEvent, depth: int, message: str = "") -> Node:
-        """Pass over a node, whatever is wrong within it; a message says why it is refused."""
+        """Skip a node and the problems within it; report `message` if it is given."""
         before = len(self._refusals)
         node = self._node(event, depth)
         self._refusals[before:] = [_refusal(event, message)] if message else []
@@ -241,22 +248,22 @@ def _shown(value: str) -> str:
 
 
 Refusal = tuple[int, int, str]
-"""Line and column, from 1, and what is no YAML there, or is YAML that these files do not allow."""
+"""Line and column, from 1, and a message about invalid YAML, or YAML not allowed in these files."""
 
 Kind = Literal["mapping", "sequence", "scalar"]
 
 
 class Node(NamedTuple):
-    """Represent a value in a text.
+    """A value in a text, with its place.
 
     Attributes
     ----------
     kind : "mapping", "sequence" or "scalar"
-    start, end : its text is ``text[start:end]``; an empty value is right after its colon or dash
-    line, column : of its start, counted from 1
-    style : of a collection `block` or `flow`; of a scalar its first sign when quoted or a block
-    data : what it says, scalars as the text the person wrote. Shared: not to be changed.
-    keys : of a mapping, in the order of the file
+    start, end : its text is ``text[start:end]``; an empty value follows its colon or dash
+    line, column : line and column of its start, counted from 1
+    style : `block` or `flow` for a collection; for a quoted or block scalar its first character
+    data : its content, with scalars as written; shared, must not be changed
+    keys : keys of a mapping, in the order of the file
     children : the values of a mapping, or the items of a sequence
     """
 
@@ -271,7 +278,9 @@ class Node(NamedTuple):
     children: tuple[Node, ...] = ()
 
     def entry(self, step: str | int) -> tuple[Node | None, Node | None]:
-        """Return the key, and the value or item, that a key or a number leads to; else None."""
+        """Return the key and value of a mapping's key, or None and the item of an index; (None,
+        None) if missing.
+        """
         if self.kind == "mapping":
             named = zip(self.keys, self.children, strict=True)
             return next(((key, child) for key, child in named if key.data == step), (None, None))
@@ -281,7 +290,9 @@ class Node(NamedTuple):
 
 
 class Composition(NamedTuple):
-    """Hold the nodes of a text (None: it is empty, or no YAML), and what in it is not allowed."""
+    """The nodes of a text, and its refused parts; `root` is None for an empty or invalid
+    text.
+    """
 
     root: Node | None
     refusals: tuple[Refusal, ...] = ()

@@ -1,8 +1,7 @@
-"""Keys that every component may have, and the conventions that its figures follow.
+"""Keys that every component may have, and the conventions for their figures.
 
-A field is text with a unit in the file, and here an SI float, angles in degrees, None where the
-definition does not say. Net forces are those in sea water of `CATALOGUE_DENSITY` under standard
-gravity.
+In a file a field is text with a unit; here it is an SI float, with angles in degrees, or None if it
+is not given. Net forces are those in sea water of `CATALOGUE_DENSITY` under standard gravity.
 """
 
 from __future__ import annotations
@@ -25,18 +24,26 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
+from calm.errors import UsageError, about_quantity
 from calm.physics.materials import MATERIAL_NAMES
 from calm.positions import HEMISPHERES
-from calm.units import DIMENSIONS, KILOGRAM_FORCE, QuantityRange, with_unit
+from calm.units import (
+    DIMENSIONS,
+    KILOGRAM_FORCE,
+    QuantityError,
+    QuantityRange,
+    parse_quantity,
+    with_unit,
+)
 
 
 class Model(BaseModel):
-    """Base of everything read from a file: frozen, and no key but the known ones."""
+    """Base of all models of files: immutable, and without unknown keys."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
-        """Return the fields that are known."""
+        """Return only the fields that are not None."""
         return (each for each in super().__repr_args__() if each[1] is not None)
 
 
@@ -73,18 +80,18 @@ class QuantityField(QuantityRange):
 
 
 class ColumnHeading(str):
-    """Annotate a value of a row with the heading of its column, where tables are shown."""
+    """Annotate a value of a row with the heading of its column, for tables that are displayed."""
 
     __slots__ = ()
 
 
 def described(description: str, example: object, **default: Any) -> Any:
-    """Return the field of a key, required without a `default` or a `default_factory`."""
+    """Return the field of a key, which is required without `default` or `default_factory`."""
     return Field(description=description, examples=[example], **default)
 
 
 def optional(description: str, example: object) -> Any:
-    """Return the field of a key that may be left out: None."""
+    """Return the field of an optional key, None if it is left out."""
     return described(description, example, default=None)
 
 
@@ -93,7 +100,7 @@ def _as_text(value: object) -> object:
 
 
 Text = Annotated[str, BeforeValidator(_as_text), WithJsonSchema({"type": ["string", "number"]})]
-"""Text; a bare number is taken as the person wrote it."""
+"""Text, also from a bare number, whose digits are kept."""
 
 POSITIVE_LENGTH = QuantityField("length", above=0)
 DIAMETER = QuantityField("length", usual_unit="mm", above=0)
@@ -110,26 +117,39 @@ Drag = Annotated[float | None, DRAG]
 
 Role = Annotated[
     Literal["float", "instrument", "release", "connector", "line", "anchor"],
-    described("what the piece is for", "instrument"),
+    described("purpose of the piece", "instrument"),
 ]
 
 
 def quantity_of(field: FieldInfo) -> QuantityField | None:
-    """Return the quantity that a field of a model holds, None where it holds none."""
+    """Return the quantity of a field of a model; None if it has none."""
     return next((one for one in field.metadata if isinstance(one, QuantityField)), None)
+
+
+def in_si(name: str, value: float | str, dimension: str) -> float:
+    """Return an argument in SI (degrees, degC): a number unchanged, a text with its unit converted.
+
+    UsageError, with the name of the argument: the text is no quantity of this dimension.
+    """
+    if not isinstance(value, str):
+        return value
+    try:
+        return parse_quantity(value, dimension)
+    except QuantityError as error:
+        raise UsageError(about_quantity(name, value, error)) from error
 
 
 CATALOGUE_DENSITY = 1025.0
 """Density of the sea water in which net forces and drags are given [kg/m³]."""
 
 STANDARD_GRAVITY = KILOGRAM_FORCE
-"""The force of gravity on a kilogram [N]."""
+"""Standard gravity [m/s²], the weight of a kilogram [N]."""
 
 DISAGREEMENT = 0.01
-"""Share by which figures that say the same thing may differ."""
+"""Relative difference allowed between figures that must agree."""
 
 IN_AIR: Mapping[str, object] = {"fluid": "air"}
-"""Context of a definition that is read for use in air, where its mass is all that is needed."""
+"""Context for definitions used in air, which only need a mass."""
 
 MASS = QuantityField("mass", at_least=0)
 DENSITY = QuantityField("density", above=0)
@@ -146,7 +166,7 @@ _ANY_QUANTITY = {"type": "string", "description": "with its unit"}
 MaterialDensity = Annotated[
     float | None,
     DENSITY,
-    described("of the water, or of the material of a component", "1025 kg/m^3"),
+    described("density of the water, or of a component's material", "1025 kg/m^3"),
 ]
 NormalCoefficient = Annotated[
     float | None, COEFFICIENT, described("drag coefficient across the axis", 1.2)
@@ -172,30 +192,30 @@ def _alone_or_listed(schema: dict[str, Any]) -> None:
 
 
 class EstimatedFigure(Model):
-    """Estimate of a figure that no source prints, from its class: at least `low`.
+    """Estimate of a figure that no source publishes, with a lower bound `low`.
 
-    A figure that its source prints for steady loads alone has a lesser bound for a line that waves
-    move, `low_in_waves`.
+    `low_in_waves` is a lesser bound for a line moved by waves, for a figure that is published for
+    steady loads only.
     """
 
     quantity: Literal[
         "working_load", "breaking_load", "opening_load", "grip", "max_tilt", "depth_rating"
-    ] = described("the figure that is estimated", "working_load")
+    ] = described("the estimated figure", "working_load")
     value: Annotated[float | None, WithJsonSchema(_ANY_QUANTITY)] = optional(
-        "best estimate, where there is one", "20 kN"
+        "best estimate, if there is one", "20 kN"
     )
     low: Annotated[float, WithJsonSchema(_ANY_QUANTITY)] = described(
-        "lower bound, by which it is judged", "12 kN"
+        "lower bound, used in the check", "12 kN"
     )
     low_in_waves: Annotated[float | None, WithJsonSchema(_ANY_QUANTITY)] = optional(
-        "lower bound for a line that waves move, where it is less than `low`", "8 kN"
+        "lower bound in waves, if it is less than `low`", "8 kN"
     )
     quality: Literal["high", "medium", "low"] | None = optional(
-        "how far its source holds for the item: high, its maker prints the alternatives; medium, "
+        "quality of the source for this item: high, published by its manufacturer; medium, "
         "an owner's list or use at that depth; low, a similar item, or derived",
         "low",
     )
-    source: Text = described("where the figures come from", "the chain it hangs on")
+    source: Text = described("source of the figures", "the chain above it")
 
     @field_validator("value", "low", "low_in_waves", mode="plain")
     @classmethod
@@ -203,11 +223,13 @@ class EstimatedFigure(Model):
         return _estimated(info.data.get("quantity", "")).read(text)
 
     def bound(self, *, in_waves: bool) -> float:
-        """Return the lower bound of a line that waves move, or of one that they do not."""
+        """Return the lower bound for a line in waves, or for a line at rest."""
         return self.low_in_waves if in_waves and self.low_in_waves is not None else self.low
 
     def in_words(self, said: Callable[[float], str]) -> str:
-        """Return the bounds, the best estimate, the source and its quality, each figure `said`."""
+        """Return the bounds, the best estimate, the source and its quality as text, each figure
+        formatted by `said`.
+        """
         waves = self.low_in_waves
         figures = (
             f"{said(self.low)} at least",
@@ -233,67 +255,70 @@ class EstimatedFigure(Model):
 
 
 class FatigueKeys(Model):
-    """`fatigue:` of a component: by which published curve its fatigue in waves is found."""
+    """The key `fatigue:` of a component: the published curve for its fatigue in waves."""
 
     curve: Literal[
         "dnv-studless-chain", "dnv-stud-chain", "dnv-polyester", "api-studless-chain",
         "api-stud-chain", "api-connecting-link", "api-stranded-wire", "api-spiral-strand",
         "sots-shackle", "sots-peened-shackle", "sots-link", "sots-wire",
     ] | None = described(
-        "of DNV-OS-E301, API RP 2SK or SOTS, where it is not that of its kind",
+        "curve of DNV-OS-E301, API RP 2SK or SOTS, if it is not the one of its kind",
         "dnv-stud-chain",
         default=None,
     )  # fmt: skip
     corrosion: Annotated[float, QuantityField("length", at_least=0)] = described(
-        "off its diameter by the end of the deployment; all of it counts from the first day",
+        "reduction of its diameter by the end of the deployment, applied from the first day",
         "1 mm",
         default=0.0,
     )
 
 
 class Definition(Model):
-    """Hold what every component may say, whatever its kind.
+    """Keys common to all kinds of components.
 
-    `source` is that of every figure but those for which `sources` names another, field by field.
-    `searched` are the fields that were looked for and that no source prints; `prefer` is the id of
-    the definition of the same thing that is to be used in place of this one.
+    `source` applies to every figure, except those for which `sources` names another, field by
+    field. `searched` lists the fields that were searched for and that no source gives. `prefer` is
+    the id of another definition of the same product, which should be used instead.
     """
 
     role: Role = "instrument"
-    name: Text | None = optional("what people call it", "Shelf edge 2026")
-    manufacturer: Text | None = optional("who makes it", "the maker")
-    part_number: Text | None = optional("the maker's", "1250-A")
+    name: Text | None = optional("name in common use", "Shelf edge 2026")
+    manufacturer: Text | None = optional("manufacturer", "the manufacturer")
+    part_number: Text | None = optional("part number of the manufacturer", "1250-A")
     material: Text | None = optional(
-        f"what it is made of, in words that name one of {MATERIAL_NAMES}", "galvanised steel"
+        f"material, in words that contain one of {MATERIAL_NAMES}", "galvanised steel"
     )
-    note: Text | None = optional(
-        "anything worth knowing", "galvanised; look at it after each cruise"
-    )
-    source: Text | None = optional("where the figures come from", "data sheet of the maker, 2026")
+    note: Text | None = optional("any remark", "galvanised; inspect after each cruise")
+    source: Text | None = optional("source of the figures", "data sheet of the manufacturer, 2026")
     sources: dict[str, Text] | None = optional(
-        "by field, where a figure comes from that is not of `source`",
+        "source of each figure that is not from `source`, by field",
         {"breaking_load": "test of 2025"},
     )
     searched: tuple[str, ...] | None = optional(
-        "fields that no source prints, though they were looked for", ["breaking_load"]
+        "fields that were searched for and that no source gives", ["breaking_load"]
     )
     prefer: Text | None = optional(
-        "id of the definition of the same thing to use in place of this one", "sbe37"
+        "id of the definition of the same product to use instead of this one", "sbe37"
     )
     date: Text | None = optional("day, e.g. 2026-11-20", "2026-11-20")
-    depth_rating: PositiveLength = optional("deepest it may be used", "2000 m")
+    depth_rating: PositiveLength = optional("maximum depth of use", "2000 m")
     working_load: PositiveForce = optional("load it may carry in use, e.g. 20 kN", "20 kN")
     breaking_load: PositiveForce = optional("load at which it breaks, e.g. 40 kN", "40 kN")
     opening_load: PositiveForce = optional(
-        "of a release, the greatest under which it opens, e.g. 10 kN", "10 kN"
+        "maximum load under which a release opens, e.g. 10 kN", "10 kN"
     )
     grip: PositiveForce = optional(
-        "pull at which its clamp slips along the line, e.g. 1 kN", "1 kN"
+        "force at which its clamp slips along the line, e.g. 1 kN", "1 kN"
+    )
+    insulated: bool | None = optional(
+        "whether plastic or rubber separates its metal from others: jaws of its clamp, bushes "
+        "in its eyes; by default true for clamps and false for pieces",
+        True,
     )
     max_tilt: Annotated[float | None, TILT] = optional(
-        "tilt beyond which it is not to be trusted", "20 deg"
+        "tilt above which its data are not reliable", "20 deg"
     )
-    warn_tilt: Annotated[float | None, TILT] = optional("tilt to be warned of", "15 deg")
+    warn_tilt: Annotated[float | None, TILT] = optional("tilt that causes a warning", "15 deg")
     estimate: Annotated[tuple[EstimatedFigure, ...] | None, BeforeValidator(_listed)] = Field(
         default=None,
         description="estimates of figures that are not given, for the rules that need them",
@@ -303,12 +328,12 @@ class Definition(Model):
                 "quantity": "working_load",
                 "value": "20 kN",
                 "low": "12 kN",
-                "source": "the chain it hangs on",
+                "source": "the chain above it",
             }
         ],
     )
     fatigue: FatigueKeys | None = optional(
-        "curve of its fatigue in waves, where it is not that of its kind",
+        "curve of its fatigue in waves, if it is not the one of its kind",
         {"curve": "dnv-stud-chain"},
     )
     slack: Literal["allowed"] | None = optional(
@@ -332,19 +357,19 @@ class Definition(Model):
 
 
 def is_in_air(info: ValidationInfo) -> bool:
-    """Return whether the definition that is being validated is read for use in air."""
+    """Return whether the definition being validated is read for use in air."""
     return info.context == IN_AIR
 
 
 def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:
-    """Return the volume of water displaced [m³, or per metre], None where the mass is unknown."""
+    """Return the volume of water displaced [m³, or per metre]; None if the mass is unknown."""
     if mass is None:
         return None
     return (mass + net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY
 
 
 def refuse_weight_above_mass(mass: float | None, net_buoyancy: float) -> None:
-    """Refuse what weighs more in water than in air."""
+    """Raise ValueError if the weight in water exceeds that in air."""
     if mass is not None and -net_buoyancy > mass * STANDARD_GRAVITY * (1 + DISAGREEMENT):
         raise ValueError(
             f"weighs more in water ({-net_buoyancy:.5g} N) than its mass of {mass:g} kg does in air"

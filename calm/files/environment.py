@@ -1,10 +1,12 @@
-"""Environment of a line, moored or towed: water or air, its depth, currents, wind and seabed."""
+"""The environment of a mooring or tow: water or air, its depth, currents, wind, waves and
+seabed.
+"""
 
 from __future__ import annotations
 
 import math
 import os.path
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -19,6 +21,7 @@ from calm.files.yaml_document import SourceMapping, validate
 from calm.physics.line import Floats
 from calm.records.current_terms import DEEPEST, Terms, TimeChoiceError, too_fast
 from calm.records.grids import SeabedGrid
+from calm.records.profile_doubts import direction_doubts, profile_doubts
 from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater, components, read_current
 from calm.records.sea_states import SeaState
 from calm.units import QuantityError
@@ -40,31 +43,39 @@ class Position(Model):
 
 
 class SeabedKeys(Model):
-    """A seabed that slopes, as a plane: how steep, and towards where it gets deeper [degrees]."""
+    """A plane, sloping seabed: the slope, and the direction in which it becomes deeper
+    [degrees].
+    """
 
     slope: Annotated[float, QuantityField("angle", at_least=0, at_most=45)] = described(
         "from the horizontal", "3 deg"
     )
-    toward: water.Toward = described("where it gets deeper, clockwise from north", "120 deg")
+    toward: water.Toward = described(
+        "clockwise from north: direction in which it becomes deeper", "120 deg"
+    )
 
     def at(self, east: float, north: float) -> SeabedKeys:
-        """Return the same about another point, by its distance from this one [m]."""
+        """Return the same seabed relative to another point, given by its distance from this one
+        [m].
+        """
         return self
 
     @property
     def plane(self) -> tuple[float, float]:
-        """Return how much deeper it is per metre to the east and to the north [-]."""
+        """Return the increase of depth per metre to the east and to the north [-]."""
         way, steep = math.radians(self.toward), math.tan(math.radians(self.slope))
         return steep * math.sin(way), steep * math.cos(way)
 
     def deeper(self, places: Floats) -> Floats:
-        """Return how much deeper it is (n,) at places (n, 2) east and north of the point [m]."""
+        """Return the increase of depth [m] at places east and north of the point [m]; shapes (n,)
+        and (n, 2).
+        """
         deeper: Floats = places @ np.array(self.plane)
         return deeper
 
 
 class SeabedFile(Model):
-    """Say which grid the depths of the seabed are from."""
+    """The file of the grid with the depths of the seabed."""
 
     file: Text = described("NetCDF over latitude and longitude: GEBCO, EMODnet", "gebco.nc")
 
@@ -82,26 +93,26 @@ SeabedGiven = Annotated[
 
 @dataclass(frozen=True)
 class Environment:
-    """Hold what the line stands in, or is towed through.
+    """The water or air around the line, and the loads that it causes.
 
     Attributes
     ----------
-    name : of the variant or environment file in use
-    fluid : "water" or "air"
-        Air in a tow only.
-    depth : water depth [m]; None in a tow that gives none
-    density : of the fluid [kg/m³], or the temperature and salinity that it follows from
-    gravity : [m/s²], where the file gives it
-    current : CurrentTable
-    wind : over the water
-    position : Position or None
+    name : name of the variant or environment file in use
+    fluid : "water" or, in a tow only, "air"
+    depth : water depth [m]; None in a tow without one
+    density : density of the fluid [kg/m³], or temperature and salinity for it
+    gravity : gravitational acceleration [m/s²]; None if not given
+    current : speeds by depth
+    wind : wind over the water
+    position : position of the mooring; None if not given
     depth_range : water depth at low and at high water [m]
-    fouling : what grows on the cables
-    maximum_speed : a faster current counts as a mistake of its source [m/s]; inf in a tow and in
+    fouling : marine growth on the line
+    maximum_speed : a faster current is reported as a mistake [m/s]; inf in a tow and in
         air
-    seabed : how it slopes; level where it is not given
-    waves : as they are written
-    seas : those of `waves`
+    seabed : slope of the seabed; level if not given
+    waves : sea states as written
+    seas : sea states as read from `waves`
+    doubts : sentences about values that are possible but probably mistakes
     """
 
     name: str | None
@@ -118,29 +129,32 @@ class Environment:
     waves: WaveKeys | None = None
     seas: tuple[SeaState, ...] = ()
     seabed: Seabed | None = None
+    doubts: tuple[str, ...] = field(default=(), compare=False, repr=False)
 
 
 class Fouling(Model):
-    """Growth on everything [m], from the surface down to a depth: how thick, and how dense.
+    """Marine growth on all parts from the surface to a depth [m], with its thickness [m].
 
-    Without a density [kg/m³] it is as heavy as water.
+    Without a density [kg/m³] it is neutrally buoyant.
     """
 
-    depth: Annotated[float, definition.POSITIVE_LENGTH] = described("how far down it grows", "50 m")
+    depth: Annotated[float, definition.POSITIVE_LENGTH] = described(
+        "depth of its lower limit", "50 m"
+    )
     thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0, at_most=1)] = (
-        described("of the growth all around, e.g. 20 mm", "20 mm")
+        described("thickness of the growth on all sides, e.g. 20 mm", "20 mm")
     )
     density: Annotated[float | None, DENSITY] = optional(
-        "of the growth; as heavy as water when absent", "1025 kg/m^3"
+        "density of the growth; by default that of the water", "1025 kg/m^3"
     )
 
 
 class UniformCurrent(Model):
     """The same current at all depths [m/s, degrees]."""
 
-    speed: Annotated[float, _SPEED] = described("of the water", "0.5 m/s")
+    speed: Annotated[float, _SPEED] = described("speed of the water", "0.5 m/s")
     toward: water.Toward = described(
-        "direction it flows or goes to, clockwise from north, e.g. 90 deg", "90 deg"
+        "clockwise from north: direction in which it flows or moves, e.g. 90 deg", "90 deg"
     )
     w: Annotated[float, QuantityField("speed")] = described(
         "vertical speed, positive up", "0.01 m/s", default=0.0
@@ -148,16 +162,17 @@ class UniformCurrent(Model):
 
 
 class CurrentFile(Model):
-    """A current measured or modelled: a CSV or NetCDF file, and a time in it.
+    """A measured or modelled current, from a time in a CSV or NetCDF file.
 
-    `declination` [degrees], positive to the east, turns what the file says is magnetic.
+    `declination` [degrees], positive east, converts directions of the file that are relative to
+    magnetic north.
     """
 
-    file: Text = described("CSV or CF NetCDF, beside the mooring file", "adcp.nc")
-    time: Text | None = optional("of the profile wanted, e.g. 2026-03-01T06:00", "2026-03-01T06:00")
+    file: Text = described("CSV or CF NetCDF, in the folder of the mooring file", "adcp.nc")
+    time: Text | None = optional("time of the profile, e.g. 2026-03-01T06:00", "2026-03-01T06:00")
     declination: Annotated[float | None, QuantityField("angle", at_least=-180, at_most=180)] = (
         optional(
-            "turns directions that a file gives from magnetic north; east positive", "12.5 deg"
+            "magnetic declination, for directions from magnetic north; east positive", "12.5 deg"
         )
     )
 
@@ -172,7 +187,7 @@ def _current_form(value: object) -> str:
 
 def _water_only(value: object) -> object:
     if value == "air":
-        raise QuantityError("is for tows; a mooring stands in water")
+        raise QuantityError("is for tows; a mooring is in water")
     return value
 
 
@@ -186,14 +201,14 @@ def _two_depths(value: object) -> object:
 
 
 class TowEnvironmentKeys(Model):
-    """The keys of `environment:` as a person writes them for a tow."""
+    """Keys of `environment:` in the file of a tow."""
 
     fluid: Literal["water", "air"] = described(
-        "what the line is in: a tow may be in air", "water", default="water"
+        "fluid around the line; a tow may be in air", "water", default="water"
     )
-    depth: Annotated[float | None, _WATER_DEPTH] = optional("of the water, e.g. 1100 m", "1100 m")
+    depth: Annotated[float | None, _WATER_DEPTH] = optional("water depth, e.g. 1100 m", "1100 m")
     density: water.Density = described(
-        "of the water: one, a table, or by temperature and salinity",
+        "density of the water: a number, a table, or temperature and salinity",
         "1025 kg/m^3",
         default=water.USUAL_DENSITY["water"],
     )
@@ -214,12 +229,12 @@ class TowEnvironmentKeys(Model):
 
 
 class EnvironmentKeys(TowEnvironmentKeys):
-    """The same for a mooring, which stands in water of a given depth."""
+    """Keys of `environment:` in the file of a mooring, which requires a water depth."""
 
     fluid: Annotated[Literal["water"], BeforeValidator(_water_only)] = described(
-        "what the line is in: a tow may be in air", "water", default="water"
+        "fluid around the line; a tow may be in air", "water", default="water"
     )
-    depth: Annotated[float, _WATER_DEPTH] = described("of the water, e.g. 1100 m", "1100 m")
+    depth: Annotated[float, _WATER_DEPTH] = described("water depth, e.g. 1100 m", "1100 m")
     maximum_speed: Annotated[float, QuantityField("speed", above=0)] = described(
         "a faster current is an error", "3 m/s", default=_MAXIMUM_SPEED
     )
@@ -234,7 +249,7 @@ class EnvironmentKeys(TowEnvironmentKeys):
         "how the seabed slopes below the anchors", {"slope": "3 deg", "toward": "120 deg"}
     )
     waves: WaveKeys | None = optional(
-        "seas that the design check judges: one, or a table of them",
+        "one sea state, or a table of sea states, for the design check",
         {"significant_height": "5 m", "peak_period": "8.4 s"},
     )
 
@@ -253,11 +268,11 @@ def read_environment(
     Parameters
     ----------
     section : the environment
-    name : of the variant or file it is from; None for the file's own
-    notices : what is worth knowing is added to them
-    towed : it may be air, and the water's depth need not be known
-    position : chooses a column of a current file, which is looked for beside its mooring file
-    open_files : read current files; where not, None is returned
+    name : name of the variant or environment file; None for the file's own environment
+    notices : list to which remarks are added
+    towed : whether it is for a tow, which may be in air or have no water depth
+    position : position that selects a column of a current file
+    open_files : whether current files are read; without them None is returned
     """
     keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section)
     if keys is None:
@@ -270,7 +285,7 @@ def read_environment(
     if isinstance(density, SeaWater) and keys.fluid == "air":
         section.refuse(("density",), "temperature and salinity are those of the sea, not of air")
     _check_wind(keys, section)
-    if moored and open_files:  # otherwise the depth may be that of another section
+    if moored and open_files:  # otherwise the depth may be in another section
         _check_depth_range(moored, section)
     where = None if position is None else (position.latitude, position.longitude)
     terms = Terms(
@@ -285,14 +300,55 @@ def read_environment(
         seabed = _seabed(moored.seabed, where, moored.depth, section, notices)
     if density is None or current is None or len(section.problems) > before:
         return None
-    notices.extend(water.density_notices(density, keys.depth))
+    doubts: list[str] = []
+    if keys.fluid == "water":
+        doubts += _current_doubts(current, keys.depth)
+        doubts += water.density_doubts(density, keys.depth)
+        doubts += _wind_doubts(keys.wind)
+    doubts += _tide_doubts(moored.depth_range) if moored and moored.depth_range else ()
+    notices.extend(doubts)
     if isinstance(density, SeaWater) and position is None:
         notices.append(
             "Density from temperature and salinity without a `position`: taken at 45 degrees of "
             "latitude, in sea water of the reference composition."
         )
     found = {"name": name, "density": density, "current": current, "position": position}
-    return Environment(**dict(keys) | found | {"seas": seas, "seabed": seabed})
+    more = {"seas": seas, "seabed": seabed, "doubts": tuple(doubts)}
+    return Environment(**dict(keys) | found | more)
+
+
+GREATEST_TIDE = 20.0
+"""Range of the largest tides, 17 m in Ungava Bay and the Bay of Fundy, and a surge [m]."""
+
+STRONGEST_WIND = 75.0
+"""Strongest wind measured over 1 min at sea, in round figures [m/s]."""
+
+
+def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
+    """Return remarks about a current given in the file; none for a current from a record."""
+    if current.record is not None:
+        return []
+    levels, u, v = (np.array(each) for each in (current.depth, current.u, current.v))
+    water_depth = math.inf if depth is None else depth
+    found = (*current.doubts, *profile_doubts(levels, u, v, water_depth))
+    return [f"{said[0].upper()}{said[1:]}" + "." * (said[-1] != "?") for said in found]
+
+
+def _wind_doubts(wind: water.Wind | None) -> list[str]:
+    if wind is None or wind.speed <= STRONGEST_WIND:
+        return []
+    return [
+        f"The wind of {wind.speed:g} m/s is stronger than any at sea: were km/h or knots meant?"
+    ]
+
+
+def _tide_doubts(levels: tuple[float, float]) -> list[str]:
+    if (between := levels[1] - levels[0]) <= GREATEST_TIDE:
+        return []
+    return [
+        f"`depth_range` spans {between:g} m, and the largest tides 17 m: was it cm, or are these "
+        "not low and high water?"
+    ]
 
 
 def _seabed(
@@ -302,14 +358,14 @@ def _seabed(
     section: SourceMapping,
     notices: list[str],
 ) -> Seabed | None:
-    """Return the seabed; a grid as far about the mooring as that may reach.
+    """Return the seabed; a grid covers the area that the mooring may reach.
 
     Parameters
     ----------
-    where : latitude and longitude [degrees]; None where nobody gives them
-    depth : of the water [m]
+    where : latitude and longitude [degrees]; None if not given
+    depth : water depth [m]
     section : the environment
-    notices : for what is doubtful
+    notices : list to which remarks are added
     """
     if not isinstance(given, SeabedFile):
         return given
@@ -333,7 +389,7 @@ def _seabed(
 
 
 def _check_depth_range(keys: EnvironmentKeys, section: SourceMapping) -> None:
-    """Check that low water comes first, then high water, with the depth between them."""
+    """Check that low water comes before high water, with the depth between them."""
     depth, (low, high) = keys.depth, keys.depth_range or (keys.depth, keys.depth)
     if not low <= depth <= high:
         message = (
@@ -344,7 +400,7 @@ def _check_depth_range(keys: EnvironmentKeys, section: SourceMapping) -> None:
 
 
 def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping) -> None:
-    """Check that wind blows over water, and drives it down to a known depth."""
+    """Check that wind blows over water, and that a wind-driven current has a known depth."""
     if keys.wind is None:
         return
     if keys.fluid == "air":
@@ -370,7 +426,8 @@ def _current(
         if reason := too_fast(u, v, current.w, terms.maximum_speed):
             section.refuse(("current", "speed"), reason)
             return None
-        return CurrentTable((0.0,), (u,), (v,), (current.w,))
+        doubts = direction_doubts([current.toward] if current.speed else [], "toward")
+        return CurrentTable((0.0,), (u,), (v,), (current.w,), doubts=tuple(doubts))
     path = Path(section.home("current").document.path).parent / current.file
     if not (os.path.isfile(path) or os.path.isdir(path)):
         section.refuse(("current", "file"), f"`file: {shown(current.file)}`: no such file")
@@ -393,7 +450,7 @@ def _current(
 
 
 def _check_tables(section: SourceMapping) -> None:
-    """Look into the tables although other keys are wrong, to report all mistakes at once."""
+    """Validate the tables even if other keys have mistakes, so that all mistakes are reported."""
     water.check_density(section)
     table = water.table_of(section.data.get("current"))
     if table is not None:

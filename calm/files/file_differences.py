@@ -1,8 +1,8 @@
-"""Differences between two moorings as read: piece by piece, and in all that is around the line.
+"""Differences between two mooring files: piece by piece, and in the other keys.
 
-Which part of one line is which of another is found by label, else by content and order. A label
-decides where one part of each line has it. Those that `numbered` made are no labels: a shackle put
-in at the top renumbers all below it.
+Parts of the two lines are matched by label, otherwise by content and order. A label is used only if
+it is unique in each line. Labels with a number added by `numbered` are not used, because a shackle
+inserted at the top changes all numbers below it.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ Value = float | str | None
 
 @dataclass(frozen=True)
 class ComparedValue:
-    """Hold a value of a file [SI, degrees] or a text, and how people read it.
+    """A value of a file [SI, degrees] or a text, and its display.
 
-    `table` is what a text sums up, since two that differ may come to the same.
+    `table` is the table that a text summarises, since two different tables may have the same text.
     """
 
     value: Value
@@ -51,7 +51,7 @@ def _text(text: str) -> ComparedValue:
 
 @dataclass(frozen=True)
 class Change:
-    """Hold a value that differs: ``label.field`` or ``environment.depth``, before and after."""
+    """A value that differs, with its name such as ``label.field`` or ``environment.depth``."""
 
     where: str
     before: ComparedValue
@@ -60,14 +60,14 @@ class Change:
 
 @dataclass(frozen=True)
 class Differences:
-    """Hold what differs between two files.
+    """The differences between two files.
 
     Attributes
     ----------
-    changed : around the line, then down it
-    moved : parts that are elsewhere in the line, and below which part
-    removed, added : labels of pieces and clamps
-    pairs : of the same pieces and of the same clamps, in the order of the first line
+    changed : changed values: those outside the line, then those of the line from the top
+    moved : parts at another place in the line, each with the part above it
+    removed, added : labels of removed and added pieces and clamps
+    pairs : matched pieces and clamps, in the order of the first line
     """
 
     changed: tuple[Change, ...]
@@ -78,12 +78,12 @@ class Differences:
 
     @property
     def any(self) -> bool:
-        """Return whether there are any."""
+        """Return whether there is any difference."""
         return bool(self.changed or self.moved or self.removed or self.added)
 
 
 _OF_THE_SOURCE = frozenset({"kind", "source", "sources", "searched", "prefer", "date"})
-"""Fields of a definition that say where its figures come from."""
+"""Fields of a definition about the source of its figures."""
 
 _DIMENSIONS = {
     **dict.fromkeys(("length", "at", "depth", "fit_top_depth", "fit_body_depth"), "length"),
@@ -92,7 +92,7 @@ _DIMENSIONS = {
     "density": "density",
     "maximum_speed": "speed",
 }
-"""Of fields that no model annotates with theirs."""
+"""Dimensions of fields without an annotation in their model."""
 
 
 def differences(before: MooringFile, after: MooringFile) -> Differences:
@@ -144,7 +144,10 @@ def _known_pieces(pieces: Sequence[Piece]) -> list[Known]:
 def _known_clamps(
     clamps: Sequence[tuple[int, Clamp]], partner: Mapping[int, int] | None
 ) -> list[Known]:
-    """Clamps are alike on pieces that are the same; `partner` leads to the piece in the other."""
+    """Return the known contents of clamps, which match only on matched pieces.
+
+    `partner` is the index of the matched piece in the other line; None in the first line.
+    """
     labels = own_labels([clamp.label for _, clamp in clamps])
     known = []
     for label, (index, clamp) in zip(labels, clamps, strict=True):
@@ -169,7 +172,7 @@ def _of_part(
 
 
 def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
-    """Return what the line says of a part, its definition left out."""
+    """Return the values that the line gives for a part, without its definition."""
     found = {"use": _figure("use", part.use), "label": _figure("label", name)}
     if isinstance(part, Clamp):
         found["at"] = _figure("at", part.at)
@@ -182,7 +185,7 @@ def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
 
 
 def _around(file: MooringFile) -> dict[str, ComparedValue]:
-    """Return all that is not the line."""
+    """Return all values outside the line."""
     found = {name: _figure(name, getattr(file, name) or None) for name in ("name", "description")}
     around = _figures(file.environment, frozenset({"position", "seas"}))  # they follow from others
     found |= {f"environment.{key}": one for key, one in around.items()}
@@ -199,7 +202,7 @@ def _around(file: MooringFile) -> dict[str, ComparedValue]:
 
 
 def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, ComparedValue]:
-    """Return the fields of a model, dotted where it holds others."""
+    """Return the fields of a model; those of models inside it have dotted names."""
     found: dict[str, ComparedValue] = {}
     model = type(part).model_fields if isinstance(part, BaseModel) else {}
     for name, value in _fields(part).items():
@@ -215,7 +218,7 @@ def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, Com
 
 
 def _fields(part: Any) -> dict[str, Any]:
-    """Return what a model or a dataclass holds, by name."""
+    """Return the fields of a model or a dataclass by name."""
     if isinstance(part, BaseModel):
         return dict(part)
     return {field.name: getattr(part, field.name) for field in fields(part)}
@@ -249,7 +252,7 @@ def _of_current(table: CurrentTable) -> ComparedValue:
 
 
 def _said(value: Any) -> str:
-    """Return a value that is neither a number nor None, in words."""
+    """Return a value that is neither a number nor None as text."""
     if isinstance(value, BaseModel) or is_dataclass(value):
         given = {name: one for name, one in _fields(value).items() if one is not None}
         value = {name: one for name, one in given.items() if not isinstance(one, tuple) or one}
@@ -277,9 +280,9 @@ _NUMBERED = re.compile(r"(.+) ([1-9]\d*)")
 
 @dataclass(frozen=True)
 class Known:
-    """Hold what identifies a part: its label without a number that `numbered` added, its content.
+    """A part's label, without a number added by `numbered`, and its content.
 
-    `contents` are the ways in which parts are alike, the strictest first.
+    `contents` are keys of decreasing strictness; parts with an equal key are alike.
     """
 
     label: str
@@ -288,13 +291,13 @@ class Known:
 
 @dataclass(frozen=True)
 class Alignment:
-    """Hold the places of parts in two lines.
+    """The matched parts of two lines, by index.
 
     Attributes
     ----------
-    pairs : of the same part, in the order of the first line
-    moved : those of them that stand elsewhere in the order
-    removed, added : in one line only
+    pairs : indices of matched parts, in the order of the first line
+    moved : those pairs whose order has changed
+    removed, added : indices of parts that are in one line only
     """
 
     pairs: tuple[tuple[int, int], ...]
@@ -304,7 +307,7 @@ class Alignment:
 
 
 def own_labels(labels: Sequence[str]) -> list[str]:
-    """Return the labels, without the numbers of those that go from 1 to n."""
+    """Return the labels without their numbers, if those numbers run from 1 to n."""
     numbers: dict[str, list[int]] = defaultdict(list)
     matches = [_NUMBERED.fullmatch(label) for label in labels]
     for match in filter(None, matches):
@@ -344,7 +347,7 @@ def align(before: Sequence[Known], after: Sequence[Known]) -> Alignment:
 
 
 def _places(parts: Sequence[Known]) -> dict[str, int]:
-    """Return the place of each label that only one part has."""
+    """Return the index of each unique label."""
     places: dict[str, list[int]] = defaultdict(list)
     for place, part in enumerate(parts):
         places[part.label].append(place)
@@ -359,7 +362,9 @@ def _pair_between(
     way: int,
     pairs: dict[int, int],
 ) -> None:
-    """Pair in order what is alike in one way between two parts that are known; take it out."""
+    """Pair, in order, the parts with equal keys between two known pairs, and remove them from the
+    lists.
+    """
     if not left or not right:
         return
     keys = [before[i].contents[way] for i in left], [after[j].contents[way] for j in right]
@@ -375,7 +380,7 @@ def _pair_between(
 
 
 def _longest_rise(values: Iterable[int]) -> frozenset[int]:
-    """Return the longest of the rising sequences within different values (patience sorting)."""
+    """Return the longest increasing subsequence of distinct values, by patience sorting."""
     ends: list[int] = []
     below: dict[int, list[int]] = {}
     for value in values:

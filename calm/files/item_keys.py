@@ -1,4 +1,4 @@
-"""Keys of an item of the line and of its clamps, and those of the individual thing there."""
+"""Keys of items of the line and of clamps, and keys about the individual equipment."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Annotated, Any, TypeGuard
 
 from pydantic import Field
 
+from calm.errors import shown
 from calm.files import definition
 from calm.files.check_limits import Day
 from calm.files.definition import Text, described, optional
@@ -14,19 +15,17 @@ from calm.files.yaml_document import SourceMapping, validate
 
 
 class Equipment(definition.Model):
-    """Hold what the file says of the individual thing at a place of the line.
+    """Keys about the individual equipment at a place of the line.
 
-    `serial` is a text, or as many as the `count` of the item; of an item, one of it is chosen for
-    each piece. As read, `planned_depth` also holds a depth that the label names.
+    `serial` is a text, or a list with one text for each of the item's `count`; each piece gets its
+    own. After reading, `planned_depth` also holds a depth given in the label.
     """
 
     serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
-        "serial number; for a count, a list with one for each", 12345
+        "serial number; a list of as many as `count`", 12345
     )
     calibrated: Day | None = optional("day of its last calibration, e.g. 2026-03-01", "2026-03-01")
-    sampling: Text | None = optional(
-        "how it samples, as people read it, e.g. every 10 min", "every 10 min"
-    )
+    sampling: Text | None = optional("sampling scheme as text, e.g. every 10 min", "every 10 min")
     battery_until: Day | None = optional(
         "day on which its battery is empty, e.g. 2027-06-30", "2028-01-31"
     )
@@ -34,7 +33,7 @@ class Equipment(definition.Model):
         "how the ends of a cable are made, e.g. swaged sockets", "swaged sockets"
     )
     planned_depth: Annotated[float | None, definition.LENGTH] = optional(
-        "depth it is planned to hang at in still water; unless given, the depth in its label",
+        "planned depth in still water; by default the depth in its label",
         "200 m",
     )
 
@@ -43,7 +42,7 @@ class Equipment(definition.Model):
         return self.model_copy(update={"planned_depth": depth})
 
     def of(self, repeat: int) -> Equipment:
-        """Return the equipment of one of a count, from 0."""
+        """Return the equipment of one of the pieces of a count, from 0."""
         if not isinstance(self.serial, tuple):
             return self
         return self.model_copy(update={"serial": self.serial[min(repeat, len(self.serial) - 1)]})
@@ -53,16 +52,20 @@ LOAD = definition.QuantityField("force", usual_unit="kN", at_least=0)
 
 
 class LengthAt(definition.Model):
-    """A length of a cable [m] as measured under a load [N]."""
+    """A length of a cable [m], measured under a load [N]."""
 
-    load: Annotated[float, LOAD] = described("that the cable was under", "2 kN")
+    load: Annotated[float, LOAD] = described("load on the cable", "2 kN")
     length: Annotated[float, definition.POSITIVE_LENGTH] = described(
-        "as measured under `load`", "480 m"
+        "length measured under `load`", "480 m"
     )
 
 
+ASSEMBLY_FIGURES = (
+    "working_load", "breaking_load", "opening_load", "grip", "max_tilt", "depth_rating"
+)  # fmt: skip
+"""Figures of an assembly, which are those of its parts that lack them."""
 MOST_PIECES = 10_000
-"""Pieces a line may have, after assemblies and counts are expanded."""
+"""Most pieces of a line, after assemblies and counts are expanded."""
 
 
 Label = Annotated[
@@ -71,9 +74,9 @@ Label = Annotated[
 
 
 class ClampKeys(Equipment):
-    """An instrument fixed to a piece."""
+    """An instrument clamped on a piece."""
 
-    use: str = described("id of a component of the catalogue or of `components`", "sbe37")
+    use: str = described("id of a component in the catalogue or in `components`", "sbe37")
     label: Label = ""
     at: Annotated[float, definition.LENGTH] = described(
         "distance from the top of the piece, unstretched", "20 m"
@@ -81,12 +84,12 @@ class ClampKeys(Equipment):
 
 
 class ItemKeys(Equipment):
-    """A piece of the line; other fields override the component's."""
+    """A piece of the line, in which other fields override those of the component."""
 
-    use: str = described("id of a component of the catalogue or of `components`", "wire-jacketed-8")
+    use: str = described("id of a component in the catalogue or in `components`", "wire-jacketed-8")
     label: Label = ""
     count: Annotated[int, Field(ge=1, le=MOST_PIECES)] = described(
-        "how many follow one another in the line", 6, default=1
+        "number of consecutive pieces", 6, default=1
     )
     length: definition.Length = 0.0
     length_at: LengthAt = described(
@@ -109,7 +112,7 @@ NO_EQUIPMENT = Equipment()
 
 
 def read_equipment(item: SourceMapping) -> Equipment:
-    """Read what an item or a clamp says of the individual thing."""
+    """Read the keys about the individual equipment of an item or a clamp."""
     given = {key: item.data[key] for key in item.data.keys() & EQUIPMENT_KEYS}
     if not given:
         return NO_EQUIPMENT
@@ -117,8 +120,8 @@ def read_equipment(item: SourceMapping) -> Equipment:
 
 
 def check_counted(item: SourceMapping, count: int) -> None:
-    """Check that serial numbers given as a list are as many as the item, and its clamps, count,
-    and that one planned depth is not given for several pieces.
+    """Check that a list of serial numbers has as many as the item's count, that they differ, and
+    that a planned depth is given for one piece only.
     """
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]
@@ -127,9 +130,18 @@ def check_counted(item: SourceMapping, count: int) -> None:
         if _is_list(serials) and len(serials) != count:
             message = f"`serial` has {len(serials)} numbers for a count of {count}"
             item.refuse((*place, "serial"), message)
+        elif _is_list(serials) and (twice := _numbers_twice(serials)):
+            item.refuse((*place, "serial"), f"`serial` lists {shown(twice)} twice")
         if isinstance(data, dict) and "planned_depth" in data and count > 1:
             message = f"`planned_depth` is of one piece; this item counts {count}: list them"
             item.refuse((*place, "planned_depth"), message, key=True)
+
+
+def _numbers_twice(serials: Sequence[object]) -> str:
+    """Return the first number that a list has twice; "" if none, as in a list of question marks."""
+    texts = [str(one) for one in serials]
+    numbers = (one for one in texts if any(digit.isdigit() for digit in one))
+    return next((one for one in numbers if texts.count(one) > 1), "")
 
 
 def _is_list(value: object) -> TypeGuard[Sequence[object]]:

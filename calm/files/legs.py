@@ -1,4 +1,6 @@
-"""The `legs` of a mooring file: lines that meet at nodes, hang free, are anchored or held."""
+"""The key `legs` of a mooring file: lines that join at nodes, or whose ends are free, anchored or
+held.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +30,8 @@ ONE_LEG_ONLY = (
     "instruments in a record of currents; waves and a launch take a line of its most loaded leg"
 )
 NET_SURE = (
-    "single lines; `calm run --explain` says how far a net moves by more drag, buoyancy or "
-    "current, and a copy of its file, or `with_` in Python, solves it with other figures"
+    "single lines; for the effect of drag, buoyancy or current on a net, use "
+    "`calm run --explain`; a copy of its file, or `with_` in Python, solves it with other figures"
 )
 
 _Offset = Annotated[float, QuantityField("length")]
@@ -38,13 +40,13 @@ _ON_A_CHART = re.compile(r"deg|[°º]|\d['′\s]*[NSEW]\s*$", re.IGNORECASE)
 
 
 def _at_given(value: object, info: ValidationInfo) -> object:
-    """Return a place by its latitude and longitude in metres from the mooring's position."""
+    """Convert a latitude and longitude to metres from the mooring's position."""
     given = value if isinstance(value, list) and len(value) == 2 else ()
     if not any(_ON_A_CHART.search(str(each)) for each in given):
         return value
     origin: Position | None = info.context and info.context["position"]
     if origin is None:
-        raise QuantityError("is a latitude and a longitude; the file needs a `position` for it")
+        raise QuantityError("is a latitude and a longitude, for which the file needs a `position`")
     north, east = (
         np.array(field.metadata[0].read(text))
         for field, text in zip((_LATITUDE, _LONGITUDE), given, strict=True)
@@ -65,7 +67,7 @@ _At = Annotated[
 
 
 class HeldKeys(Model):
-    """Say where an end is held: by a ship, a pier, a platform."""
+    """The place at which an end is held, such as a ship, a pier or a platform."""
 
     depth: _Offset = Field(
         description="below the surface; negative: above it, in air", examples=["2 m", "-10 m"]
@@ -74,16 +76,16 @@ class HeldKeys(Model):
 
 
 class AnchoredKeys(Model):
-    """Say where a leg is anchored."""
+    """The place at which a leg is anchored."""
 
     at: _At = (0.0, 0.0)
     depth: Annotated[float, QuantityField("length", above=0)] | None = optional(
-        "of the seabed there, if not that of the water", "44 m"
+        "depth of the seabed there, if not the water depth", "44 m"
     )
 
 
 class EndKeys(Model):
-    """Say what holds an end of a leg: one of these."""
+    """The connection of an end of a leg, given by one of these keys."""
 
     join: Text | None = optional("a node where legs meet", "A")
     anchor: AnchoredKeys | None = optional("the seabed", {"at": ["30 m", "0 m"]})
@@ -91,7 +93,7 @@ class EndKeys(Model):
 
     @property
     def free(self) -> bool:
-        """Return whether nothing holds it."""
+        """Return whether the end is free."""
         return self.join is None and self.anchor is None and self.held is None
 
 
@@ -99,7 +101,7 @@ FREE, ANCHORED = EndKeys(), EndKeys(anchor=AnchoredKeys())
 
 
 def _end_given(value: object) -> object:
-    """Return an end as its keys; `free` has none."""
+    """Return the keys of an end; `free` has none."""
     if value == "free":
         return {}
     if not isinstance(value, dict):
@@ -113,27 +115,28 @@ _End = Annotated[
 
 
 class LegKeys(Model):
-    """List the pieces of a leg from its upper to its lower end, and say what holds its ends."""
+    """The pieces of a leg from its upper to its lower end, and its two ends."""
 
     line: Annotated[tuple[Any, ...], Field(min_length=1)] = described(
         "the pieces from the upper to the lower end",
         [{"use": "wire-jacketed-8", "length": "150 m"}],
     )
     top: _End = Field(
-        default=FREE, description="what holds its upper end", examples=["free", {"join": "A"}]
+        default=FREE, description="connection of its upper end", examples=["free", {"join": "A"}]
     )
     bottom: _End | None = Field(
         default=None,
-        description="what holds its lower end; a leg that ends in an anchor is anchored",
+        description="connection of its lower end; by default the anchor, if that is the last item",
         examples=[{"join": "A"}, {"anchor": {"at": ["30 m", "0 m"]}}, "free"],
     )
 
 
 @dataclass(frozen=True)
 class FileLeg:
-    """Represent a leg: the pieces `first` to `end` (not itself) of the file, and its two ends.
+    """A leg: the pieces from index `first` up to, but not including, `end` of the file, and its two
+    ends.
 
-    An end with no key is free.
+    An end without a key is free.
     """
 
     name: str
@@ -143,7 +146,7 @@ class FileLeg:
     bottom: EndKeys
 
     def grown(self, index: int, more: int) -> FileLeg:
-        """Return the leg where there are more pieces after that of an index in the file."""
+        """Return the leg after pieces were added below the piece of an index."""
         return replace(
             self,
             first=self.first + more * (self.first > index),
@@ -157,7 +160,7 @@ class FileLeg:
 
 
 def stand_in_anchor(index: int, item: int) -> Piece:
-    """Return an anchor without height that holds anything, of an id like no other."""
+    """Return an anchor without height of practically unlimited weight, with a reserved id."""
     component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
     return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
@@ -165,14 +168,14 @@ def stand_in_anchor(index: int, item: int) -> Piece:
 def read_legs(
     top: SourceMapping, reader: LineReader, position: Position | None
 ) -> tuple[tuple[FileLeg, ...], tuple[Piece, ...]]:
-    """Read the legs of a file, and the pieces of all of them one after another.
+    """Read the legs of a file, and the pieces of all legs in order.
 
     Parameters
     ----------
-    position : of the origin of their places
+    position : position of the origin of places
     """
     if "line" in top.data:
-        message = "`line` and `legs` in one file; give the line as one of the legs"
+        message = "`line` and `legs` exclude each other; give the line as a leg"
         top.refuse(("line",), message, key=True)
     if "tow" in top.data:
         top.refuse(("tow",), "a tow has no `legs`", key=True)
@@ -213,7 +216,7 @@ def read_legs(
 
 
 def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[EndKeys, EndKeys]:
-    """Return the ends of a leg, one that ends in an anchor on the seabed."""
+    """Return the ends of a leg; the lower end is anchored if the last piece is an anchor."""
 
     def refuse(place: tuple[str | int, ...], message: str) -> None:
         own.refuse(place, message, key=bool(place))
@@ -228,25 +231,25 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
         ends.append(end)
     upper, lower = ends
     anchors = [piece for piece in pieces if isinstance(piece.component, Anchor)]
-    stands = bool(anchors) and anchors[-1] is pieces[-1]
+    anchored = bool(anchors) and anchors[-1] is pieces[-1]
     if upper.anchor is not None:
         refuse(("top",), "the upper end of a leg is not anchored; list it the other way round")
-    for anchor in anchors[: len(anchors) - stands]:
+    for anchor in anchors[: len(anchors) - anchored]:
         message = f"anchor `{anchor.use}` is not the last item of its leg"
         own.refuse_at(anchor.line, anchor.column, message)
-    if stands and keys.bottom is None:
+    if anchored and keys.bottom is None:
         lower = EndKeys(anchor=AnchoredKeys())
-    elif stands and lower.anchor is None:
+    elif anchored and lower.anchor is None:
         refuse(("bottom",), "the leg ends in an anchor; `bottom` must be `{anchor: …}`")
     elif lower.anchor is not None and not anchors:
         refuse(("bottom",), "the leg has no anchor; its last item must be one (`kind: anchor`)")
     elif keys.bottom is None:
         refuse((), "`bottom` is missing: `{join: NODE}`, `free`, or an anchor as the last item")
     if len(anchors) == len(pieces) > 0:
-        refuse(("line",), "nothing stands above the anchor")
+        refuse(("line",), "there is no piece above the anchor")
     if upper.join is not None and upper.join == lower.join:
         refuse(("bottom",), f"both ends join at `{upper.join}`")
-    if upper == lower == FREE and (keys.bottom is not None or not stands):
+    if upper == lower == FREE and (keys.bottom is not None or not anchored):
         refuse(("bottom",), "both ends are free: join one to another leg, or hold it")
     for piece in pieces:
         here = piece.line, piece.column
@@ -258,7 +261,7 @@ def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[E
 
 
 def check_held_depths(legs: Sequence[FileLeg], top: SourceMapping, depth: float | None) -> None:
-    """Check that what is held is above the seabed, at a depth [m]."""
+    """Check that held ends are above the seabed, whose depth is given [m]."""
     for leg in legs:
         for name, end in zip(("top", "bottom"), leg.ends, strict=True):
             if end.held is not None and depth is not None and end.held.depth >= depth:
@@ -267,7 +270,9 @@ def check_held_depths(legs: Sequence[FileLeg], top: SourceMapping, depth: float 
 
 
 def _check_net(legs: Sequence[FileLeg], top: SourceMapping) -> None:
-    """Check that every node joins legs, and that something holds each of them."""
+    """Check that legs join at every node, and that every leg is connected to an anchor or a held
+    end.
+    """
     section = top.child("legs")
     joins = [
         (leg, name, end.join)
@@ -297,9 +302,9 @@ def _check_net(legs: Sequence[FileLeg], top: SourceMapping) -> None:
 
 
 def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
-    """Check that no part of the net is without a hold.
+    """Check that every leg is connected to an anchor or a held end.
 
-    Nor may an anchor whose place is not written stand where another does.
+    Two anchors may be at the same place only if both places are given in the file.
     """
     held: set[str] = set()
     reached: set[str | None] = set()
@@ -319,16 +324,16 @@ def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
         before = leg.name if anchor is None else stand.setdefault(anchor.at, leg.name)
         if anchor is not None and before != leg.name and "at" not in anchor.model_fields_set:
             message = (
-                f"its anchor stands where that of leg `{before}` does; say where it is: "
+                f"its anchor is at the place of that of leg `{before}`; give its own place: "
                 "`bottom: {anchor: {at: [30 m, 0 m]}}`"
             )
             section.refuse((leg.name,), message, key=True)
         if leg.name not in held:
-            message = f"nothing holds leg `{leg.name}`: no anchor, no held end"
+            message = f"leg `{leg.name}` is connected to no anchor and no held end"
             section.refuse((leg.name,), message, key=True)
 
 
 def nodes_of(legs: Sequence[FileLeg]) -> Mapping[str, int]:
-    """Return the number of every node by its name, as they come up in the legs."""
+    """Return the numbers of the nodes by name, in the order of the legs."""
     names = dict.fromkeys(end.join for leg in legs for end in leg.ends if end.join is not None)
     return {name: number for number, name in enumerate(names)}

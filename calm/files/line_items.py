@@ -1,16 +1,17 @@
-"""The `line` of a mooring file: items expanded into pieces, overrides applied, labels resolved."""
+"""Read the `line` of a mooring file: expand items into pieces, apply overrides, resolve labels."""
 
 import math
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any, TypeVar
 
 from calm.errors import about_quantity, shown, unknown
 from calm.files import components, item_keys
 from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, Defined, define
-from calm.files.check_limits import GREATER_FLATTERS, LESSER_FLATTERS, LimitKey
+from calm.files.check_limits import LENIENT_IF_GREATER, LENIENT_IF_LESS, LimitKey
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Anchor, Component, Flexible, Outline
 from calm.files.definition import IN_AIR, LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
-from calm.files.item_keys import MOST_PIECES
+from calm.files.item_keys import ASSEMBLY_FIGURES, MOST_PIECES
 from calm.files.pieces import Clamp, Piece, Place, placed, unplanned
 from calm.files.planned_depth import named_depth
 from calm.files.rigid import Profiler, Rigid
@@ -20,14 +21,16 @@ from calm.units import QuantityError
 _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
 _ITEM_KEYS = frozenset(item_keys.ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
+_SOURCE_KEYS = frozenset({"source", "sources"})
 _CLAMP_KEYS = frozenset(item_keys.ClampKeys.model_fields)
+_Part = TypeVar("_Part", Piece, Clamp)
 _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
 class LineReader:
-    """Expand line items; mistakes go to those of the file, what is worth knowing to `notices`.
+    """Expand the items of a line; mistakes are added to those of the file, remarks to `notices`.
 
-    `towed` and `in_air` show which keys and figures the line may have.
+    `towed` and `in_air` determine the keys and figures allowed.
     """
 
     def __init__(
@@ -50,7 +53,7 @@ class LineReader:
         self._open: list[str] = []
 
     def check(self, ids: Iterable[str]) -> None:
-        """Check definitions, used in the line or not."""
+        """Validate definitions, whether or not the line uses them."""
         for id in ids:
             entry = self._catalogue.entry(id)
             if entry is not None:
@@ -60,7 +63,7 @@ class LineReader:
                     self._assembly(entry, section)
 
     def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
-        """Read the items of the list under a key; those with mistakes are left out."""
+        """Read the items of the list under a key; items with mistakes are left out."""
         pieces: list[Piece] = []
         items = self._items(section, key)
         for number, item in enumerate(items, 1):
@@ -71,7 +74,7 @@ class LineReader:
         return tuple(pieces)
 
     def _items(self, section: SourceMapping, key: str) -> list[SourceMapping]:
-        """Return the items of a list, each a mapping."""
+        """Return the items of a list, which are all mappings."""
         found = section.data[key]
         if not isinstance(found, (list, tuple)):
             section.refuse((key,), f"`{key}` must be a list of items")
@@ -95,16 +98,16 @@ class LineReader:
             self._clamps(item, None)
             return ()
         if isinstance(definition, Assembly):
-            once = self._assembly(entry, item)
+            once = self._filled(self._assembly(entry, item), definition, entry, item)
         else:
             once = (self._piece(definition, item),)
         if len(once) * count > MOST_PIECES:
             item.refuse(("count",), f"{count} times makes more than {MOST_PIECES} pieces")
             return ()
-        if count > 1:  # several do not hang at one depth
+        if count > 1:  # several pieces cannot have the same planned depth
             once = tuple(map(unplanned, once))
         number = item.location[-1]
-        assert isinstance(number, int)  # its place in a list
+        assert isinstance(number, int)  # the index in a list
         first = 0 if isinstance(definition, Assembly) else -1
         return tuple(
             placed(piece, Place(number, repeat, part))
@@ -113,8 +116,11 @@ class LineReader:
         )
 
     def _unknown_kind(self, item: SourceMapping, *, judged: bool) -> None:
-        """Judge the keys of an item without a component: the length, and by what they are of every
-        kind, unless they are `judged`, those that no component gives.
+        """Check the keys of an item whose component is unknown.
+
+        A length is checked. Of the other keys, those that are quantities of the same dimension in
+        all kinds are checked, and those of no kind are refused; with `judged` they are checked
+        elsewhere.
         """
         if item.data.get("length", "fit") != "fit":
             self._quantity(item, "length", POSITIVE_LENGTH, "")
@@ -148,7 +154,7 @@ class LineReader:
             message = "`length_at` is for cables and chains; this is as long as its definition says"
             item.refuse(("length_at",), message, key=True)
         elif "length" in item.data and "length_at" in item.data:
-            message = "gives both `length` and `length_at`; one says how long it is cut"
+            message = "gives both `length` and `length_at`, which exclude each other"
             item.refuse(("length_at",), message, key=True)
         fit_depth = self._fit_depth(item, fits=length is None)
         clamps = self._clamps(item, length)
@@ -169,10 +175,11 @@ class LineReader:
             fit_body_depth=fit_depth if self._towed else None,
             equipment=self._equipment(item, component, clamped=False),
             measured_load=load,
+            named=self._named(item),
         )
 
     def _measured(self, item: SourceMapping, component: Flexible) -> tuple[float, float]:
-        """Return the unstretched length of what is measured under a load [m], and that load [N]."""
+        """Return the unstretched length [m] of a cable measured under a load, and the load [N]."""
         if not isinstance(item.data["length_at"], dict):
             example = "{load: 2 kN, length: 480 m}"
             item.refuse(("length_at",), f"`length_at` must be as `{example}`")
@@ -187,7 +194,9 @@ class LineReader:
         return measured.length / (1.0 + component.strain_under(measured.load)), measured.load
 
     def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
-        """Return the depth to cut a piece to: of the line's top, in a tow of its own lower end."""
+        """Return the depth to which a piece is cut to fit: that of the line's top, or in a tow that
+        of the piece's lower end.
+        """
         key, foreign, home = ("top_depth", "body_depth", "tows")
         if self._towed:
             key, foreign, home = ("body_depth", "top_depth", "moorings")
@@ -195,7 +204,7 @@ class LineReader:
             message = f"`{foreign}` belongs to {home}; here it is `{key}`"
             item.refuse((foreign,), message, key=True)
         if fits and (key in item.data or foreign not in item.data):
-            # depths are counted from the water, above which a tow in air may end
+            # depths count from the surface; a tow in air may end above it
             kind = QuantityField("length") if self._in_air else LENGTH
             return self._quantity(item, key, kind, "`length: fit` needs it")
         if key in item.data:
@@ -203,15 +212,15 @@ class LineReader:
         return None
 
     def _tell_of_mass(self, use: str, component: Component) -> None:
-        """Notice that in air a net force in water has to do where it is all that is known."""
+        """Add a notice if the net force in water is used as the weight in air."""
         if self._in_air and component.mass is None and component.displaced_volume is None:
             notice = (
-                f"{use}: no mass is known; its net force in water is taken as its weight in air"
+                f"{use}: the mass is unknown; its net force in water is used as its weight in air"
             )
             self._notices += [notice] * (notice not in self._notices)
 
     def _clamps(self, item: SourceMapping, length: float | None) -> tuple[Clamp, ...]:
-        """Return the clamps of an item, none beyond its length where that is known."""
+        """Return the clamps of an item; a clamp beyond a known length is refused."""
         clamps: list[Clamp] = []
         for clamp in self._items(item, "clamps") if "clamps" in item.data else ():
             entry = self._entry(clamp)
@@ -230,7 +239,8 @@ class LineReader:
                 where = Place(0, clamp=len(clamps))
                 own = self._equipment(clamp, component, clamped=True)
                 label = self._label(clamp)
-                clamps.append(Clamp(clamp.data["use"], label, component, at, where, own))
+                use, named = clamp.data["use"], self._named(clamp)
+                clamps.append(Clamp(use, label, component, at, where, own, named=named))
             elif component is not None and at is not None:
                 message = f"a component of kind {component.kind} cannot be clamped on a line"
                 clamp.refuse(("use",), message)
@@ -239,8 +249,8 @@ class LineReader:
     def _equipment(
         self, item: SourceMapping, component: Component, *, clamped: bool
     ) -> item_keys.Equipment:
-        """Return what an item or a clamp says of the individual thing, with the depth that its
-        label names unless it gives a `planned_depth`.
+        """Return the keys about the individual equipment; without `planned_depth`, the depth in the
+        label is used.
         """
         equipment, label = item_keys.read_equipment(item), item.data.get("label")
         if equipment.planned_depth is not None or not isinstance(label, str):
@@ -259,11 +269,33 @@ class LineReader:
             self._assemblies[entry.id] = self.read(entry.section.into(self._problems), "parts")
             self._open.pop()
         place = item.problem((), "")
-        prefix = f"{self._label(item)} " if "label" in item.data else ""
+        prefix, named = f"{self._label(item)} " if "label" in item.data else "", self._named(item)
+        line, column = place.line, place.column
         return tuple(
-            replace(piece, label=prefix + piece.label, line=place.line, column=place.column)
+            replace(piece, label=prefix + piece.label, line=line, column=column, named=named)
             for piece in self._assemblies[entry.id]
         )
+
+    def _filled(
+        self,
+        pieces: tuple[Piece, ...],
+        assembly: Assembly,
+        entry: CatalogueEntry,
+        item: SourceMapping,
+    ) -> tuple[Piece, ...]:
+        """Return the pieces of an assembly, which take its figures if they lack them."""
+        for key in ASSEMBLY_FIGURES:
+            value = getattr(assembly, key)
+            if value is None:
+                continue
+            given: dict[str, Any] = item.data if key in item.data else entry.section.data
+            source = (given.get("sources") or {}).get(key) or given.get("source")
+            filled = tuple(_with_figure(piece, key, value, source) for piece in pieces)
+            if filled == pieces and key in item.data:
+                message = f"no part of `{entry.id}` lacks a `{key}`"
+                item.refuse((key,), f"{message}; use its parts to change one", key=True)
+            pieces = filled
+        return pieces
 
     def _entry(self, item: SourceMapping) -> CatalogueEntry | None:
         """Return the catalogue entry that an item uses."""
@@ -288,7 +320,7 @@ class LineReader:
             notice = f"{use}: defined in {entry.place}, which hides that of {hidden.place}"
             if entry.section.base is not None:
                 keys = ", ".join(f"`{key}`" for key in entry.replaces)
-                notice = f"{use}: {keys} of {entry.place} in place of that of {hidden.place}"
+                notice = f"{use}: {keys} of {entry.place} replaces that of {hidden.place}"
             if entry.section.base is None or entry.replaces:
                 self._notices += [notice] * (notice not in self._notices)
         return entry
@@ -296,16 +328,20 @@ class LineReader:
     def _definition(
         self, entry: CatalogueEntry, item: SourceMapping, item_keys: frozenset[str]
     ) -> Component | Assembly | None:
-        """Return what an item uses, the item's overrides applied."""
+        """Return the definition that an item uses, with the item's overrides."""
         if entry.id not in self._defined:
             own = entry.section.into(self._problems)
             self._defined[entry.id] = self._define(entry, own)
         definition = self._defined[entry.id]
         if isinstance(definition, Assembly):
-            for key in item.data.keys() - _ASSEMBLY_KEYS:
-                message = unknown(f"`{key}` cannot be set on an assembly", key, _ASSEMBLY_KEYS)
+            allowed = _ASSEMBLY_KEYS.union(ASSEMBLY_FIGURES, _SOURCE_KEYS)
+            for key in item.data.keys() - allowed:
+                message = unknown(f"`{key}` cannot be set on an assembly", key, allowed)
                 item.refuse((key,), message, key=True)
-            return definition
+            figures = {key: item.data[key] for key in item.data.keys() - _ASSEMBLY_KEYS & allowed}
+            section = item.holding(figures).over(entry.section)
+            filling = self._define(entry, section) if figures else definition
+            return filling if isinstance(filling, Assembly) else None
         if definition is None:
             return None
         own_keys = item_keys if definition.kind in FLEXIBLE_KINDS else item_keys - {"length"}
@@ -340,10 +376,12 @@ class LineReader:
         definition: Component | Outline,
         component: Component,
     ) -> None:
-        """Keep what the line lets a component bear, lift, weigh or resist beyond its definition."""
-        loads = () if isinstance(component, Anchor) else LESSER_FLATTERS
+        """Record the overrides of a line that allow a component more load, depth or buoyancy, or
+        less weight or drag.
+        """
+        loads = () if isinstance(component, Anchor) else LENIENT_IF_LESS
         sourced = item.data.get("sources")
-        for key in (*GREATER_FLATTERS, *loads):
+        for key in (*LENIENT_IF_GREATER, *loads):
             before, after = (getattr(each, key, None) for each in (definition, component))
             if before is None or after is None:
                 continue
@@ -387,8 +425,41 @@ class LineReader:
             item.refuse((key,), about_quantity(key, item.data[key], error))
             return None
 
+    def _named(self, item: SourceMapping) -> str:
+        """Return the label that an item or a clamp gives, "" if none."""
+        return self._label(item) if "label" in item.data else ""
+
     def _label(self, item: SourceMapping) -> str:
         label = item.data.get("label", item.data["use"])
         if not isinstance(label, str):
             item.refuse(("label",), "`label` must be plain text")
         return str(label)
+
+
+def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Piece:
+    """Add a figure to a piece of an assembly, or to clamps on it, that lack the figure."""
+
+    def filled(part: _Part) -> _Part:
+        component: Component = part.component
+        if not _lacks(component, key, clamped=isinstance(part, Clamp)):
+            return part
+        known: dict[str, Any] = {key: value}
+        if source:
+            known["sources"] = {**(component.sources or {}), key: source}
+        return replace(part, component=component.model_copy(update=known))
+
+    return filled(piece.with_clamps(filled))
+
+
+def _lacks(component: Component, key: str, *, clamped: bool) -> bool:
+    """Whether a component lacks a figure that it needs in its place."""
+    if key in ("working_load", "breaking_load"):
+        return not clamped and component.working_load is component.breaking_load is None
+    if key == "grip":
+        return clamped and component.grip is component.breaking_load is None
+    roles = {
+        "opening_load": ("release",),
+        "max_tilt": ("release", "instrument"),
+        "depth_rating": ("release", "instrument", "float"),
+    }
+    return component.role in roles[key] and getattr(component, key) is None

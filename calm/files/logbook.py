@@ -1,4 +1,4 @@
-"""Keys of a mooring file beside the design: document, units, releases, what went out."""
+"""Keys of a mooring file besides the design: document, display units, releases, deployment."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ Moment = Annotated[
     AfterValidator(_moment),
     WithJsonSchema({"type": "string", "pattern": r"^\d{4}-\d{2}-\d{2}"}),
 ]
-"""A day, or a day and time, as ISO 8601 writes them; kept as written."""
+"""A date, or a date and time, in ISO 8601, kept as text."""
 
 
 class OutputUnits(definition.Model):
-    """Say in which units people read tables, papers and the builder; files for programs are SI."""
+    """Units of display in tables, documents and the builder; data files are in SI units."""
 
     force: Literal["N", "kN", "kgf", "lbf"] | None = optional(
-        "of tensions, weights and loads", "kgf"
+        "unit of tensions, weights and loads", "kgf"
     )
-    length: Literal["m", "ft"] | None = optional("of lengths and depths", "m")
-    speed: Literal["m/s", "cm/s", "kn"] | None = optional("of currents and ships", "kn")
-    mass: Literal["kg", "lb"] | None = optional("of masses in air", "kg")
+    length: Literal["m", "ft"] | None = optional("unit of lengths and depths", "m")
+    speed: Literal["m/s", "cm/s", "kn"] | None = optional("unit of currents and ship speeds", "kn")
+    mass: Literal["kg", "lb"] | None = optional("unit of masses in air", "kg")
 
     @model_validator(mode="before")
     @classmethod
@@ -58,12 +58,12 @@ class OutputUnits(definition.Model):
 
     @property
     def chosen(self) -> dict[str, str]:
-        """Return the units that are given, by dimension."""
+        """Return the given units by dimension."""
         return self.model_dump(exclude_none=True)
 
 
 def unit_meant(text: str) -> tuple[str, str] | None:
-    """Return the dimension and the unit to show that a text names, as `knots`; None of no such."""
+    """Return the dimension and the unit of display that a text such as `knots` means, or None."""
     for dimension, units in SHOWN_UNITS.items():
         with suppress(QuantityError):
             value = parse_quantity(f"1 {text}", dimension)
@@ -73,55 +73,55 @@ def unit_meant(text: str) -> tuple[str, str] | None:
 
 
 class Revision(definition.Model):
-    """A revision of the document, and what it changed."""
+    """A revision of the document."""
 
     revision: Text = described("letter or number", "B")
     date: Day | None = optional("day, e.g. 2026-11-20", "2026-11-20")
-    by: Text | None = optional("who made it", "A. Martin")
-    change: Text | None = optional("what is new", "wire 20 m longer")
+    by: Text | None = optional("author of the revision", "A. Martin")
+    change: Text | None = optional("change of the design", "wire 20 m longer")
 
 
 class DocumentKeys(definition.Model):
     """The title block of a drawing."""
 
-    id: Text | None = optional("of the drawing", "M-2026-17")
+    id: Text | None = optional("number of the drawing", "M-2026-17")
     revision: Text | None = optional("letter or number", "B")
     date: Day | None = optional("day, e.g. 2026-11-20", "2026-11-20")
-    author: Text | None = optional("who drew it", "A. Martin")
-    checked: Text | None = optional("by whom", "B. Li")
-    approved: Text | None = optional("by whom", "C. Okafor")
-    project: Text | None = optional("what it belongs to", "Slope currents")
+    author: Text | None = optional("author of the drawing", "A. Martin")
+    checked: Text | None = optional("who checked it", "B. Li")
+    approved: Text | None = optional("who approved it", "C. Okafor")
+    project: Text | None = optional("name of the project", "Slope currents")
     ship: Text | None = optional("the ship that deploys the mooring", "RV Example")
     cruise: Text | None = optional("its name or number", "EX-142")
-    institution: Text | None = optional("whose mooring it is", "Institute of Examples")
+    institution: Text | None = optional("owner of the mooring", "Institute of Examples")
     investigator: Text | None = optional("who is responsible for the data", "D. Ruiz")
-    email: Text | None = optional("of the author", "a.martin@example.org")
-    url: Text | None = optional("of the author or the institution", "https://example.org")
-    license: Text | None = optional("of the data", "CC-BY-4.0")
-    acknowledgement: Text | None = optional("who paid", "Funded by the Examples Fund")
+    email: Text | None = optional("email address of the author", "a.martin@example.org")
+    url: Text | None = optional("web page of the author or the institution", "https://example.org")
+    license: Text | None = optional("licence of the data", "CC-BY-4.0")
+    acknowledgement: Text | None = optional("source of funding", "Funded by the Examples Fund")
     site: Text | None = optional("its code at OceanSITES", "EXAMPLE")
     platform: Text | None = optional("code of the mooring", "EXAMPLE-1")
     deck_time: (
         dict[definition.Role, Annotated[float, definition.QuantityField("time", at_least=0)]] | None
     ) = optional(
-        "time that a piece takes on deck before it goes over, by its role",
+        "time on deck before a piece is deployed, by role",
         {"float": "5 min", "instrument": "3 min", "line": "2 min"},
     )
     history: tuple[Revision, ...] = described(
-        "the revisions, and what each changed",
+        "list of revisions",
         [{"revision": "A", "date": "2026-10-02", "by": "A. Martin", "change": "first issue"}],
         default=(),
     )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what is given, as JSON has it."""
+        """Return the given keys as JSON data."""
         return self.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
 
 
 class ReleaseKeys(definition.Model):
     """A release by its serial number, and its codes: one text, several, or several by name."""
 
-    serial: Text | None = optional("of the release", 1729)
+    serial: Text | None = optional("serial number of the release", 1729)
     codes: Text | tuple[Text, ...] | dict[str, Text] | None = optional(
         "one text, several, or several by name, e.g. {enable: 0123, release: 4567}",
         {"enable": "0A51", "release": "0A55"},
@@ -129,7 +129,7 @@ class ReleaseKeys(definition.Model):
 
     @property
     def code_lines(self) -> tuple[str, ...]:
-        """Return the codes as a person reads them, one a line."""
+        """Return the codes as texts, one for each line."""
         if isinstance(self.codes, dict):
             return tuple(f"{name}: {code}" for name, code in self.codes.items())
         return (self.codes,) if isinstance(self.codes, str) else self.codes or ()
@@ -138,38 +138,38 @@ class ReleaseKeys(definition.Model):
 class ClockCheck(definition.Model):
     """The clock of an instrument against the true time, after recovery."""
 
-    checked: Moment = described("when it was compared", "2028-03-02T10:40")
+    checked: Moment = described("time of the check", "2028-03-02T10:40")
     late: Annotated[float, definition.QuantityField("time")] = described(
-        "how far it was behind; negative if it was ahead", "12 s"
+        "delay of the clock; negative if it was ahead", "12 s"
     )
 
 
 class DeployedItem(definition.Model):
-    """A piece or a clamp as it went over the side; a cable was cut to `length` [m]."""
+    """A piece or a clamp as deployed; a cable was cut to `length` [m]."""
 
-    label: Text = described("of the piece or clamp in results", "wire-jacketed-8")
-    serial: Text | None = optional("serial number; for a count, a list with one for each", 12345)
-    length: definition.PositiveLength = optional("what a cable was cut to", "480 m")
+    label: Text = described("label of the piece or clamp in results", "wire-jacketed-8")
+    serial: Text | None = optional("serial number; a list of as many as `count`", 12345)
+    length: definition.PositiveLength = optional("length to which a cable was cut", "480 m")
     clock: ClockCheck | None = optional(
-        "of an instrument: how far its clock was behind when it was checked; the error is taken to "
-        "grow evenly from the deployment on",
+        "delay of an instrument's clock when it was checked; the delay grows evenly from the "
+        "deployment on",
         {"checked": "2028-03-02T10:40", "late": "12 s"},
     )
-    remark: Text | None = optional("anything worth knowing", "one terminal remade")
+    remark: Text | None = optional("any remark", "one terminal remade")
 
 
 class Deployed(definition.Model):
-    """The deployment: where and when, and what of the mooring differs from the design."""
+    """The deployment: place, time, and differences from the design."""
 
     date: Moment | None = optional("day or time, e.g. 2027-03-02T10:40", "2027-03-02T10:40")
     position: Position | None = optional(
-        "where it stands", {"latitude": "48.3 deg", "longitude": "-5.2 deg"}
+        "position of the anchor", {"latitude": "48.3 deg", "longitude": "-5.2 deg"}
     )
     depth: Annotated[float | None, definition.QuantityField("length", above=0)] = optional(
-        "of the water there", "1100 m"
+        "water depth there", "1100 m"
     )
     items: tuple[DeployedItem, ...] = described(
-        "what differs, piece by piece",
+        "differences from the design, by piece",
         [{"label": "wire-jacketed-8", "length": "479.2 m"}],
         default=(),
     )
@@ -178,12 +178,13 @@ class Deployed(definition.Model):
 def check_deployed(
     deployed: Deployed, labels: Sequence[str], cables: Sequence[str], top: SourceMapping
 ) -> None:
-    """Check that what was deployed is of the line, each part once, and that only cables are cut.
+    """Check that deployed items are parts of the line, that each is given once, and that only
+    cables have a length.
 
     Parameters
     ----------
-    labels : of pieces and clamps
-    cables : those of what is cut to length
+    labels : labels of pieces and clamps
+    cables : labels of cables and chains, which are cut to length
     top : the mooring file
     """
     seen: set[str] = set()

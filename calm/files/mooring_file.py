@@ -1,4 +1,6 @@
-"""A mooring file as read: the expanded line, its environment and settings, in SI and degrees."""
+"""A mooring file after reading: the expanded line, its environment and settings, in SI units and
+degrees.
+"""
 
 from __future__ import annotations
 
@@ -35,13 +37,13 @@ class TowKeys(Model):
     """A tow: speed over ground [m/s], course [degrees], height of the tow point [m]."""
 
     speed: Annotated[float, QuantityField("speed", above=0)] = described(
-        "of the ship over the ground", "0.5 m/s"
+        "speed of the ship over ground", "0.5 m/s"
     )
     toward: Annotated[float, QuantityField("angle")] = described(
         "course, clockwise from north", "90 deg"
     )
     height: Annotated[float, LENGTH] = described(
-        "of the tow point above the water, e.g. 4 m", "4 m", default=0.0
+        "height of the tow point above the water, e.g. 4 m", "4 m", default=0.0
     )
 
 
@@ -51,42 +53,43 @@ class Solver(Model):
     angle_step: Annotated[
         float, QuantityField("angle", above=0, at_most=10), AfterValidator(math.radians)
     ] = described(
-        "how much a cable may turn from one segment to the next, e.g. 1 deg",
+        "maximum change of direction from one segment to the next, e.g. 1 deg",
         "1 deg",
         default=math.radians(1),
     )
     tolerance: Annotated[float, QuantityField("number", above=0, at_most=2e-4)] = described(
-        "of the depth of the anchor, as a share of the water depth", 1e-07, default=1e-7
+        "tolerance of the anchor's depth, as a share of the water depth", 1e-07, default=1e-7
     )
     drag: Literal["constant", "reynolds"] = described(
-        "constant coefficients, or by Reynolds number for what is `surface: smooth`",
+        "constant coefficients, or by Reynolds number for parts with `surface: smooth`",
         "reynolds",
         default="constant",
     )
     friction: Literal["berteaux", "hoerner", "constant"] = described(
         "law of friction along cables", "berteaux", default="berteaux"
     )
-    strumming: Strumming = optional("how much vibration raises the Cn of cables", {"factor": 1.5})
+    strumming: Strumming = optional("increase of the Cn of cables by vibration", {"factor": 1.5})
     buoy_drag: Literal["immersed", "full"] = described(
-        "of a float at the surface: at its draft, or fully immersed", "immersed", default="immersed"
+        "drag of a surface float: at its draft, or fully immersed", "immersed", default="immersed"
     )
     seabed_friction: Annotated[float, QuantityField("number", at_least=0)] = described(
-        "of line that lies on the seabed", 0.3, default=0.0
+        "friction coefficient of line on the seabed", 0.3, default=0.0
     )
 
 
 @dataclass(frozen=True)
 class MooringFile:
-    """Hold a mooring file with everything in it resolved.
+    """A mooring file in which all references are resolved.
 
-    `pieces` lead from the top of a mooring to its anchor; in a tow, where `tow` is not None, from
-    the ship to the towed body. `notices` say what a person may want to know: a catalogue entry
-    hidden by a nearer one, levels dropped from a measured current. `variants` are the environments
-    it gives besides its own, by name, as they are written, `accepts` what it accepts of the design
-    check, `uncertainty` how uncertain its inputs are, `looser` the limits of components that its
-    line sets beyond those of their definitions. `document` is what its title block says, `releases`
-    the codes of the releases, `deployed` what went over the side, `units` those in which people
-    read it. A net has `legs`, whose pieces follow one another.
+    `pieces` are listed from the top of a mooring to its anchor; in a tow, in which `tow` is not
+    None, from the ship to the towed body. In a net the pieces of the `legs` follow one another.
+
+    `notices` are remarks for the user, such as a catalogue entry hidden by a nearer one or levels
+    left out of a measured current. `variants` are the unvalidated further environments by name.
+    `accepts` are the accepted findings of the design check, `uncertainty` is that of the inputs,
+    and `looser` are limits that the line sets less strictly than the definitions of its components.
+    `document` is the title block, `releases` are the codes of the releases, `deployed` is the
+    deployment, and `units` are the units of display.
     """
 
     path: str
@@ -110,28 +113,31 @@ class MooringFile:
     legs: tuple[FileLeg, ...] = ()
 
     def __repr__(self) -> str:
-        """Return its name, where it is, and how many pieces it has."""
         return f"MooringFile({self.path!r}, {self.name!r}, {len(self.pieces)} pieces)"
 
     @property
     def release(self) -> int | None:
-        """Return the index of the lowest release in line, or None: what is above it comes up."""
+        """Return the index of the lowest release in the line, or None; the parts above it are
+        recovered.
+        """
         releases = [piece.index for piece in self.pieces if piece.component.role == "release"]
         return releases[-1] if releases else None
 
     @property
     def anchor(self) -> Anchor:
-        """Return the last piece of a mooring's line."""
+        """Return the anchor, the last piece of a mooring's line."""
         anchor = self.pieces[-1].component
         assert isinstance(anchor, Anchor)
         return anchor
 
     @property
     def anchor_friction(self) -> float:
-        """Return the friction of the anchor on the bed: its own, or that of the checks.
+        """Return the friction coefficient of the anchor on the seabed: its own, or that of the
+        checks.
 
-        On a slope b a weight w that H pulls down holds as long as H cos b + w sin b <= friction (w
-        cos b - H sin b): by tan(arctan(friction) - b), the worst of all directions.
+        On a slope b, an anchor of weight w loaded by H down the slope holds if H cos b + w sin b <=
+        friction (w cos b - H sin b). This corresponds to a friction coefficient
+        tan(arctan(friction) - b) on a level seabed, for the least favourable direction.
         """
         own, seabed = self.anchor.friction, self.environment.seabed
         friction = self.checks.anchor_friction if own is None else own
@@ -140,9 +146,9 @@ class MooringFile:
         return math.tan(math.atan(friction) - math.radians(seabed.slope))
 
     def leg_alone(self, leg: FileLeg) -> MooringFile:
-        """Return a leg as the file of a single line: its pieces, counted from its upper end.
+        """Return the file of a single leg: its pieces, counted from its upper end.
 
-        One of several without an anchor has a stand-in for it, of the id `STAND_IN`.
+        A leg without an anchor, in a net, gets a substitute with the id `STAND_IN`.
         """
         if not self.legs:
             return self
@@ -171,13 +177,13 @@ class MooringFile:
 def unknown_releases(
     releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
 ) -> list[str]:
-    """Note the releases whose serial number nothing in the line has, designed or deployed."""
+    """Return notes about releases whose serial number no piece has, as designed or as deployed."""
     parts = [part for part in parts_of(pieces) if part.component.role == "release"]
     designed = {part.label: part.serial for part in parts}
     items = () if deployed is None else deployed.items
     serials = {*designed.values(), *(one.serial for one in items if one.label in designed)}
     return [
-        f"`releases`: no release of the line has the serial number {release.serial}"
+        f"`releases`: no release of the line has the serial number {release.serial}."
         for release in releases
         if serials != {None} and release.serial is not None and release.serial not in serials
     ]
@@ -186,7 +192,7 @@ def unknown_releases(
 def check_fit(
     pieces: Sequence[Piece], seabed: float | None, tow: TowKeys | None, top: SourceMapping
 ) -> None:
-    """Check that the depth to reach lies above the seabed, and below the ship."""
+    """Check that the depth of a fitted piece is above the seabed, and below the ship."""
     for piece in pieces:
         here = piece.line, piece.column
         for key, depth in (("top", piece.fit_top_depth), ("body", piece.fit_body_depth)):
@@ -198,9 +204,10 @@ def check_fit(
 
 
 def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
-    """Legs of a file; a file without `legs` has one.
+    """Return the legs of a file; a file without `legs` has one leg.
 
-    The leg of a mooring is free above and anchored below, the leg of a tow is held at the ship.
+    The leg of a mooring has a free upper end and an anchored lower end; that of a tow is held at
+    the ship.
     """
     if file.legs:
         return file.legs
@@ -212,23 +219,23 @@ def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
 
 
 def leg_numbers(file: MooringFile) -> list[int]:
-    """Return the number of the leg that each piece of a file is in."""
+    """Return the number of the leg for each piece of a file."""
     return [n for n, leg in enumerate(legs_of(file)) for _ in range(leg.first, leg.end)]
 
 
 def refuse_several(file: MooringFile) -> None:
-    """Reject a file of legs for uses of a single line: UsageError."""
+    """Raise UsageError for a file with legs, in functions for single lines."""
     if file.legs:
         raise UsageError(f"{file.path}: {ONE_LEG_ONLY}")
 
 
 def refuse_tow(file: MooringFile) -> None:
-    """Reject a tow for uses of a mooring: UsageError."""
+    """Raise UsageError for a tow, in functions for moorings."""
     if file.tow is not None:
         raise UsageError(f"{file.path} is a tow; this is for moorings")
 
 
 def refuse_all_but_moorings(file: MooringFile) -> None:
-    """Reject tows and files of legs for uses of a single mooring: UsageError."""
+    """Raise UsageError for tows and files with legs, in functions for single moorings."""
     refuse_several(file)
     refuse_tow(file)

@@ -1,4 +1,4 @@
-"""The pieces of a line and what is clamped on them: each with its place, and a label of its own."""
+"""The pieces of a line and their clamps, each with its place and a unique label."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from calm.files.rigid import Profiler
 from calm.files.yaml_document import SourceMapping
 
 STAND_IN = ""
-"""Id of what holds a line whose anchor is yet to be chosen, or a leg that has none."""
+"""Id of the substitute for the anchor of a line without one, or of a leg without one."""
 
 
 @dataclass(frozen=True, order=True)
 class Place:
-    """Hold where a piece or a clamp stands in the line as read, by which it is known from there on.
+    """The place of a piece or a clamp in the line, by which it is identified after reading.
 
-    A row of the file is the place of what it gives: `Place(3)` its fourth item, whatever the count
-    of that, `Place(3, clamp=0)` the first clamp of it.
+    Each item of the file has a place, independent of its `count`: `Place(3)` is the fourth item,
+    `Place(3, clamp=0)` its first clamp.
 
     Attributes
     ----------
-    item : of the `line:` of the file, from 0
-    repeat : which of the `count` of the item, from 0
-    part : which piece of an assembly, from 0; -1 where the item is a component
-    clamp : which clamp of the piece, from 0; -1 where the piece itself is meant
+    item : index of the item in the `line:` of the file, from 0
+    repeat : index within the `count` of the item, from 0
+    part : index of the piece in an assembly, from 0; -1 for a component
+    clamp : index of the clamp on the piece, from 0; -1 for the piece itself
     """
 
     item: int
@@ -41,33 +41,33 @@ class Place:
 
     @property
     def is_clamp(self) -> bool:
-        """Return whether it is that of a clamp."""
         return self.clamp >= 0
 
     @property
     def row(self) -> Place:
-        """Return the row of the file that gives it: of what stands in an assembly, its item."""
+        """Return the place of its row in the file: the item, for a part of an assembly."""
         return Place(self.item) if self.part >= 0 else Place(self.item, clamp=self.clamp)
 
 
 class LinePart(Protocol):
-    """Represent a piece or a clamp, or what was found for one."""
+    """A piece, a clamp, or the result of either."""
 
     @property
     def place(self) -> Place:
-        """Return which one it is."""
+        """Return the place of the part."""
 
     @property
     def label(self) -> str:
-        """Return what people call it."""
+        """Return the name of the part for users."""
 
 
 @dataclass(frozen=True)
 class Clamp:
-    """Represent an instrument fixed to a piece, `at` metres (unstretched) from the piece's top.
+    """An instrument clamped on a piece, `at` metres (unstretched) below the piece's top.
 
-    A profiler travels over `travel`, the same distance of its upper and its lower stop; inf is the
-    end of the piece. It is taken to be `at` its upper one.
+    A profiler moves over `travel`, the distances of its upper and lower stop from the piece's top;
+    inf is the lower end of the piece. Its place `at` is that of the upper stop. `named` is its
+    label in the file, empty if there is none.
     """
 
     use: str
@@ -77,37 +77,39 @@ class Clamp:
     place: Place
     equipment: Equipment = NO_EQUIPMENT
     travel: tuple[float, float] | None = None
+    named: str = ""
 
     @property
     def serial(self) -> str | None:
-        """Return the serial number of this instrument, where the file gives it."""
+        """Return the serial number of this instrument; None if unknown."""
         return _serial(self.equipment)
 
     @property
     def planned_depth(self) -> float | None:
-        """Depth it is planned to hang at in still water [m]; None without a plan."""
+        """Return the planned depth in still water [m]; None if there is none."""
         return self.equipment.planned_depth
 
 
 @dataclass(frozen=True)
 class Piece:
-    """Represent one piece of the expanded line.
+    """A piece of the expanded line.
 
     Attributes
     ----------
     index : position in the line, 0 at the top (in a tow, at the ship)
     use, label : id of the component; the label is unique in the line
-    component : its definition with the overrides of the line applied
-    length : unstretched length [m]; None where it is to be cut to fit
-    fit_top_depth : depth wanted for the top of the line in still water [m], on the piece cut to fit
-    clamps : tuple of Clamp
-    line, column : the item in the mooring file, counted from 1
-    place : Place
-    fit_body_depth : depth wanted for the lower end of the piece at the tow's speed [m], where it is
-        cut to fit
-    equipment : what the file says of this individual piece
-    measured_load : load under which its length is measured [N], `length` being without load all the
-        same
+    component : its definition with the overrides of the line
+    length : unstretched length [m]; None for the piece that is cut to fit
+    fit_top_depth : intended depth of the line's top in still water [m], for the piece cut to fit
+    clamps : the clamps on it
+    line, column : place of the item in the mooring file, counted from 1
+    place : its place in the line
+    fit_body_depth : intended depth of the piece's lower end at the tow's speed [m], for a piece
+        that is cut to fit
+    equipment : keys about the individual piece
+    measured_load : load under which its length was measured [N]; `length` is nevertheless that
+        without load
+    named : label in the file, empty if there is none
     """
 
     index: int
@@ -123,19 +125,22 @@ class Piece:
     fit_body_depth: float | None = None
     equipment: Equipment = NO_EQUIPMENT
     measured_load: float = 0.0
+    named: str = ""
 
     @property
     def serial(self) -> str | None:
-        """Return the serial number of this piece, where the file gives it."""
+        """Return the serial number of this piece; None if unknown."""
         return _serial(self.equipment)
 
     @property
     def planned_depth(self) -> float | None:
-        """Depth its upper end is planned to hang at in still water [m]; None without a plan."""
+        """Return the planned depth of its upper end in still water [m]; None if there is none."""
         return self.equipment.planned_depth
 
     def with_clamps(self, changed: Callable[[Clamp], Clamp], **own: Any) -> Piece:
-        """Return the piece with each of its clamps changed, and with other fields of its own."""
+        """Return the piece with a function applied to each clamp, and with other fields of its
+        own.
+        """
         return replace(self, clamps=tuple(map(changed, self.clamps)), **own)
 
 
@@ -145,7 +150,9 @@ def _serial(equipment: Equipment) -> str | None:
 
 
 def placed(piece: Piece, place: Place) -> Piece:
-    """Put a piece, with its clamps and the serial numbers there, at a place of the line."""
+    """Return a piece at a place of the line, with its clamps and the serial numbers of that
+    place.
+    """
 
     def moved(clamp: Clamp) -> Clamp:
         own = replace(place, clamp=clamp.place.clamp)
@@ -155,7 +162,7 @@ def placed(piece: Piece, place: Place) -> Piece:
 
 
 def unplanned(piece: Piece) -> Piece:
-    """Take the planned depths from a piece and its clamps."""
+    """Return a piece and its clamps without planned depths."""
 
     def without(clamp: Clamp) -> Clamp:
         return replace(clamp, equipment=clamp.equipment.planned_for(None))
@@ -164,7 +171,7 @@ def unplanned(piece: Piece) -> Piece:
 
 
 def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
-    """Give the pieces their index, and number labels that occur more than once down the line."""
+    """Set the index of the pieces, and number labels that occur more than once down the line."""
     pieces = tuple(pieces)
     labels = iter(numbered_labels(labels_of(pieces)))
 
@@ -178,7 +185,7 @@ def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
 
 
 def numbered_labels(texts: Sequence[str]) -> list[str]:
-    """Number labels that occur more than once down a line, clamps below their piece."""
+    """Number labels that occur more than once down a line; clamps follow their piece."""
     total, seen = Counter(texts), Counter[str]()
 
     def numbered_label(text: str) -> str:
@@ -193,7 +200,7 @@ def numbered_labels(texts: Sequence[str]) -> list[str]:
 
 
 def parts_of(pieces: Iterable[Piece]) -> list[Piece | Clamp]:
-    """Every piece of a line, each with its clamps after it."""
+    """Return the pieces of a line, each followed by its clamps."""
     parts: list[Piece | Clamp] = []
     for piece in pieces:
         parts += (piece, *piece.clamps)
@@ -201,22 +208,22 @@ def parts_of(pieces: Iterable[Piece]) -> list[Piece | Clamp]:
 
 
 def clamps_in(pieces: Iterable[Piece]) -> list[Clamp]:
-    """List the clamps of a line in the order of the file, which is that of the solver."""
+    """Return the clamps of a line in the order of the file and of the solver."""
     return [clamp for piece in pieces for clamp in piece.clamps]
 
 
 def clamps_down(pieces: Iterable[Piece]) -> list[Clamp]:
-    """List the clamps of a mooring's line from its top to its anchor, the order of its results."""
+    """Return the clamps of a mooring's line from its top to its anchor, the order of results."""
     return [clamp for piece in pieces for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)]
 
 
 def labels_of(pieces: Iterable[Piece]) -> list[str]:
-    """Return the labels of pieces and clamps, down the line."""
+    """Return the labels of pieces and clamps down the line."""
     return [part.label for part in parts_of(pieces)]
 
 
 def travelling(pieces: Sequence[Piece], top: SourceMapping) -> tuple[Piece, ...]:
-    """Give each profiler the way that it travels, by the labels of its stops."""
+    """Set the travel of each profiler from the labels of its stops."""
     return tuple(piece.with_clamps(partial(_travelling, piece, pieces, top)) for piece in pieces)
 
 
@@ -232,7 +239,7 @@ def _travelling(piece: Piece, pieces: Sequence[Piece], top: SourceMapping, clamp
     row = ("line", place.item, *(() if place.part >= 0 else ("clamps", place.clamp)))
     messages = [] if between else ["a profiler needs `between: [upper stop, lower stop]`"]
     messages += [
-        unknown(f"`{label}` is no stop on `{piece.label}`, nor a piece beside it", label, stops)
+        unknown(f"`{label}` is neither a clamp on `{piece.label}` nor another piece", label, stops)
         for label in between
         if label not in stops
     ]
@@ -247,7 +254,7 @@ def _travelling(piece: Piece, pieces: Sequence[Piece], top: SourceMapping, clamp
 
 
 def check_one_fit(pieces: Sequence[Piece], top: SourceMapping) -> None:
-    """Check that one piece at most is to be cut to fit."""
+    """Check that at most one piece is cut to fit."""
     fits = [piece for piece in pieces if piece.length is None]
     for piece in fits[1:]:
         message = f"only one piece can be cut to fit; line {fits[0].line} has one already"

@@ -1,13 +1,14 @@
-"""The planned depth of a piece or a clamp, as its label names it.
+"""The planned depth of a piece or a clamp, as given in its label.
 
 A label names a depth if it has exactly one number with the unit of a length (``meter 200 m``,
 ``CTD400m``, ``SBE37 @ 1500m``, ``buoy 650 ft``), a number after ``@``, or ends in four digits that
-a hyphen or an underscore joins to it (``CTD_0400``). No depth is
+a hyphen or an underscore joins to it and that begin with 0 (``CTD_0400``) or are a multiple of 50
+(``CTD_1500``): others, as in ``MC_1729``, may be a serial number. No depth is
 
 - a serial number or another number with ``SN``, ``serial``, ``no.``, ``#`` or the like before it,
   or the part's own serial number;
 - the depth rating of the component, unless ``@`` stands before it (``Aquadopp 6000 m``);
-- four digits that do not begin with 0 behind a model that has digits itself (``SBE37_1729``), which
+- four digits that do not begin with 0 behind a model that has digits itself (``SBE37_1700``), which
   mostly are a serial number;
 - any number of a label that names a length, a range or a height: of cable, wire, rope or chain,
   ``range``, ``rated``, ``above``, ``below``, ``mab`` and the like;
@@ -43,12 +44,14 @@ _WITH_UNIT = re.compile(
 )
 _AFTER_AT = re.compile(r"(@\s*)(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)()(?![\w.,/])")
 _AT_THE_END = re.compile(r"^(.*)[_-](\d{4})$")
+_ROUND = 50
+"""Depths of four digits in a label are multiples of it [m]; one serial number in 50 is."""
 _FOOT = 0.3048
 _LEAST_OF_A_FLOAT = 10.0
 
 
 def depth_in_label(label: str, serial: str | None = None, rating: float | None = None) -> float:
-    """Depth that a label names [m], by the rules above; NaN if it names none.
+    """Return the depth in a label [m] by the rules above; NaN if there is none.
 
     Parameters
     ----------
@@ -65,7 +68,8 @@ def depth_in_label(label: str, serial: str | None = None, rating: float | None =
     }
     if not found and (end := _AT_THE_END.match(text)):
         model, digits = end.groups()
-        if digits[0] == "0" or not re.search(r"\d", model):
+        round_depth = int(digits) % _ROUND == 0 and not re.search(r"\d", model)
+        if digits[0] == "0" or round_depth:
             found = {(False, float(digits), digits)}
     depths = {
         depth for at, depth, digits in found if at or not (digits == serial or depth == rating)
@@ -76,7 +80,7 @@ def depth_in_label(label: str, serial: str | None = None, rating: float | None =
 def named_depth(
     label: str, component: Component, serial: str | None, *, clamped: bool
 ) -> float | None:
-    """Planned depth that the label of a piece or a clamp names [m]; None if it names none."""
+    """Return the planned depth in the label of a piece or a clamp [m]; None if there is none."""
     role = component.role
     measures = role in ("instrument", "float") or clamped
     if not measures or isinstance(component, Flexible | Profiler):

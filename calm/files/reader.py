@@ -1,5 +1,5 @@
-"""From a mooring file, in its own environment or in another, to a `MooringFile`: every mistake
-found, or everything resolved.
+"""Read a mooring file in one of its environments: either every mistake is reported, or a
+`MooringFile` is returned.
 """
 
 import math
@@ -42,17 +42,17 @@ def _given(value: object) -> object:
 class MooringKeys(Model):
     """The keys at the top level of a mooring file."""
 
-    name: Text | None = optional("what people call it", "Shelf edge 2026")
-    description: Text | None = optional("what it is for", "Slope currents, first year")
+    name: Text | None = optional("name of the mooring or tow", "Shelf edge 2026")
+    description: Text | None = optional("purpose of the mooring", "Slope currents, first year")
     document: DocumentKeys | None = optional(
-        "what the title block of a drawing says", {"id": "M-2026-17", "revision": "B"}
+        "title block of the drawing", {"id": "M-2026-17", "revision": "B"}
     )
     position: Position | None = optional(
-        "where it stands", {"latitude": "48.3 deg", "longitude": "-5.2 deg"}
+        "position of the mooring", {"latitude": "48.3 deg", "longitude": "-5.2 deg"}
     )
     tow: Annotated[TowKeys | None, BeforeValidator(_given, json_schema_input_type=TowKeys)] = (
         optional(
-            "what tows the line, in place of an anchor", {"speed": "4 knot", "toward": "90 deg"}
+            "speed and course of a tow without anchor", {"speed": "4 knot", "toward": "90 deg"}
         )
     )
     environment: dict[str, Any] = described("the water", {"depth": "1100 m"}, default_factory=dict)
@@ -61,12 +61,12 @@ class MooringKeys(Model):
         [{"use": "sphere-steel-1250"}, {"use": "anchor-wheels-4"}],
     )
     legs: dict[str, LegKeys] | None = optional(
-        "in place of `line`, several lines that meet at nodes, or are held elsewhere",
+        "in place of `line`: several lines that join at nodes or are held",
         {"main": {"line": [{"use": "sphere-steel-1250"}], "bottom": {"join": "A"}}},
     )
-    nodes: dict[str, dict[str, Any]] | None = optional("the nodes where legs meet", {"A": {}})
+    nodes: dict[str, dict[str, Any]] | None = optional("nodes at which legs join", {"A": {}})
     components: dict[str, Any] | None = optional(
-        "definitions of your own, used only here",
+        "definitions of components used only in this file",
         {"my-float": {"kind": "sphere", "diameter": "1.2 m", "buoyancy": "7000 N"}},
     )
     environments: dict[str, dict[str, Any]] | None = optional(
@@ -74,16 +74,16 @@ class MooringKeys(Model):
         {"storm": {"current": {"speed": "1.2 m/s", "toward": "90 deg"}}},
     )
     units: OutputUnits | None = optional(
-        "in which people read tables, papers and the builder", {"force": "kgf", "speed": "kn"}
+        "units of display in tables, documents and the builder", {"force": "kgf", "speed": "kn"}
     )
     solver: Solver | None = optional(
-        "how the line is solved", {"angle_step": "1 deg", "strumming": "vandiver"}
+        "numerical settings and drag laws", {"angle_step": "1 deg", "strumming": "vandiver"}
     )
     checks: Checks | None = optional(
         "limits of the design check", {"anchor_factor": 1.5, "maximum_knockdown": "50 m"}
     )
     uncertainty: Uncertainty | None = optional(
-        "how well the inputs of the design are known",
+        "uncertainty of the inputs of the design",
         {"current": "10 %", "cable_drag": ["-15 %", "30 %"]},
     )
     releases: tuple[ReleaseKeys, ...] | None = optional(
@@ -91,7 +91,7 @@ class MooringKeys(Model):
         [{"serial": 1729, "codes": {"enable": "0A51", "release": "0A55"}}],
     )
     deployed: Deployed | None = optional(
-        "where and when it was deployed, and what differs from the design",
+        "place and time of the deployment, and differences from the design",
         {"date": "2027-03-02T10:40", "depth": "1103 m"},
     )
 
@@ -104,16 +104,16 @@ def read_mooring(
     text: str | None = None,
     stand_in: bool = False,
 ) -> MooringFile:
-    """Read a mooring file and all it refers to in one environment, by a `MooringReader`.
+    """Read a mooring file and all files that it refers to, in one environment.
 
-    InputError: with every mistake found, each at its place.
+    InputError: the file has mistakes; all are listed, each with its place.
     """
     reader = MooringReader(path, catalogs=catalogs, text=text, stand_in=stand_in)
     return reader.in_environment(environment)
 
 
 class _ReadLine(NamedTuple):
-    """The line of a file and what refers to its pieces, and the mistakes in them."""
+    """The line of a file with the keys that refer to its pieces, and their mistakes."""
 
     pieces: tuple[Piece, ...]
     legs: tuple[FileLeg, ...]
@@ -124,16 +124,16 @@ class _ReadLine(NamedTuple):
 
 
 class MooringReader:
-    """A mooring file, whose line is read once for all the environments that it is read in.
+    """Reader of a mooring file, which reads the line once for all environments.
 
-    InputError: it, or a catalogue, cannot be read at all.
+    InputError: the file or a catalogue cannot be read at all.
 
     Parameters
     ----------
-    catalogs : catalogue files that come before the user's own and the shipped ones, the last first
-    text : in place of the file's content. The file need not exist; what the text refers to is
+    catalogs : catalogue files with priority over the user's and the shipped ones, the last first
+    text : text used in place of the file, which need not exist; files that it refers to are
         looked for beside it
-    stand_in : let a line that has no anchor yet stand on one that holds anything, of the id
+    stand_in : whether a line without an anchor gets a substitute of unlimited weight, with the id
         `STAND_IN`
     """
 
@@ -153,7 +153,7 @@ class MooringReader:
         self._top = top = SourceMapping.of(document, self._problems)
         self._towed, self._legged = "tow" in top.data, "legs" in top.data
         given = top
-        if self._legged:  # one with legs has no line, and its legs are read one by one
+        if self._legged:  # a file with legs has no line; its legs are read one by one
             ours = {key: value for key, value in top.data.items() if key not in ("legs", "nodes")}
             given = top.holding({"line": ["legs"], **ours})
         self._keys = validate(MooringKeys, given, context={"towed": self._towed})
@@ -163,9 +163,10 @@ class MooringReader:
         self._catalogue = catalogue
 
     def in_environment(self, environment: str | Path | None = None) -> MooringFile:
-        """Return the file in a variant that it names, or an environment file; else its own.
+        """Return the file in one of its variants, in an environment file, or by default in its own
+        environment.
 
-        InputError: with every mistake found, each at its place.
+        InputError: the file has mistakes; all are listed, each with its place.
         """
         keys, problems = self._keys, [*self._problems]
         top = self._top.into(problems)
@@ -214,7 +215,7 @@ class MooringReader:
         )
 
     def _line(self, in_air: bool) -> _ReadLine:
-        """Read the line, in air or in water, and what refers to its pieces."""
+        """Read the line, for air or for water, and the keys that refer to its pieces."""
         problems: list[Problem] = []
         notices: list[str] = []
         top, keys, towed = self._top.into(problems), self._keys, self._towed
@@ -248,18 +249,18 @@ class MooringReader:
 
 
 def _child(section: SourceMapping, key: str) -> SourceMapping | None:
-    """Return the mapping under a key, None where there is none."""
+    """Return the mapping under a key; None if there is none."""
     return section.child(key) if isinstance(section.data.get(key), dict) else None
 
 
 def _in_order(problems: list[Problem], path: str) -> list[Problem]:
-    """Return each problem once: those of the mooring file first, down the file."""
+    """Return each problem once: those of the mooring file first, in the order of the file."""
     once = dict.fromkeys(problems)
     return sorted(once, key=lambda one: (one.path != path, one.path, one.line, one.column))
 
 
 def _check_tow(pieces: Sequence[Piece], top: SourceMapping) -> None:
-    """Check that nothing stands on the seabed in a tow."""
+    """Check that a tow has no anchor."""
     for piece in pieces:
         if isinstance(piece.component, Anchor):
             message = f"anchor `{piece.use}` in a tow; its line ends in the towed body"
@@ -267,7 +268,7 @@ def _check_tow(pieces: Sequence[Piece], top: SourceMapping) -> None:
 
 
 def _check_anchor(pieces: Sequence[Piece], top: SourceMapping) -> None:
-    """Check that the line of a mooring ends in its only anchor."""
+    """Check that the line of a mooring ends with its only anchor."""
     if not pieces:
         return
     for piece in pieces[:-1]:
@@ -280,7 +281,7 @@ def _check_anchor(pieces: Sequence[Piece], top: SourceMapping) -> None:
         top.refuse(("line",), message, key=True, lacks="no anchor")
     if len(pieces) == 1 and _anchored(pieces) and len(top.data["line"]) == 1:
         here, lacks = (pieces[0].line, pieces[0].column), "nothing above the anchor"
-        top.refuse_at(*here, "nothing stands above the anchor", lacks=lacks)
+        top.refuse_at(*here, "there is no piece above the anchor", lacks=lacks)
 
 
 def _anchored(pieces: Sequence[Piece]) -> bool:
@@ -295,8 +296,10 @@ def _check_slides(
     top: SourceMapping,
     depth: float | None,
 ) -> None:
-    """Check that no anchor slides down the seabed by its own weight, nor stands off the grid or out
-    of the water, which is so deep at the origin [m].
+    """Check that no anchor slides down the seabed by its own weight, is off the depth grid, or is
+    above the water.
+
+    `depth` is the water depth at the origin [m].
     """
     ends = {leg.end - 1: leg.bottom.anchor for leg in legs}
     for piece in pieces:
@@ -309,9 +312,9 @@ def _check_slides(
         said = []
         if here.slope >= most:
             said.append(
-                f"with a friction of {math.tan(math.radians(most)):g} the anchor slides by itself "
-                f"on a seabed that slopes by {here.slope:.4g}°; it holds on slopes of less than "
-                f"{most:.3g}°"
+                f"with a friction of {math.tan(math.radians(most)):g} the anchor slides by its own "
+                f"weight on a seabed that slopes by {here.slope:.4g}°; it holds on slopes of less "
+                f"than {most:.3g}°"
             )
         if place is not None and place.depth is not None:
             pass
@@ -333,16 +336,17 @@ class EnvironmentFileKeys(Model):
 def choose_environment(
     top: SourceMapping, chosen: str | Path | None, *, towed: bool
 ) -> tuple[SourceMapping, str | None] | None:
-    """Return the `environment` of a file, or the chosen one laid over it, and its name; unread.
+    """Return the `environment` of a file, or the chosen one with that as base, and its name; not
+    yet validated.
 
-    Variants that are not chosen, and the own environment where another one is, are checked here,
-    so that mistakes are reported where they are. None where there is no environment.
+    Variants that are not chosen are checked here, and so is the file's own environment if another
+    one is chosen, so that all mistakes are reported. Returns None if there is no environment.
 
     Parameters
     ----------
-    top : the mooring file
+    top : top level of the mooring file
     chosen : a variant named in the file, or an environment file; None for the file's own
-    towed : a tow may be without an environment: in deep, still sea water
+    towed : whether it is a tow, which needs no environment and is then in deep, still sea water
     """
     own = _child(top, "environment")
     if own is None:
@@ -377,7 +381,7 @@ def choose_environment(
 
 
 def _check(section: SourceMapping, towed: bool) -> None:
-    """Look for mistakes in keys that may stand over, or under, others: on any depth."""
+    """Check the keys of an environment that may have a base or be one, with any depth."""
     section = section.over(section.holding({"depth": "1 m"}))
     read_environment(section, None, [], open_files=False, towed=towed)
 

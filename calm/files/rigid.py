@@ -48,7 +48,7 @@ class Displacement(Model):
         ],
         ...,
     ] = described(
-        "rows of draft, volume, area seen from the side; the last is all of it",
+        "rows of draft, volume, area seen from the side; the last row is the whole hull",
         [["0 m", "0 m^3", "0 m^2"], ["0.8 m", "2.4 m^3", "1.9 m^2"]],
     )
 
@@ -106,10 +106,10 @@ class Rigid(definition.Definition):
         "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)", "7000 N"
     )
     volume: Annotated[float | None, QuantityField("volume", at_least=0)] = optional(
-        "of water displaced, e.g. 0.9 m^3", "0.9 m^3"
+        "volume of water displaced, e.g. 0.9 m^3", "0.9 m^3"
     )
     hull: Hull | None = optional(
-        "of a float at the surface: a shape, or its displacement by draft", "sphere"
+        "hull of a surface float: a shape, or its displacement by draft", "sphere"
     )
     k_surface: definition.Drag = optional("drag of a float at the surface at 1 m/s", "40 N/(m/s)^2")
     wind_area: Annotated[float | None, _AREA] = optional(
@@ -118,7 +118,7 @@ class Rigid(definition.Definition):
     wind_cd: definition.Coefficient = optional("drag coefficient of `wind_area`", 1.0)
 
     heave: Literal["filtered", "follows", "panels"] | None = optional(
-        "of a float at the surface in waves: by its hull, by panels on it, or as the water does",
+        "heave of a surface float in waves: by its hull, by panels, or that of the water",
         "follows",
     )
     rao: Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_read_rao)] = optional(
@@ -127,10 +127,10 @@ class Rigid(definition.Definition):
         {"0.5": [1.0, "0 deg"], "2": [0.6, "20 deg"]},
     )
     centre_of_mass: Annotated[float | None, _REACH] = optional(
-        "of a float and all it carries, above the keel; for its pitch in waves", "0.8 m"
+        "centre of mass of a float with its load, above the keel; for its pitch", "0.8 m"
     )
     radius_of_gyration: Annotated[float | None, _GYRATION] = optional(
-        "of a float and all it carries, about a horizontal axis through `centre_of_mass`", "0.9 m"
+        "radius of gyration of a float with its load, about `centre_of_mass`", "0.9 m"
     )
     bail: Annotated[float | None, _REACH] = optional(
         "height above the keel at which the line pulls a float; negative below it", "-0.5 m"
@@ -147,7 +147,7 @@ class Rigid(definition.Definition):
 
     @property
     def net_buoyancy(self) -> float:
-        """Return the net force in water, positive up; of a mass alone, that in air [N]."""
+        """Return the net force in water, positive up [N]; with a mass alone, that in air."""
         if self.buoyancy is not None:
             return self.buoyancy
         assert self.mass is not None
@@ -155,7 +155,9 @@ class Rigid(definition.Definition):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Return the volume displaced [m³], None if it is unknown, nor follows from the weights."""
+        """Return the volume displaced [m³]; None if it is neither given nor follows from the
+        weights.
+        """
         if self.volume is not None or self.buoyancy is None:
             return self.volume
         return definition.volume_from_weights(self.mass, self.net_buoyancy)
@@ -206,7 +208,7 @@ class CylinderShape(Model):
 
 
 class Sphere(Rigid, SphereShape):
-    """A sphere; its length along the line is its diameter unless it says otherwise."""
+    """A sphere; by default its length along the line is its diameter."""
 
     length: definition.Length = Field(default_factory=lambda data: data.get("diameter", 0.0))
     surface: Surface = None
@@ -228,9 +230,9 @@ class DragMeasurement(Model):
     """A drag measured at a speed [m/s, N]."""
 
     speed: Annotated[float, QuantityField("speed", above=0)] = described(
-        "of the water past it", "0.5 m/s"
+        "relative speed of the water", "0.5 m/s"
     )
-    force: Annotated[float, QuantityField("force", at_least=0)] = described("measured", "48 N")
+    force: Annotated[float, QuantityField("force", at_least=0)] = described("drag measured", "48 N")
 
 
 Shape = Annotated[SphereShape | CylinderShape, Field(discriminator="kind")]
@@ -241,11 +243,11 @@ DRAG_FORMS: tuple[tuple[str, ...], ...] = (
     ("drag_measurements",),
     ("made_of",),
 )
-"""The ways a body may give its drag; exactly one of them."""
+"""The alternative keys for the drag of a body; exactly one of these sets is given."""
 
 
 class Shaped(Rigid):
-    """A piece of any shape that gives its drag in one of the `DRAG_FORMS`."""
+    """A piece of any shape, with its drag in one of the `DRAG_FORMS`."""
 
     length: definition.Length
     kn: definition.Drag = optional(
@@ -266,7 +268,7 @@ class Shaped(Rigid):
     )
     inclination: Inclination = None
     lift: Annotated[float | None, QuantityField("drag")] = optional(
-        "of a towed body at 1 m/s, positive up", "-30 N/(m/s)^2"
+        "lift of a towed body at 1 m/s, positive up", "-30 N/(m/s)^2"
     )
 
     @model_validator(mode="after")
@@ -294,29 +296,29 @@ class Shaped(Rigid):
 
 
 class Body(Shaped):
-    """A body on the line or in it."""
+    """A body in the line or clamped on it."""
 
     kind: Literal["body"] = Field(description="which kind of component it is")
 
 
 LEAST_WIRE_TENSION = 2224.0
-"""Of the wire of a McLane Moored Profiler, 500 lbf by its manual [N]."""
+"""Required tension of the wire of a McLane Moored Profiler: 500 lbf by its manual [N]."""
 
 
 class Profiler(Shaped):
-    """A profiler that travels along a wire, from one stop to another and back."""
+    """A profiler that moves along a wire between two stops."""
 
     kind: Literal["profiler"] = Field(description="which kind of component it is")
     between: Annotated[tuple[definition.Text, ...] | None, BeforeValidator(_two_stops)] = optional(
-        "labels of its upper and its lower stop: what is clamped on its wire, or "
-        "pieces at the ends of that",
+        "labels of its upper and its lower stop: clamps on its wire, or pieces at the "
+        "ends of the wire",
         ["upper bumper", "lower bumper"],
     )
     minimum_tension: Annotated[float, definition.POSITIVE_FORCE] = described(
-        "that its wire needs where it travels", "2224 N", default=LEAST_WIRE_TENSION
+        "tension that its wire needs along its travel", "2224 N", default=LEAST_WIRE_TENSION
     )
-    drive_force: definition.PositiveForce = optional("that it can climb with", "50 N")
+    drive_force: definition.PositiveForce = optional("maximum force of its drive", "50 N")
     speed: Annotated[float | None, QuantityField("speed", above=0)] = optional(
-        "along its wire", "0.25 m/s"
+        "speed along its wire", "0.25 m/s"
     )
-    endurance: definition.PositiveLength = optional("way that its batteries last for", "1000 km")
+    endurance: definition.PositiveLength = optional("range of its batteries", "1000 km")

@@ -1,7 +1,7 @@
-"""The rules of the design check: what each is called, what it judges, by what limit, from whom.
+"""The rules of the design check as text: title, quantity, checked value, limit and source.
 
-Findings, reports, the manual and `checks: accept:` all read this table; the functions that judge
-are in `calm.checks`.
+Findings, reports, the manual and `checks: accept:` use this table. The functions that apply the
+rules are in `calm.checks`.
 """
 
 from dataclasses import dataclass
@@ -9,17 +9,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class RuleText:
-    """Hold a rule in words.
+    """A rule of the design check in text.
 
     Attributes
     ----------
-    title : for people
-    quantity : of `calm.quantities`, whose unit its values and limits have; "" without figures
-    judges : what is judged
-    limit : and by what
-    source : of the rule and its limit as it is by default
-    unseen : why no profile of a batch can be judged by it, where none can
-    figures : of a component, without which the rule does not know
+    title : title for users
+    quantity : name in `calm.quantities` of its values and limits; "" for a rule without figures
+    judges : the value that is checked
+    limit : its limit
+    source : source of the rule and of its default limit
+    unseen : the reason, if the profiles of a batch cannot be checked
+    figures : figures of a component that the rule needs
+    has_ratio : whether its values and limits are demand and capacity
     """
 
     title: str
@@ -29,103 +30,123 @@ class RuleText:
     source: str
     unseen: str = ""
     figures: tuple[str, ...] = ()
+    has_ratio: bool = True
 
 
-_WAVES = "waves are judged of an environment, by `calm check`"
-_ONCE = "judged once of a mooring, by `calm check`"
+_WAVES = "waves are checked for an environment, by `calm check`"
+_ONCE = "checked once for a mooring, by `calm check`"
 
 RULES = {
     "equilibrium": RuleText("Equilibrium", "",
-        "found where there is none: its status and advice",
+        "reported if there is none, with its status and advice",
         "",
-        "A mooring that does not stand cannot be judged"),
+        "A mooring without an equilibrium cannot be checked"),
     "current": RuleText("Current", "speed",
-        "the strongest current of all environments; the levels that the profile of each has",
+        "the strongest current of all environments; the levels of each profile",
         "a warning below 0.2 m/s, below 0.9 of the strongest current of the record that "
         "an environment is taken from, below a fiftieth of that of another environment, "
         "or where a tenth of the depth and 25 m at either end have no level",
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 of its speed, 0.2 "
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
+    "drag-coefficient": RuleText("Drag coefficient", "",
+        "spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond the curve of "
+        "`drag: reynolds`",
+        "a warning if the curve of a smooth shape makes the knockdown, or the offset at the "
+        "surface, greater by 5 %; else not judged, with the effect",
+        "Constant coefficients hold up to 2e5; beyond it, the drag of smooth shapes falls",
+        "the profiles of a record are solved with one law of drag"),
+    "environment": RuleText("Environment", "",
+        "values of an environment that are possible but probably mistakes: directions in radians, "
+        "a level opposite to both its neighbours, a current that increases down to the seabed or "
+        "exceeds any in deep water, an implausible density, tides of more than 20 m, wind of more "
+        "than 75 m/s; levels of a storm below half of the ordinary current; no `wind` although a "
+        "float at the surface has a `wind_area`",
+        "a warning",
+        "Defaults of this program: ranges of the sea, and common input errors",
+        "environments are compared with each other, by `calm check`"),
     "missing": RuleText("Missing figures", "",
-        "figures that a component does not give and rules need: one finding for each component id "
-        "and figure, with these rules and the pieces that they cannot judge",
+        "figures that rules need and a component lacks: one finding for each component id "
+        "and figure, with these rules and the pieces that they cannot check",
         "unknown",
         "The sources of the rules that need the figure",
         _ONCE),
     "strength": RuleText("Strength", "tension",
-        "greatest tension of every piece; of the top one and the anchor where they give a load",
-        "the lesser of its working load and its breaking load over `safety_factor`: 3 steel, "
+        "maximum tension of every piece; of the top one and the anchor if they have a load limit",
+        "the smaller of its working load and its breaking load over `safety_factor`: 3 steel, "
         "5 synthetic, 5 anything in a surface mooring; of a synthetic rope with a breaking load "
-        "that alone, since rope tables print working loads for lifting",
-        "The lesser of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, "
+        "that alone, since rope tables give working loads for lifting",
+        "The smaller of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, "
         "chain and wire), oceanographic practice MBL/3 to MBL/5",
         figures=("working_load", "breaking_load")),
     "release-load": RuleText("Load of the release", "tension",
-        "greatest tension of every release, and the pull below it as it opens",
-        "the limit of `strength`, and its `opening_load` where given",
-        "The maker's static load, and the greatest under which it opens",
+        "maximum tension of every release, and the tension below it when it opens",
+        "the limit of `strength`, and its `opening_load` if given",
+        "Static load and opening load given by the manufacturer",
         figures=("working_load", "opening_load")),
     "clamp-grip": RuleText("Grip of the clamps", "tension",
-        "weight in water and drag of what is clamped, in the current, the fall and the rise",
-        "its `grip`, else its `breaking_load`; reported where neither is given",
-        "The maker's figures of the clamp",
-        "the result does not hold the current at each clamp", figures=("grip",)),
+        "weight in water and drag of every clamp, in the current, the fall and the rise",
+        "its `grip`, or its `breaking_load`; not judged if neither is given",
+        "Figures of the clamp given by the manufacturer",
+        "the result does not contain the current at each clamp", figures=("grip",)),
     "profiler": RuleText("Profiler on its wire", "tension",
-        "tension of the wire, what stands in the way and what the drive has to overcome, at both "
-        "stops and where the wire leans most",
+        "tension of the wire, obstacles on it and the force that the drive needs, at both "
+        "stops and at the largest inclination of the wire",
         "`minimum_tension` of the profiler, 2224 N; its `drive_force`; jacketed wire of 6.35 to "
         "9.53 mm, and a profile of 6.4 h at most, else a warning",
         "McLane Moored Profiler, user manual",
-        "the profiles of a record are solved with it at its upper stop", figures=("drive_force",)),
+        "the profiles of a record are solved with the profiler at its upper stop",
+        figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "tension",
         "every piece, compared with the cables above and below it",
-        "half of their strength: a warning",
-        "A default of this program: half the strength of the cables on both its sides",
+        "half of their strength, if sources give both, for a piece with more than half of its "
+        "allowable load: a warning",
+        "A default of this program: half the strength of the adjacent cables",
         "the strengths of pieces side by side do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",
         "every instrument, release and clamp",
-        "its own `max_tilt`, and `maximum_tilt` where given; a warning from its `warn_tilt`",
-        "The maker's limit: RCM 27° (BODC), single-point Doppler 30°, ADCP 15 to 20°, release 45°, "
-        "sediment trap 10°",
+        "its own `max_tilt`, and `maximum_tilt` if given; a warning from its `warn_tilt`",
+        "Limit given by the manufacturer: RCM 27° (BODC), single-point Doppler 30°, ADCP 15 to "
+        "20°, release 45°, sediment trap 10°",
         figures=("max_tilt",)),
     "depth-rating": RuleText("Depth rating", "depth",
-        "depth in the current",
+        "depth in the current; for a surface float only if it has a rating",
         "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
-        "The maker's rating, less a margin for a stronger current than expected",
+        "Rating given by the manufacturer, less a margin for a stronger current than expected",
         figures=("depth_rating",)),
     "top-depth": RuleText("Depth of the top", "depth",
-        "least depth of the top of a sub-surface line, at low water too",
-        "`minimum_top_depth`: a failure; where it is not given, 10 m: a warning",
+        "minimum depth of the top of a subsurface line, also at low water",
+        "`minimum_top_depth`: a failure; by default 10 m: a warning",
         "A default of this program: clear of waves, hulls and nets"),
     "planned-depth": RuleText("Planned depth", "depth",
         "distance of every piece and clamp with a `planned_depth`, or with a depth in its label, "
         "from that depth in still water",
-        "`planned_depth_warning`, 10 m, or 2 % of the planned depth if that is more: a warning; "
-        "`planned_depth_limit`, 10 % of it: a failure; not judged without any planned depth",
-        "A default of this program: an instrument that hangs elsewhere than planned measures "
-        "another water, or a length or the depth is wrong",
+        "the larger of `planned_depth_warning`, 10 m, and 2 % of the planned depth: a warning; "
+        "`planned_depth_limit`, 10 % of the planned depth: a failure; not checked without one",
+        "A default of this program: an instrument at another depth than planned measures "
+        "other water, or a length or the water depth is wrong",
         _ONCE),
     "stretch": RuleText("Stretch", "length",
         "synthetic ropes without `stiffness` or `elongation`; the load of a `length_at`",
-        "unknown where published stiffnesses of such ropes let it stretch by more than 2 % of the "
-        "depth of the water; a warning where it is measured under more than its working load, or "
+        "unknown if published stiffnesses of such ropes mean a stretch of more than 2 % of the "
+        "water depth; a warning if it is measured under more than its working load, or "
         "a fifth of its breaking load",
-        "A default of this program: a sounding errs by as much; ropes are measured under "
+        "A default of this program: soundings have a similar error; ropes are measured under "
         "a small load"),
     "fish-bite": RuleText("Fish bite", "depth",
-        "least depth of every synthetic rope, in more than 200 m of water",
+        "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
+        "the equator",
         "`fishbite_depth`, 1000 m: a warning",
         "Berteaux, Prindle & May, OCEANS '87: far from the shores fish bite from the surface to "
         "1000 m and more",
-        "ropes are bitten where they stand for months, not in one profile"),
+        "ropes are bitten over months, not during one profile"),
     "knockdown": RuleText("Knockdown", "knockdown",
-        "of the top",
-        "`maximum_knockdown`, where given",
+        "knockdown of the top",
+        "`maximum_knockdown`, if given",
         "The design's own `maximum_knockdown`"),
     "excursion": RuleText("Excursion", "offset",
         "horizontal offset of the top",
-        "`maximum_excursion`, where given",
+        "`maximum_excursion`, if given",
         "The design's own `maximum_excursion`"),
     "anchor-weight": RuleText("Anchor weight", "tension",
         "weight in water",
@@ -144,124 +165,146 @@ RULES = {
         "of a deadweight",
         figures=("weight", "density")),
     "slack": RuleText("Least tension", "tension",
-        "least tension of every wire and rope above the release that does not lie on the seabed",
+        "minimum tension of the wires and ropes above the release that are off the seabed, if the "
+        "line is longer than 50 m above its release",
         "`minimum_tension`: 500 N wire, 300 N rope; `slack: allowed` on a piece exempts it",
         "Practice of mooring groups, 50 to 100 kgf above the release; no figure is published"),
     "wave-strength": RuleText("Strength in waves", "tension",
-        "greatest tension of every piece in `waves:`, mean and most probable greatest of 3 h",
-        "the lesser of its working load and its breaking load over `waves_safety_factor`, 1.67, "
-        "the loads that count for `strength`; "
-        "unknown of a surface mooring without `waves:`",
+        "maximum tension of every piece in `waves:`: mean and most probable maximum of 3 h",
+        "the smaller of its working load and its breaking load over `waves_safety_factor`, 1.67, "
+        "with the loads used for `strength`; "
+        "unknown for a surface mooring without `waves:`",
         "API RP 2SK: 1.67 on breaking strength, intact, tensions found dynamically",
         _WAVES, figures=("working_load", "breaking_load")),
     "wave-slack": RuleText("Slack in waves", "tension",
-        "least tension of every piece in `waves:`, mean and most probable least of 3 h",
+        "minimum tension of every piece in `waves:`: mean and most probable minimum of 3 h",
         "above 0; `slack: allowed` on a piece exempts it",
-        "A line that falls slack snatches, and linear tensions no longer hold",
+        "A slack line snatches when it tightens, and linear tensions are not valid",
         _WAVES),
     "fatigue": RuleText("Fatigue in waves", "life",
-        "life of every piece below the float in the seas of `waves: scatter:`",
-        "`fatigue_factor`, 3, × `service_time`, 365 days; unknown without a table of seas, and "
-        "of what no curve is published for",
+        "life of every piece below the float in the sea states of `waves: scatter:`",
+        "`fatigue_factor`, 3, × `service_time`, 365 days; not judged without a table of sea "
+        "states; unknown without a published curve",
         "Dirlik 1985 and Miner's sum; curves of DNV-OS-E301 (chain, polyester) and API RP 2SK "
         "(wire); a life of three times the service",
         _WAVES),
     "reserve": RuleText("Reserve of buoyancy", "used_buoyancy",
-        "share of the surface float's buoyancy that is left",
+        "unused share of the surface float's buoyancy",
         "`minimum_reserve`, 0.3",
-        "Dewey: a float that uses all its buoyancy goes under; the share kept is for waves"),
+        "Dewey: a float that uses all its buoyancy submerges; the remaining share is for waves"),
     "freeboard": RuleText("Freeboard", "freeboard",
-        "of the surface float",
+        "freeboard of the surface float",
         "above 0",
-        "A float at the surface stands out of the water",
-        "the result does not hold how the float lies in the water"),
+        "The hull of a surface float extends above the water",
+        "the result does not contain the draft of the float"),
     "watch-circle": RuleText("Watch circle", "offset",
         "√(L² − h²): the line as stretched, the water above the anchor's top",
-        "`maximum_excursion`; reported where that is not given",
+        "`maximum_excursion`; not judged if it is not given",
         "Worst case √(L² - h²), h above the anchor, against the design's own `maximum_excursion`",
-        "the result does not hold the stretched length of the line"),
+        "the result does not contain the stretched length of the line"),
     "scope": RuleText("Scope", "scope",
         "cut length over depth",
-        "none: it is reported",
+        "none: it is reported, not judged",
         "Reported, not judged",
         "it is reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
-        "how far the depth and lengths of `deployed` move the top of the upright line "
-        "from its design depth",
+        "change of the depth of the upright line's top by the depth and lengths of `deployed`",
         "the error of a sounding, 1 m and 2.3 % of the depth: a warning",
         "IHO S-44, order 2: the error of a sounding, 95 %",
         _ONCE),
     "figures": RuleText("Figures of components", "",
         "figures of pieces and clamps that are impossible for their size and material: lift, "
-        "mass, stiffness, strength, depth rating, coefficients of drag",
-        "a failure; of a tilt warned of after the limit a warning; unknown where the line gives a "
-        "figure that flatters more than its component's, without a `source`, and of a `material` "
-        "that names none of those known",
+        "mass, density, stiffness, strength, depth rating, coefficients of drag",
+        "a failure; a warning if `warn_tilt` exceeds `max_tilt`, for an instrument that floats and "
+        "for a `wind_area` out of proportion; unknown if the line overrides a figure by a more "
+        "favourable one without a `source`, and for a `material` that is unknown or differs from "
+        "the `name`",
         "The rules of `calm catalog check`",
         _ONCE),
     "release-present": RuleText("Release", "",
-        "whether a piece of a sub-surface line has `role: release`, and whether that frees it",
-        "unknown where none has, one that is clamped, or is called a shackle, swivel, rope or the "
-        "like; a failure where nothing floats above it; a warning of a single one (none is called "
-        "double, dual, twin or a pair), of less than 1 m between it and the anchor, and where "
-        "something below it floats",
-        "Defaults of this program: a line to be recovered names its release",
+        "whether a piece of a subsurface line has `role: release`, and whether it frees the line",
+        "unknown if none has, or if it is clamped or named a shackle, swivel, rope or the "
+        "like; a failure if nothing above it floats; a warning for a single one in more than 100 m "
+        "of water (none is named double, dual, twin or pair), for less than 1 m between it and the "
+        "anchor, and if a float is below it",
+        "Defaults of this program: a line that is recovered has a release",
         _ONCE),
     "hardware": RuleText("Hardware", "",
         "whether any piece of the line has `role: connector`",
-        "a warning where none has",
-        "A default of this program: what joins the pieces has weight, drag and a strength",
+        "a warning if none has",
+        "A default of this program: connectors have weight, drag and a strength",
+        _ONCE),
+    "joints": RuleText("Joints", "",
+        "whether a piece with `role: connector` joins every two different pieces (wire, chain, "
+        "rigid pieces), except spliced ropes and wires with a `termination`",
+        "one warning for all joints of the line; none for a line without any hardware",
+        "A default of this program: a shackle that is not listed is neither bought nor checked",
         _ONCE),
     "clamp-place": RuleText("Places of the clamps", "",
-        "clamps on a cable or chain that overlap, or stick out over its end",
+        "clamps on a cable or chain that overlap, or extend beyond its end",
         "5 cm: a failure",
-        "Two things are not in one place",
+        "Two parts cannot be in the same place",
+        _ONCE),
+    "serials-and-dates": RuleText("Serial numbers and dates", "",
+        "labels of several rows, but for connectors; serial numbers of several items of one "
+        "component; codes of a release that is not in the line, or of two; batteries that end "
+        "before the deployment or the calibration, calibrations after the deployment; a document "
+        "that is not its latest revision, revisions out of order",
+        "a warning",
+        "A default of this program: sheets and labels must be consistent",
         _ONCE),
     "swivel": RuleText("Swivel", "",
         "steel wire that ends at a float with no chain or rope between",
-        "a swivel between them, or wire that is `torque_balanced`, or called so by its name, "
-        "material or note where it does not give that: a warning",
-        "A default of this program: wire that twists under load kinks when the load goes",
+        "a swivel between them or at its other end, or wire that is `torque_balanced` by that key "
+        "or, without it, by its name, material or note: otherwise a warning",
+        "A default of this program: wire that twists under load kinks when it is unloaded",
         _ONCE),
     "metals": RuleText("Dissimilar metals", "potential",
-        "pieces that touch, clamps and what they are on, where both give a metal as `material`",
+        "adjacent pieces, and clamps with `insulated: false` on their pieces, if both have a metal "
+        "as `material` and neither is `insulated`",
         "0.2 V apart in sea water: a warning",
         "Galvanic series in sea water (Professional Boatbuilder 100, 2006); 0.15 to 0.2 V in harsh "
         "surroundings (Pantaenius)",
-        _ONCE),
+        _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "tension",
-        "net buoyancy of the part that still holds the release after the worst break that is "
-        "judged (below)",
-        "`backup_margin`, 0.1 of the weight lifted, and 250 N; a warning of a compact line of one "
-        "float",
+        "net buoyancy of the part that remains connected to the release after the worst break or "
+        "loss of a float considered (below)",
+        "`backup_margin`, 0.1 of the weight lifted, or its drag at `minimum_rise_speed` if that is "
+        "more; not judged for a float that alone brings up a line, at most 50 m above the release; "
+        "a warning for a surface mooring without floats below its buoy",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
         "floats",
         _ONCE),
     "launch-strength": RuleText("Strength in the launch", "tension",
         "tension of every piece as the line falls behind its anchor",
-        "the lesser of `launch_working_factor`, 1, times its working load and its breaking load "
-        "over `launch_safety_factor`, 2; the loads that count for `strength`",
+        "the smaller of `launch_working_factor`, 1, times its working load and its breaking load "
+        "over `launch_safety_factor`, 2, with the loads used for `strength`",
         "Anchor-last launch at terminal speed (URI GSO program); the working load, and breaking "
         "load over 2",
         _ONCE, figures=("working_load", "breaking_load")),
     "launch-speed": RuleText("Speed at touchdown", "speed",
         "speed of the anchor at touchdown",
         "2.5 m/s: a warning",
-        "A default of this program: faster, an anchor may bury itself or break what stands on it",
+        "A default of this program: a faster anchor may bury itself or break equipment on it",
         _ONCE, figures=("kt",)),
     "recovery": RuleText("Rise", "speed",
-        "speed of the rise without the anchor",
+        "speed of the rise without the anchor, of a line with a release or below the surface",
         "`minimum_rise_speed`, 0.3 m/s; a warning below 0.7 m/s and above 3 m/s",
-        "Defaults of this program: below 0.3 m/s a rise is in doubt, below 0.7 m/s it takes long; "
-        "above 3 m/s floats leap and the line loops",
+        "Defaults of this program: below 0.3 m/s a rise is uncertain, below 0.7 m/s it is slow; "
+        "above 3 m/s floats jump and the line forms loops",
         _ONCE),
     "tangling": RuleText("Tangling", "",
-        "whether a part overtakes the parts ahead in the fall or the rise",
+        "whether a part overtakes the parts ahead of it in the fall or the rise",
         "a warning",
-        "A default of this program: no part overtakes the parts ahead",
+        "A default of this program: no part overtakes those ahead of it",
         _ONCE),
 }  # fmt: skip
-"""Every rule by its id, in the order in which a design is reported."""
+"""All rules by id, in the order of the report."""
 
 ACCEPTABLE = tuple(name for name in RULES if name != "equilibrium")
-"""The rules of `checks: accept:`; of a mooring that does not stand nothing is known to accept."""
+"""The rules that may be in `checks: accept:`. Without an equilibrium there are no findings to
+accept.
+"""
+
+LOADED = ("strength", "release-load", "clamp-grip", "wave-strength", "launch-strength", "missing")
+"""The rules for which an accepted finding may state the maximum tension that it accepts."""

@@ -1,7 +1,8 @@
-"""The JSON Schema of the mooring file, for editors that complete and check while one types.
+"""The JSON Schema of the mooring file, with which editors complete and check keys during typing.
 
-It is made from the models that read the file. It knows the keys, the kinds and that a quantity has
-a unit; what needs the catalogue or several fields at once is left to the reader.
+It is made from the models that read the file. It contains the keys, the kinds, and the fact that a
+quantity has a unit. Conditions that involve the catalogue or several keys are checked only by the
+reader.
 """
 
 from collections.abc import Iterable
@@ -20,7 +21,7 @@ from calm.files.reader import MooringKeys
 Schema = dict[str, Any]
 
 _NO_FORM = ("description", "examples", "default", "title")
-"""What in the schema of a field does not say what may stand there."""
+"""Entries in the schema of a field that do not restrict its value."""
 
 
 def mooring_schema() -> Schema:
@@ -60,7 +61,8 @@ def mooring_schema() -> Schema:
         },
     }
     known |= {name: form | _words_of(known[name]) for name, form in forms.items()}
-    # Only a tow may do without an environment, or without a depth in it; a variant always may.
+    # Only a tow may have no environment, or one without a depth. A variant may always have no
+    # depth.
     del top["required"]
     top["oneOf"] = [{"required": ["line"]}, {"required": ["legs"]}]
     leg = schemas["LegKeys"]["properties"]
@@ -87,7 +89,7 @@ def _words_of(form: Schema) -> Schema:
 
 
 def _fields(kinds: Iterable[type[Component]], schemas: Schema) -> Schema:
-    """Return every field that can be overridden; where kinds differ, either form."""
+    """Return all fields that can be overridden; if kinds differ, all their forms are allowed."""
     forms: dict[str, list[Schema]] = {}
     words: dict[str, Schema] = {}
     for kind in kinds:
@@ -107,7 +109,7 @@ def _fields(kinds: Iterable[type[Component]], schemas: Schema) -> Schema:
 
 
 def _tidy(schema: Any) -> None:
-    """Leave out the titles of fields, and their defaults (in SI)."""
+    """Remove the titles of fields, and their defaults, which are in SI units."""
     if isinstance(schema, list):
         for part in schema:
             _tidy(part)

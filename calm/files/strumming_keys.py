@@ -1,4 +1,4 @@
-"""The `strumming:` of a file's solver: how the vibration of cables raises their Cn.
+"""The key `strumming:` of a file's solver: the increase of the Cn of cables by vibration.
 
 ===================================== ==========================================
 written                               read as
@@ -26,7 +26,9 @@ from calm.units import QuantityError
 _NUMBER = QuantityField("number")
 _FACTOR = QuantityField("number", above=0)
 _RAISED = QuantityField("number", at_least=1)
-"""What vibrates is dragged more than what is at rest, by the diameter it sweeps."""
+"""At least 1: a vibrating cable has a higher drag than one at rest, because it sweeps a larger
+width.
+"""
 _RESTING_CN = QuantityField("number", above=0, at_most=BourgetMarichal.ceiling)
 
 AmplitudeName = Literal["vandiver", "blevins", "skop-griffin"]
@@ -34,15 +36,13 @@ _Name = Literal["none", "bourget-marichal", AmplitudeName]
 
 
 class StrummingFactor(Model):
-    """The Cn of every cable, multiplied."""
+    """A factor on the Cn of every cable."""
 
-    factor: Annotated[float, _RAISED] = described(
-        "what the Cn of every cable is multiplied by, e.g. 1.5", 1.5
-    )
+    factor: Annotated[float, _RAISED] = described("factor on the Cn of every cable, e.g. 1.5", 1.5)
 
 
 class ConstantCn(Model):
-    """One Cn for every cable, whatever its own: the habit for towed cables, 1.8 to 1.9."""
+    """One Cn for every cable, whatever its own; usual for towed cables, 1.8 to 1.9."""
 
     cn: Annotated[float, COEFFICIENT] = described("drag coefficient across the axis", 1.2)
 
@@ -59,15 +59,15 @@ class BourgetMarichalKeys(Model):
         "the law", "bourget-marichal", default="bourget-marichal"
     )
     a1: Annotated[float, _NUMBER] = described(
-        "amplitude over diameter of the cable's vibration where φ is 0",
+        "amplitude of the vibration over the diameter of the cable, for φ = 0",
         0.45,
         default=BourgetMarichal.a1,
     )
     b1: Annotated[float, _NUMBER] = described(
-        "what φ adds to `a1`, per degree", 0.01, default=BourgetMarichal.b1
+        "coefficient of φ, per degree", 0.01, default=BourgetMarichal.b1
     )
     c1: Annotated[float, _NUMBER] = described(
-        "what φ² adds to `a1`, per square degree", 0.0, default=BourgetMarichal.c1
+        "coefficient of φ², per square degree", 0.0, default=BourgetMarichal.c1
     )
     c0: Annotated[float, _RESTING_CN] = described(
         "Cn of the cable at rest", 1.2, default=BourgetMarichal.rest
@@ -81,7 +81,7 @@ class BourgetMarichalKeys(Model):
 
 @dataclass(frozen=True)
 class AmplitudeModel:
-    """The law, by name, that raises Cn with the amplitude at which each segment vibrates."""
+    """A law that gives the increase of Cn from the vibration amplitude of each segment."""
 
     name: Annotated[AmplitudeName, described("the law", "vandiver")]
 
@@ -91,17 +91,17 @@ _FORMS: Mapping[str, type[Model]] = {
     "cn": ConstantCn,
     "model": BourgetMarichalKeys,
 }
-"""The mappings a person may write, by the key that each must have."""
+"""The mappings that may be written, by their required key."""
 
 
 def _forms_in(value: dict[str, object]) -> list[str]:
-    """Return the keys of `_FORMS` that a mapping has, misspelt or not."""
+    """Return the keys of `_FORMS` in a mapping, also if they are misspelt."""
     exact = [form for form in _FORMS if form in value]
     return exact or [form for key in value if (form := nearest(key, _FORMS))]
 
 
 def _written_out(value: object, info: ValidationInfo) -> object:
-    """Write a name out as what it stands for; leave a mapping that is one of the forms."""
+    """Replace the name of a law by its keys; a mapping must be one of the forms."""
     if value is None:
         raise QuantityError("has no value")
     law = value.get("model") if isinstance(value, dict) else value
@@ -132,7 +132,7 @@ def _one_form(value: dict[str, object]) -> dict[str, object]:
         raise ValueError("`strumming` needs `factor`, `cn`, or `model: bourget-marichal`")
     if len(forms) > 1:
         given = " and ".join(f"`{form}`" for form in forms)
-        raise ValueError(f"`strumming` gives {given}; one of them is needed")
+        raise ValueError(f"`strumming` has {given}, which exclude each other")
     law = value.get("model")
     if law in get_args(AmplitudeName):
         raise ValueError(f"`{law}` has no figures to give; write `strumming: {law}`")
@@ -140,7 +140,9 @@ def _one_form(value: dict[str, object]) -> dict[str, object]:
 
 
 def _form(value: object) -> str:
-    """Return the name of the class to read a value as; messages find its keys by that."""
+    """Return the name of the class as which a value is read; messages find its keys by this
+    name.
+    """
     if isinstance(value, dict):
         return _FORMS[_forms_in(value)[0]].__name__
     return type(value).__name__

@@ -1,4 +1,4 @@
-"""`uncertainty:` of a mooring file: how sure its figures are, each with its default."""
+"""The key `uncertainty:` of a mooring file: the uncertainty of its figures, each with a default."""
 
 from dataclasses import dataclass
 from typing import Annotated, Any
@@ -10,19 +10,21 @@ from calm.files.definition import Model, QuantityField, described
 from calm.units import QuantityError
 
 MOST_DEVIATION = 0.25
-"""Of a share: a normal distribution wider than this would often pass below nothing."""
+"""Largest standard deviation of a share: a wider normal distribution would often give negative
+values.
+"""
 _SHARE = QuantityField("number", at_least=0.0)
 _TOO_WIDE = "is too wide for a deviation, 25 % at most; give a pair, its 5 and 95 %"
 
 
 @dataclass(frozen=True)
 class Spread:
-    """Say how far a figure may be off: of a share that of 1, of an angle in degrees.
+    """Uncertainty of a figure: relative, or of an angle in degrees.
 
     Attributes
     ----------
-    deviation : standard deviation of a normal distribution; None where `between` is given
-    between : its 5 and 95 %
+    deviation : standard deviation of a normal distribution; None with `between`
+    between : percentiles of 5 and 95 %
     """
 
     deviation: float | None = None
@@ -31,19 +33,19 @@ class Spread:
 
 @dataclass(frozen=True)
 class SpreadOf:
-    """Annotate a key of `uncertainty:` with what may stand there.
+    """Annotate a key of `uncertainty:` with its range of values.
 
     Attributes
     ----------
-    one : what a standard deviation may be
-    end : what the 5 and the 95 % may be
+    one : the values of a standard deviation
+    end : the values of the percentiles of 5 and 95 %
     """
 
     one: QuantityField
     end: QuantityField
 
     def read(self, value: object) -> Spread:
-        """Read one text with a unit, or two in a list."""
+        """Read a text with a unit, or a list of two."""
         if not isinstance(value, list | tuple):
             return Spread(self._deviation(value))
         if len(value) != 2:
@@ -88,28 +90,32 @@ AngleSpread = Annotated[
 
 
 class Uncertainty(Model):
-    """The spread of what a design stands on: one draw of each a mooring."""
+    """Uncertainty of the inputs of a design; each draw of a mooring has one value of each."""
 
     current: ShareSpread = described(
-        "of the speed, at all depths alike", "10 %", default=Spread(0.1)
+        "speed of the current, the same at all depths", "10 %", default=Spread(0.1)
     )
     direction: AngleSpread = described(
-        "of the current, at all depths alike", "5 deg", default=Spread(5.0)
+        "direction of the current, the same at all depths", "5 deg", default=Spread(5.0)
     )
     cable_drag: ShareSpread = described(
-        "of cables and chains, strumming aside",
+        "drag of cables and chains, without strumming",
         ["-15 %", "30 %"],
         default=Spread(between=(-0.15, 0.30)),
     )
     rigid_drag: ShareSpread = described(
-        "of rigid pieces and of what is clamped on", "15 %", default=Spread(0.15)
+        "drag of rigid pieces and clamps", "15 %", default=Spread(0.15)
     )
     buoyancy: ShareSpread = described(
-        "net, of rigid pieces and clamps that float", "2 %", default=Spread(0.02)
+        "net buoyancy of rigid pieces and clamps that float", "2 %", default=Spread(0.02)
     )
     cable_weight: ShareSpread = described(
         "net force of cables and chains in water", "3 %", default=Spread(0.03)
     )
-    length: ShareSpread = described("of cables and chains, as cut", "0.3 %", default=Spread(0.003))
-    stiffness: ShareSpread = described("of cables and chains", "20 %", default=Spread(0.2))
-    depth: ShareSpread = described("of the water", "1 %", default=Spread(0.01))
+    length: ShareSpread = described(
+        "cut length of cables and chains", "0.3 %", default=Spread(0.003)
+    )
+    stiffness: ShareSpread = described(
+        "stiffness of cables and chains", "20 %", default=Spread(0.2)
+    )
+    depth: ShareSpread = described("depth of the water", "1 %", default=Spread(0.01))

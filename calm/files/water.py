@@ -1,4 +1,4 @@
-"""Keys of the water and of the wind on it: tables by depth, density."""
+"""Keys of the water and of the wind over it: tables by depth, and density."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from calm.files.definition import DENSITY, Model, QuantityField, Text, described
 from calm.files.yaml_document import SourceMapping
 from calm.physics import seawater
 from calm.records import profile_tables
-from calm.records.current_terms import left_out
 from calm.records.profile_tables import QuantityTable
+from calm.records.value_tests import left_out
 from calm.units import QuantityError, QuantityRange
 
 USUAL_DENSITY = {"water": definition.CATALOGUE_DENSITY, "air": 1.225}
-"""Where a file gives none [kg/m³]; that of air is the standard atmosphere's at sea level."""
+"""Default density [kg/m³], for air that of the standard atmosphere at sea level."""
 
 
 def _form(value: object) -> str:
@@ -34,7 +34,7 @@ def _table_or_constant(value: object) -> str:
 
 
 class TableKeys(Model):
-    """Columns, each a name and its unit, and rows of values."""
+    """Columns, each with a name and a unit, and rows of values."""
 
     columns: tuple[Text, ...] = described(
         "each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, w m/s",
@@ -66,26 +66,26 @@ Density = Annotated[
     | Annotated[SeaWaterKeys, Tag("sea water")],
     Discriminator(_form),
 ]
-"""The value of `density:` as a person writes it."""
+"""The value of `density:` in a file."""
 
 
 _RANGES: Mapping[str, QuantityRange] = {"water": profile_tables.WATER_DENSITY, "air": DENSITY}
 _FALL = 0.1
-"""Water that gets lighter by more than this with depth turns over [kg/m³]."""
+"""Decrease of density with depth above which the water would overturn [kg/m³]."""
 _RATIO = 0.05
-"""Below it a salinity is that of a lake, or a share of mass in place of g/kg."""
+"""A lower salinity means a lake, or a mass fraction instead of g/kg."""
 _WARMEST_BELOW = 30.0
-"""No sea is warmer below its surface, and most are saltier than this number [°C]."""
+"""No sea is warmer below its surface, and the salinity of most is higher than this number [°C]."""
 
 
 def read_density(
     given: float | TableKeys | SeaWaterKeys, fluid: str, section: SourceMapping
 ) -> float | profile_tables.DepthTable | profile_tables.SeaWater | None:
-    """Read the density of an environment; None where it has mistakes.
+    """Read the density of an environment; None if it has mistakes.
 
     Parameters
     ----------
-    given : as the model has it
+    given : the value in the model
     fluid : "water" or "air"
     section : the environment
     """
@@ -105,7 +105,7 @@ def read_density(
 
 
 def table_of(value: object) -> TableKeys | None:
-    """Return the table that a value of a file is, None where it is none."""
+    """Return a value of a file as a table; None if it is not a table."""
     try:
         return TableKeys.model_validate(value)
     except ValidationError:
@@ -113,12 +113,12 @@ def table_of(value: object) -> TableKeys | None:
 
 
 def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> QuantityTable:
-    """Return a table below a key of a mapping, or a key under that, with places for its mistakes.
+    """Return the table at a key of a mapping, with places for its mistakes.
 
     Parameters
     ----------
-    table : as the model has it
-    section, place : the mapping, and the keys that lead to the table
+    table : the value in the model
+    section, place : the mapping, and the keys of the table in it
     """
 
     def problem(at: Sequence[str | int], said: str) -> Problem:
@@ -127,13 +127,36 @@ def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> Qua
     return QuantityTable(table.columns, table.rows, problem, section.problems)
 
 
-def density_notices(
+_LIGHTEST = 990.0
+"""Density of fresh water at 45 °C, the lowest density of any mooring's water [kg/m³]."""
+_HEAVIEST = 1040.0, 0.0047
+"""Highest density of sea water at the surface [kg/m³] (Red Sea in winter, 1030 kg/m³, plus a
+margin), and its increase by pressure for each metre [kg/m⁴]: 1050 kg/m³ at 5000 m. Brines are
+heavier.
+"""
+
+
+def density_doubts(
     density: float | profile_tables.DepthTable | profile_tables.SeaWater, depth: float | None
 ) -> Iterator[str]:
-    """Yield what is odd about the density of the water as it was read, in sentences.
+    """Yield notices, as sentences, about implausible densities of the water.
 
-    Its depth [m] is None where it is not known.
+    The depth of the water [m] is None if unknown.
     """
+    given: tuple[tuple[float, float], ...] = ()
+    if isinstance(density, profile_tables.DepthTable):
+        given = tuple(zip(density.depth, density.value, strict=True))
+    elif isinstance(density, float):
+        given = ((depth or 0.0, density),)
+    at_surface, by_metre = _HEAVIEST
+    for below, value in given:
+        if not _LIGHTEST <= value <= at_surface + by_metre * below:
+            what = "brine" if value > _LIGHTEST else "hot fresh water"
+            yield (
+                f"The density of {value:.5g} kg/m^3 is that of {what}: sea water has 1000 to 1030 "
+                "kg/m^3 at the surface, and 4.5 kg/m^3 more for each 1000 m."
+            )
+            break
     if isinstance(density, profile_tables.SeaWater):
         profiles = {"temperature": density.temperature, "salinity": density.salinity}
         yield from _sea_water_notices(density)
@@ -142,7 +165,7 @@ def density_notices(
         for table in profiles.values():
             yield from _falls(table)
     for name, table in profiles.items():
-        if table.depth != (0.0,):  # one value is that of all depths
+        if table.depth != (0.0,):  # a single value applies to all depths
             ends = table.depth[0], table.depth[-1]
             missing = left_out(*ends, math.inf if depth is None else depth, name)
             if missing:
@@ -150,7 +173,7 @@ def density_notices(
 
 
 def _sea_water_notices(water: profile_tables.SeaWater) -> Iterator[str]:
-    """Yield what is odd about temperature and salinity beside each other."""
+    """Yield notices about temperatures and salinities that are implausible together."""
     warm, salt = water.temperature.value, water.salinity.value
     if max(salt) < _RATIO:
         yield (
@@ -171,7 +194,7 @@ def _sea_water_notices(water: profile_tables.SeaWater) -> Iterator[str]:
 
 
 def _falls(table: profile_tables.DepthTable) -> Iterator[str]:
-    """Yield a notice where the density falls with depth."""
+    """Yield a notice if the density decreases with depth."""
     greatest, depth = table.value[0], table.depth[0]
     for below, value in zip(table.depth, table.value, strict=True):
         if value < greatest - _FALL:
@@ -185,7 +208,7 @@ def _falls(table: profile_tables.DepthTable) -> Iterator[str]:
 
 
 def check_density(section: SourceMapping) -> None:
-    """Report the mistakes in the tables below `density:`, whatever else is wrong with it."""
+    """Report mistakes in the tables of `density:` even if it has other mistakes."""
     given = section.data.get("density")
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
     table = table_of(given)
@@ -210,19 +233,19 @@ Toward = Annotated[float, QuantityField(**vars(profile_tables.DIRECTION))]
 
 
 class Wind(Model):
-    """Wind over the water: speed [m/s], and where it blows to [degrees].
+    """Wind over the water: speed [m/s], and the direction toward which it blows [degrees].
 
-    It drives the water at the surface at `surface_drift`, a share of its own speed, and the water
-    below ever less, linearly, down to `drift_depth` [m]: the seabed where it is None.
+    The wind drives the surface water at a share `surface_drift` of its speed. This drift decreases
+    linearly to zero at `drift_depth` [m], by default the seabed.
     """
 
-    speed: Annotated[float, _SPEED] = described("of the wind, at the height of the float", "12 m/s")
-    toward: Toward = described("where it blows to, clockwise from north", "90 deg")
+    speed: Annotated[float, _SPEED] = described("wind speed at the height of the float", "12 m/s")
+    toward: Toward = described("clockwise from north: direction in which it blows", "90 deg")
     surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = described(
-        "share of the wind's speed that the surface water drifts at", "2 %", default=0.0
+        "drift of the surface water, as a share of the wind speed", "2 %", default=0.0
     )
     drift_depth: definition.PositiveLength = optional(
-        "how deep the water that the wind drives goes", "50 m"
+        "depth to which the wind drives the water", "50 m"
     )
 
     @model_validator(mode="after")

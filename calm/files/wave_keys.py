@@ -1,4 +1,6 @@
-"""`waves:` of an environment: a sea to be survived, a table of seas, or a measured spectrum."""
+"""The key `waves:` of an environment: a design sea state, a table of sea states, or a measured
+spectrum.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,7 @@ from calm.records.sea_states import (
 
 
 class SwellKeys(Model):
-    """The keys of `swell:`: long waves from afar under the sea that the wind raises."""
+    """The keys of `swell:`: long waves from far away, added to the wind sea."""
 
     significant_height: Annotated[float, QuantityField("length", above=0)] = described(
         "Hs of the swell", "2 m"
@@ -36,13 +38,15 @@ class SwellKeys(Model):
 
 
 class WaveKeys(Model):
-    """The keys of `waves:`: one sea, a table of seas with their shares of the time, or both."""
+    """The keys of `waves:`: a design sea state, a table of sea states with their frequencies, or
+    both.
+    """
 
     significant_height: Annotated[float | None, QuantityField("length", at_least=0.05)] = optional(
-        "Hs of the sea to be survived", "5 m"
+        "Hs of the design sea state", "5 m"
     )
     peak_period: Annotated[float | None, QuantityField("time", above=0)] = optional(
-        "Tp of that sea; pierson-moskowitz and ochi-hubble have their own", "8.4 s"
+        "Tp of the design sea state; not for pierson-moskowitz and ochi-hubble", "8.4 s"
     )
     spectrum: Text = described(
         f"{', '.join(SPECTRA)}, or a CSV or NetCDF file of a measured one",
@@ -52,9 +56,11 @@ class WaveKeys(Model):
     gamma: Annotated[float, QuantityField("number", at_least=1, at_most=10)] = described(
         "peakedness of jonswap", 3.3, default=3.3
     )
-    toward: Toward = described("where they run, clockwise from north", "90 deg", default=90.0)
+    toward: Toward = described(
+        "clockwise from north: direction in which they travel", "90 deg", default=90.0
+    )
     swell: SwellKeys | None = optional(
-        "under that sea, the same way", {"significant_height": "2 m", "peak_period": "14 s"}
+        "swell in the same direction", {"significant_height": "2 m", "peak_period": "14 s"}
     )
     scatter: Text | None = optional(
         "CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it", "seas.csv"
@@ -73,21 +79,23 @@ class WaveKeys(Model):
         if named and height is None and (self.scatter is None or period is not None):
             raise ValueError("`waves` needs `significant_height`, a `scatter` table, or both")
         if self.swell is not None and height is None:
-            raise ValueError("`swell` is under a sea: give its `significant_height`, too")
+            raise ValueError("`swell` is added to a sea, which needs its `significant_height`, too")
         if height is not None and period is None and self.spectrum not in OF_HEIGHT:
             raise ValueError(f"`significant_height` needs a `peak_period` with {self.spectrum}")
         return self
 
 
 def read_waves(keys: WaveKeys, section: SourceMapping, open_files: bool) -> tuple[SeaState, ...]:
-    """Return the seas of `waves:`; none if it has mistakes.
+    """Return the sea states of `waves:`; an empty tuple if it has mistakes.
 
-    Those of a scatter table have their shares of the time; one beside them has a share of 0.
+    Sea states of a scatter table have their shares of the time; another one beside them has a share
+    of 0.
 
     Parameters
     ----------
     section : the environment
-    open_files : read its files, which are beside the mooring file; where not, none is returned
+    open_files : whether its files, in the folder of the mooring file, are read; otherwise the
+        result is empty
     """
     before = len(section.problems)
     measured = keys.spectrum not in SPECTRA

@@ -1,9 +1,9 @@
-"""YAML text with the place of everything in it, and the guards against hostile or broken files.
+"""YAML text with the place of each value, and protection against invalid or malicious files.
 
-Scalars are kept as the text the person wrote: what `1000` means is for the field to say. Anchors,
-aliases and tags have no use in these files and are refused, so that nothing can be expanded.
+Scalars are kept as text, because the meaning of `1000` depends on the field. Anchors, aliases and
+tags are refused, so that nothing can be expanded.
 
-What pydantic finds wrong is one line for people, with its place in the file.
+Errors of pydantic are converted to messages of one line, with the place in the file.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ Location = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class Document:
-    """Hold a YAML file as plain data, and its nodes where it was read from a text.
+    """A YAML file as plain data, with its nodes if it was read from text.
 
     Attributes
     ----------
-    path : as messages show it
+    path : path as shown in messages
     data : mappings, lists, text and None
-    root : has the places
+    root : the node with the places; None if the data are not from a text
     """
 
     path: str
@@ -42,16 +42,16 @@ class Document:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """Put a problem at a value (or its key), or at the nearest thing around it that exists.
+        """Return a problem at a value (or its key), or at the nearest existing place around it.
 
-        A value that is empty is where its key is.
+        An empty value has the place of its key.
 
         Parameters
         ----------
-        location : of the value, below this
-        message : for people
-        key : put it at the key of the value
-        lacks : what is missing, where nothing is wrong
+        location : location of the value
+        message : the message
+        key : whether the problem is placed at the key
+        lacks : what is missing, if the file is incomplete but not wrong
         """
         node = place = self.root
         for step in location:
@@ -66,15 +66,15 @@ class Document:
 def read_document(path: Path) -> Document:
     """Read a YAML file whose top level is a mapping.
 
-    InputError: the file cannot be read, is no text, no valid YAML, or holds duplicate keys.
+    InputError: the file cannot be read, is not text or valid YAML, or has duplicate keys.
     """
     return compose(str(path), read_text(path))
 
 
 def compose(name: str, text: str) -> Document:
-    """Return the document of a text, as that of a file of a name or in place of one.
+    """Return the document of a text; `name` is shown as its path in messages.
 
-    InputError: it is no valid YAML, or holds duplicate keys.
+    InputError: it is not valid YAML, or has duplicate keys.
     """
     root, refusals = composition.compose(text.removeprefix("\ufeff"))
     if root is not None and root.kind != "mapping":
@@ -89,15 +89,15 @@ def compose(name: str, text: str) -> Document:
 
 @dataclass(frozen=True)
 class SourceMapping:
-    """Represent a mapping within a document, possibly laid over a mapping of another one.
+    """A mapping in a document, optionally with another mapping as its base.
 
     Attributes
     ----------
-    document, location : where the mapping (the upper one) stands; problems without a key are put
+    document, location : place of the mapping (not of its base); problems without a key are reported
         there
-    data : the mapping, its own keys over those it overlays
-    base : what lies below
-    problems : mistakes found in it; those of a file are all in one list
+    data : the keys of the mapping and, if it lacks them, those of its base
+    base : the base, or None
+    problems : mistakes found in it; all mistakes of a file are in one list
     """
 
     document: Document
@@ -109,7 +109,7 @@ class SourceMapping:
 
     @classmethod
     def of(cls, document: Document, problems: list[Problem]) -> SourceMapping:
-        """Return all of a document, whose mistakes are added to a list."""
+        """Return the top level of a document, whose mistakes are added to a list."""
         return cls(document, (), document.data, None, frozenset(document.data), problems)
 
     def holding(self, data: dict[str, Any]) -> SourceMapping:
@@ -118,16 +118,16 @@ class SourceMapping:
         return SourceMapping(self.document, self.location, data, None, own, self.problems)
 
     def into(self, problems: list[Problem]) -> SourceMapping:
-        """Return the same, its mistakes to be added to another list."""
+        """Return the same mapping, whose mistakes are added to another list."""
         return replace(self, problems=problems)
 
     def over(self, base: SourceMapping, *, dropping: frozenset[str] = frozenset()) -> SourceMapping:
-        """Lay this mapping over another one, of which some keys are dropped."""
+        """Return this mapping with another one as base, from which some keys are dropped."""
         kept = {key: value for key, value in base.data.items() if key not in dropping}
         return replace(self, data={**kept, **self.data}, base=base)
 
     def child(self, key: str, *more: str | int) -> SourceMapping:
-        """Return the mapping under a key, or under others below it."""
+        """Return the mapping under a key, or under further keys below it."""
         home, data = self.home(key), self.data[key]
         for step in more:
             data = data[step]
@@ -135,7 +135,7 @@ class SourceMapping:
         return SourceMapping(home.document, place, data, None, own, self.problems)
 
     def home(self, key: str | int) -> SourceMapping:
-        """Return the layer that a key comes from."""
+        """Return the mapping, this one or a base, that contains a key."""
         if self.base is None or key in self.own or key not in self.data:
             return self
         return self.base.home(key)
@@ -143,7 +143,7 @@ class SourceMapping:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """Return a problem at a value below this mapping, as `Document.problem`."""
+        """Return a problem at a value below this mapping, as in `Document.problem`."""
         home = self.home(location[0]) if location else self
         place = (*home.location, *location)
         return home.document.problem(place, message, key=key, lacks=lacks)
@@ -151,7 +151,7 @@ class SourceMapping:
     def refuse(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> None:
-        """Add a problem to those found; the parameters are those of `problem`."""
+        """Add a problem; the parameters are those of `problem`."""
         self.problems.append(self.problem(location, message, key=key, lacks=lacks))
 
     def refuse_at(self, line: int, column: int, message: str, *, lacks: str = "") -> None:
@@ -169,14 +169,14 @@ def validate(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> M | None:
-    """Return the model of a mapping, or None where it has mistakes, which are added to its own.
+    """Return the model of a mapping; None if it has mistakes, which are added to its problems.
 
     Parameters
     ----------
-    model : of the mapping
+    model : model of the mapping
     section : the mapping
-    also_allowed : keys that stand in the same mapping and belong to something else
-    context : what the validators of the model may need to know
+    also_allowed : keys of the mapping that do not belong to the model
+    context : context for the validators of the model
     """
     try:
         return model.model_validate(section.data, context=context)
@@ -186,7 +186,9 @@ def validate(
 
 
 def complaint(model: type[BaseModel], name: str, value: object) -> str:
-    """Return why a value cannot stand under a key of a model, by itself; empty where it can."""
+    """Return the reason why a value is not valid for a key of a model, by itself; empty if it is
+    valid.
+    """
     data = {name: value}
     try:
         model.model_validate(data)
@@ -215,7 +217,7 @@ def _explain(
     misspelt: set[tuple[Location, str]] = set()
     for details in error.errors(include_url=False):
         if details["type"] == "default_factory_not_called":
-            continue  # the consequence of another mistake
+            continue  # a consequence of another mistake
         location, value = _existing(section.data, details["loc"])
         name = str(details["loc"][-1]) if details["loc"] else ""
         if details["type"] == "missing" and isinstance(details["loc"][-1], str):
@@ -236,14 +238,14 @@ def _explain(
             message = _about_value(details, field, value, model)
             lacks = f"no {field}" if value in (None, [], {}) else ""
             section.refuse(location, message, lacks=lacks)
-    # A required key that is there, misspelt, is one mistake and not two.
+    # A required key that is misspelt is one mistake, not two.
     for location, name in missing:
         if (location, name) not in misspelt:
             section.refuse(location, f"`{name}` is missing", lacks=f"no {name}")
 
 
 def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
-    """Return the part of a pydantic location that exists in the data (tags of unions do not)."""
+    """Return the part of a pydantic location that exists in the data; tags of unions do not."""
     location: list[str | int] = []
     for part in loc:
         if isinstance(data, dict):
@@ -275,11 +277,11 @@ _OTHER_NAMES = {
     "breaking_load": "mbl breaking_strength strength",
     "working_load": "wll swl",
 }
-"""What people call a key that has another name."""
+"""Common alternative names of keys."""
 
 
 def unknown_key(name: str, keys: list[str], owner: str = "") -> str:
-    """Return that a key does not exist, and the one that is meant."""
+    """Return the message about an unknown key, with the key probably meant."""
     return unknown(f"unknown key `{shown(name)}`{owner}", _meant(name, keys) or name, keys)
 
 
@@ -322,7 +324,7 @@ _SHAPES: Mapping[str, str] = {
 
 
 def _example(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    """Return how the value of a key looks, where it holds others and has an example."""
+    """Return an example of the value of a key, if it is a mapping or a list and has an example."""
     field = model.model_fields.get(str(loc[0])) if len(loc) == 1 else None
     shape = field.examples[0] if field is not None and field.examples else None
     shape = shape[:1] if isinstance(shape, list) else shape
@@ -330,14 +332,14 @@ def _example(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
 
 
 def _flow(value: object) -> str:
-    """Return a value as YAML writes it in a line."""
+    """Return a value as YAML on one line."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{key}: {_flow(each)}" for key, each in value.items()) + "}"
     return f"[{', '.join(map(_flow, value))}]" if isinstance(value, list) else str(value)
 
 
 def _form(model: type[BaseModel], loc: tuple[int | str, ...]) -> Any:
-    """Return the type of what belongs at a pydantic location, in which tags of unions may stand."""
+    """Return the type at a pydantic location, which may contain tags of unions."""
     form: Any = model
     for part in loc:
         models = _models_in(form)

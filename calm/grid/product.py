@@ -15,6 +15,7 @@ from calm.grid.field import BLOCK, GriddedQuantity, estimate
 from calm.grid.samples import MooringDepths
 from calm.quantities import QUANTITIES_MEASURED
 from calm.records import delimited
+from calm.records.card import ReadCard
 from calm.units import QuantityError, parse_quantity
 from calm.version import __version__
 
@@ -59,6 +60,7 @@ def grid_layout(
     inputs: Sequence[str],
     names: Mapping[str, str],
     averaged: str | None,
+    cards: Sequence[ReadCard] = (),
 ) -> netcdf.ResultLayout:
     """Return the layout of a gridded file.
 
@@ -70,6 +72,7 @@ def grid_layout(
     inputs : names of the files it is made of, with their hashes
     names : of each quantity in the file
     averaged : the step that values are means of; None where they are those of a time
+    cards : what was read from each of the files
     """
     time = next(iter(fields.values())).samples.time
     title = str(depths.attributes.get("title", "mooring")).partition(": ")[0]
@@ -130,7 +133,11 @@ def grid_layout(
         "date_created": written(),
         "date_modified": written(),
         "history": "\n".join(
-            [*before, f"{written()} calm {__version__} grid: {', '.join(inputs)}"]
+            [
+                *before,
+                f"{written()} calm {__version__} grid: {', '.join(inputs)}",
+                *(card.sentence() for card in cards),
+            ]
         ),
     }
     if depths.place:

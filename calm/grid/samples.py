@@ -93,6 +93,9 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
     )
 
 
+ANOTHER_PLACE = 30.0
+"""How far pressures [dbar] are from a place [m] at the least, that are of another."""
+
 MOST = 5_000_000
 """Times that are written, at most: a second each for two months."""
 

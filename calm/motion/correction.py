@@ -34,6 +34,7 @@ from calm.motion.measured_currents import CurrentSmoother
 from calm.motion.measurements import FREE, MooringMeasurements, by_neighbours, level_names
 from calm.motion.unknown_currents import unknown_state
 from calm.physics.line import Floats
+from calm.records.card import ReadCard
 from calm.records.record import Levels, Record
 
 _DEVIATION: Attributes = {"standard_name": "depth standard_error"}
@@ -110,7 +111,9 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
         position = deployed.position
     place = () if position is None else (position.latitude, position.longitude)
     name = str(layout.attributes["title"]).partition(": ")[0]
-    history = str(layout.attributes["history"]).replace(" batch", " motion")
+    made, *read = str(layout.attributes["history"]).split("\n")
+    sources = "; ".join(filter(None, record.source.values()))
+    made = f"{made.replace(' batch', ' motion')}: {sources}"
     attributes: Attributes = {
         **layout.attributes,
         "title": f"{name}: where its parts were",
@@ -122,7 +125,7 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
         "processing_level": "Data interpolated",
         "comment": "Depths of a mooring line, estimated from its statics; x, y from the anchor",
         "instrument": ", ".join(measured.label),
-        "history": f"{history}: {'; '.join(filter(None, record.source.values()))}",
+        "history": "\n".join([made, *read]),
     }
     if not attributes.get("summary"):
         attributes["summary"] = f"Depths of every part of the mooring {name} over time"
@@ -320,9 +323,13 @@ class MeasuredRecord(Record):
     """Hold what was measured, as the record that a result is made from."""
 
     def __init__(
-        self, measured: MooringMeasurements, source: dict[str, str], notes: Sequence[str]
+        self,
+        measured: MooringMeasurements,
+        source: dict[str, str],
+        notes: Sequence[str],
+        cards: Sequence[ReadCard] = (),
     ) -> None:
-        self._measured = measured
+        self._measured, self.cards = measured, tuple(cards)
         self.time, self.source, self.notes = measured.time, dict(source), tuple(notes)
 
     def profiles(self, start: int, stop: int) -> Levels:

@@ -17,8 +17,16 @@ from calm.motion.correction import ESTIMATED, MEASURED, MISSING
 from calm.motion.matching import LinePlaces, points_of
 from calm.motion.measurements import interpolated
 from calm.motion.study import depths_at
+from calm.quantities import QUANTITIES_MEASURED
 from calm.records import cf_files
-from calm.records.instrument_series import Identity, files_given, who_along
+from calm.records.instrument_series import (
+    Identity,
+    conductivity_in,
+    files_given,
+    named,
+    practical_salinity,
+    who_along,
+)
 from calm.version import __version__
 from calm.whole_file import beside
 
@@ -192,13 +200,18 @@ def write_depths(
         copy = cf_files.open_current(instruments.path)
     one = instruments.along is None
     copy = _without_depths(copy, instruments)
+    for variable in copy.variables.values():  # xarray adds a fill value to each that has none
+        if "_FillValue" not in variable.attrs and variable.dtype.kind == "f":
+            variable.encoding.setdefault("_FillValue", None)
     name, deviation, mark = instruments.names
     dims = (instruments.dimension,) if one else (instruments.dimension, str(instruments.along))
     tables = [table[:, 0] if one else table for table in (depth, spread, flag)]
     copy[name] = xr.Variable(dims, tables[0], {
         "units": "m", "positive": "down", "standard_name": "depth",
         "long_name": "depth estimated by CALM", "ancillary_variables": f"{deviation} {mark}",
-        **({"axis": "Z", "reference": "sea_level"} if one else {}),
+        **({"reference": "sea_level"} if one else {}),
+        # CF: an axis is no auxiliary coordinate's, but in a discrete sampling geometry
+        **({"axis": "Z"} if one and "featureType" in copy.attrs else {}),
     })  # fmt: skip
     copy[deviation] = xr.Variable(dims, tables[1], {
         "units": "m", "standard_name": "depth standard_error",
@@ -209,6 +222,8 @@ def write_depths(
         "flag_values": np.array(list(FLAGS), np.int8), "flag_meanings": " ".join(FLAGS.values()),
         "conventions": "OceanSITES QC Flags",
     })  # fmt: skip
+    _add_salinity(copy, instruments, depth)
+    _drop_references(copy)
     _tell(copy, instruments, depth, inputs)
     with beside(output) as part:
         copy.to_netcdf(part, engine="h5netcdf")
@@ -242,6 +257,19 @@ def at_own_times(
     return depth, spread, flag
 
 
+def _drop_references(copy: Dataset) -> None:
+    """Let no attribute name a variable that is gone."""
+    for variable in copy.variables.values():
+        for attribute in ("coordinates", "ancillary_variables"):
+            for place in (variable.attrs, variable.encoding):
+                named = str(place.get(attribute, "")).split()
+                there = [name for name in named if name in copy.variables]
+                if there and there != named:
+                    place[attribute] = " ".join(there)
+                elif named and not there:
+                    del place[attribute]
+
+
 def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
     """Return a file without the nominal depth of its one instrument, which is renamed."""
     if instruments.along is not None:
@@ -255,8 +283,34 @@ def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
     if nominal is not None and NOMINAL not in copy.variables:
         told = {key: value for key, value in nominal.attrs.items() if key != "axis"}
         copy[NOMINAL] = nominal.copy(deep=False)
-        copy[NOMINAL].attrs = {**told, "long_name": "nominal depth"}
+        metres = {"units": "m", "positive": "down", "standard_name": "depth"}
+        copy[NOMINAL].attrs = {**metres, **told, "long_name": "nominal depth"}
     return copy
+
+
+def _add_salinity(copy: Dataset, instruments: Instruments, depth: NDArray[np.float64]) -> None:
+    """Add the salinity that conductivity and temperature give, where the file holds none."""
+    import xarray as xr
+
+    salinity = QUANTITIES_MEASURED["salinity"]
+    with cf_files.opened(instruments.path) as dataset:
+        single = [str(dim) for dim, size in dataset.sizes.items() if size == 1]
+        dataset = dataset.isel({dim: 0 for dim in single if dim != instruments.dimension})
+        if named(dataset, salinity.sought, salinity.usual):
+            return
+        taken = conductivity_in(dataset)
+        axes = (instruments.dimension, *filter(None, [instruments.along]))
+        if not taken or any({*dataset[name].dims} != {*axes} for name in taken.values()):
+            return
+        parts = [cf_files.known_values(dataset[name].transpose(*axes)) for name in taken.values()]
+        place = depth[:, 0] if instruments.along is None else depth
+        values = practical_salinity(dataset, taken, parts, place)
+    name = salinity.archive if instruments.along is None else "salinity"
+    copy[name] = xr.Variable(axes, values, {
+        "standard_name": salinity.standard_name, "long_name": salinity.long_name,
+        "units": salinity.units,
+        "comment": "computed by CALM from conductivity, temperature and pressure (TEOS-10)",
+    })  # fmt: skip
 
 
 def _tell(

@@ -16,6 +16,7 @@ from calm.batch.statuses import implausible
 from calm.errors import UsageError, unknown
 from calm.motion.common_unknowns import NOISE, NORMAL
 from calm.physics.line import Floats, Integers
+from calm.records.card import ReadCard
 from calm.records.current_file import open_record
 from calm.records.current_terms import Terms
 from calm.records.instrument_series import InstrumentSeries, split_label
@@ -337,6 +338,7 @@ class CurrentMeasurements:
     source: str
     notes: tuple[str, ...] = ()
     false: NDArray[np.bool_] | None = None
+    cards: tuple[ReadCard, ...] = ()
 
 
 def read_currents(
@@ -378,6 +380,7 @@ def read_currents(
                 np.zeros(u.shape, np.int8) if marks is None else marks,
                 path.name,
                 tuple(note for note in record.notes if note not in RULES),
+                cards=record.cards,
             )
         if label:
             if len(mine.label) > 1:

@@ -183,6 +183,7 @@ class RecoveredMooring:
             points, notes = matching.matched_by_label(given, line)
         else:
             points, notes = matching.matched_by_place(given, line, instruments_of(mooring))
+        of_files = {id(one.card): one.card for one in given if one.card is not None}
         read = read_currents(
             self.currents, seabed, (position.latitude, position.longitude), self.declination,
             mooring.file.environment.maximum_speed,
@@ -192,6 +193,7 @@ class RecoveredMooring:
             read[i], said = matching.hung_currents(read[i], path, line, seabed)
             notes += said
         notes += dict.fromkeys(f"{one.source}: {one.note}" for one in given if one.note)
+        self.cards = [*(card for one in read for card in one.cards), *of_files.values()]
         points = self._without(points, line.label)
         first = min(time[0] for time in [one.time for one in read] + [one.time for one in given])
         clocks = matching.clocks_of(mooring, first)
@@ -294,7 +296,8 @@ class RecoveredMooring:
         text = resolved_input(self.mooring, self.measured.time, {"options": options})
         measured, arrays = InputHash(text), vars(self.measured).items()
         measured.add(one for name, one in arrays if name != "label")
-        layout = motion_layout(task, MeasuredRecord(self.measured, self.source, self.notes))
+        record = MeasuredRecord(self.measured, self.source, self.notes, self.cards)
+        layout = motion_layout(task, record)
         more = {**with_input(text), **measured.attributes()}
         layout = replace(layout, attributes={**layout.attributes, **more})
         starts = range(0, len(self.measured.time), BLOCK)

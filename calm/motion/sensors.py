@@ -20,18 +20,16 @@ from calm.motion.common_unknowns import FEWEST
 from calm.physics.line import Floats
 from calm.records import cf_files, instrument_series, instrument_text
 from calm.records.attributes import words_of
+from calm.records.card import ReadCard, VariableSummary
 from calm.records.cf_files import UnreadableError, factor_of, find_times
 from calm.records.headings import read_time_columns
-from calm.records.instrument_series import InstrumentSeries
+from calm.records.instrument_series import PASCALS_PER_DBAR, InstrumentSeries
+from calm.records.value_tests import series_doubts
 from calm.records.velocity import MISSING, flag_variable
 
 if TYPE_CHECKING:
     import xarray as xr
 
-PASCALS_PER_DBAR = 1e4
-
-_PRESSURES = ("sea_water_pressure_due_to_sea_water", "sea_water_pressure")
-_USUAL = ("PRES_REL", "PRES", "pressure", "pres")
 _NOT_MEASURED = re.compile(
     r"\binferred\b|\binterpolated (from|between|using)\b|\bneighbou?r(s|ing)?\b|\bby calm\b"
 )
@@ -62,7 +60,9 @@ def read_sensors(
     for label, path in instrument_series.files_given(given):
         if cf_files.holds_arrays(path):
             with cf_files.opened(path) as dataset:
-                mine = _from_arrays(dataset, path, flags, latitude, seabed)
+                parts = instrument_series.instruments_apart(dataset)
+                each = (_from_arrays(part, path, flags, latitude, seabed) for part in parts)
+                mine = [one for part in each for one in part]
         else:
             mine = _from_csv(path, latitude)
         if label:
@@ -74,7 +74,14 @@ def read_sensors(
     twice = sorted({label for label in labels if labels.count(label) > 1})
     if twice:
         raise UsageError(f"--pressures: two sensors are called `{twice[0]}`")
-    return found
+    return [_doubted(one) for one in found]
+
+
+def _doubted(sensor: InstrumentSeries) -> InstrumentSeries:
+    """Return a sensor with what is doubtful in the order of its readings in its note."""
+    doubts = series_doubts(sensor.value[:, np.newaxis, np.newaxis], sensor.time)
+    said = (sensor.note, *(f"{sensor.named}: {doubt}" for doubt in doubts))
+    return replace(sensor, note="; ".join(filter(None, said)))
 
 
 def depth_of(dbar: Floats, latitude: float) -> Floats:
@@ -108,13 +115,15 @@ def _from_arrays(
     values = np.where(found.dropped, np.nan, found.values[0] * factor)
     depth = depth_of(values, latitude) if is_pressure else values
     who = instrument_series.who_along(dataset, found.along, seabed, path.name)
-    each = [replace(one, note=note) for one in found.series(depth, who)]
+    taken = {"pressure" if is_pressure else "depth": name}
+    card = instrument_series.card_of(dataset, path.name, taken, found)
+    each = [replace(one, note=note, card=card) for one in found.series(depth, who)]
     return [one for one in each if not note or np.isfinite(one.value).any()]
 
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
     """Return the variable of the pressures, or else of the depths; whether it is the former."""
-    if found := instrument_series.named(dataset, _PRESSURES, _USUAL):
+    if found := instrument_series.named(dataset, *instrument_series.PRESSURE):
         return found[0], True
     for name in map(str, dataset.cf.standard_names.get("depth", [])):
         clock = find_times(dataset, name)
@@ -133,6 +142,12 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
     """Return a table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
     table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
+    scales = {"pressure": (1.0 / PASCALS_PER_DBAR, "dbar"), "length": (1.0, "m")}
+    summaries = {}
+    for label, dimension, values in zip(table.names, table.dimensions, table.values.T, strict=True):
+        factor, unit = scales[dimension]
+        summaries[label] = VariableSummary.of(label, unit, values * factor)
+    card = ReadCard(path.name, {}, summaries, len(table.names), table.time)
     return [
         InstrumentSeries(
             label,
@@ -141,6 +156,7 @@ def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
             path.name,
             table.time,
             depth_of(values / PASCALS_PER_DBAR, latitude) if dimension == "pressure" else values,
+            card=card,
         )
         for label, dimension, values in zip(
             table.names, table.dimensions, table.values.T, strict=True

@@ -37,27 +37,34 @@ from calm.physics.strumming import (
 from calm.physics.track import CableStretch
 
 PASSES, STALLED = 200, 50
-"""The most passes of a segment, and those after which they go half the way: one that nothing pulls
-would hang plumb and trail by turns where the current begins."""
-NEAR_A_SWITCH = 1e-6
-"""Accuracy of the place where a law of drag switches, as a share of the segment."""
+"""Largest number of passes over a segment, and the number after which passes are damped by one
+half. A slack segment at the upper edge of a current would otherwise alternate between hanging plumb
+and trailing with the current.
+"""
+SWITCH_TOLERANCE = 1e-6
+"""Accuracy of the position at which a drag law switches, as a share of the segment."""
 OF_FRICTION, OF_STRUMMING = range(2)
 """Laws that switch, see `switch_at`."""
 AT_A_LEVEL, TRIALS = 1e-9, 10
-"""Distance from a level at which a part of a segment ends there, as a share of the depth range of
-the segment, and the most passes that look for it."""
+"""Distance from a level within which a part of a segment ends at the level, as a share of the
+segment's depth range, and the largest number of passes to find this part.
+"""
 Passed = tuple[float, State, float, State, float]
-"""How long a part of a segment is that was passed [m]; where it is passed in two halves the state
-between and the strain of the upper one, else the state above it and 0; the state below it, and the
-strain of the lower half, or of all of it."""
-LITTLE_TURN = 1e-6
-"""How much the last of a few steps may turn a segment, squared [rad²], and be good enough where it
-need not settle to the last digits."""
+"""A marched part of a segment: its unstretched length [m]; the state between its halves and the
+strain of the upper half, or the state above and 0 if it is not halved; the state below, and the
+strain of the lower half or of the whole part.
+"""
+SETTLED_ROTATION = 1e-6
+"""Squared rotation of a segment [rad²] in the last of a few Newton steps that is accepted if full
+precision is not required.
+"""
 
 
 @within
 def strain_at(cable: CableStretch, knots: Sequence[Knot], tension: float) -> float:
-    """Strain of a cable at a tension [N]: by its compliance, or by its curve if it has one."""
+    """Strain of a cable at a tension [N], from its elongation curve, or from its compliance if it
+    has no curve.
+    """
     if cable.first_knot == cable.end_knot:
         return cable.compliance * tension
     return curve_strain(knots, cable.first_knot, cable.end_knot, tension)
@@ -65,15 +72,16 @@ def strain_at(cable: CableStretch, knots: Sequence[Knot], tension: float) -> flo
 
 @within
 def segment_lift(cable: CableStretch, cut: float, density: float, gravity: float) -> float:
-    """Net force in water of a segment of an unstretched length [m], + up [N]."""
+    """Net buoyancy of a segment of unstretched length `cut` [m], positive up [N]."""
     return cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
 
 
 @within
 def segment_area(cable: CableStretch, cut: float, density: float, strain: float) -> float:
-    """Metres of cable unstretched and in reference water that are dragged as a segment is [m].
+    """Length of unstretched cable in reference water with the same drag as a segment [m].
 
-    Where its volume is conserved (thinning ½) the drag grows by √(1 + strain), else not (0).
+    If the volume is conserved (thinning ½), the drag grows by √(1 + strain); else (0) it does not
+    grow.
     """
     area = cut * density / REFERENCE_DENSITY
     if strain != 0.0 and cable.thinning != 0.0:
@@ -112,20 +120,21 @@ def pass_segment(
     near: float,
     expected: Vector,
 ) -> tuple[State, float]:
-    """The state below one segment of an unstretched length [m], and its strain.
+    """Compute the state below one segment of unstretched length `cut` [m], and its strain.
 
-    The segment's axis, its drag at mid-height and its stretch depend on each other: passes repeat
-    until its rise per unstretched metre settles. They contract by about change/earlier each.
+    Axis, drag at mid-height and stretch of the segment depend on each other, so passes are repeated
+    until its rise per unstretched metre converges. Each pass reduces the change by about
+    change/earlier.
 
     Parameters
     ----------
-    near : how far its middle may be from where the water is looked up [m]; 0 lets it settle to the
-        last digits
-    expected : load of a metre, where the passes begin, by the segment above [N/m]
+    near : allowed distance between its midpoint and its water sample [m]; 0 requires full
+        precision
+    expected : load per metre at which the passes begin, from the segment above [N/m]
 
     Returns
     -------
-    The state, and the strain: `NO_BALANCE` where there is none.
+    The state, and the strain, which is `NO_BALANCE` if the passes do not converge.
     """
     x, y, z, fx, fy, fz, tz, level = state
     kn, kt, friction = cable.normal_drag, cable.tangential_drag, cable.friction
@@ -157,7 +166,7 @@ def pass_segment(
             c, doubt = 0.0, 1.0
             if near > 0.0 and size > 0.0:
                 c, doubt = few_steps_share(ax, ay, az, 0.5 * kn * area, size, u, v, w, 1)
-            if not doubt < LITTLE_TURN:
+            if not doubt < SETTLED_ROTATION:
                 c = drag_share(ax, ay, az, 0.5 * kn * area, u, v, w)
         else:
             c, factor = vibrating_share(vibration, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz)
@@ -169,7 +178,8 @@ def pass_segment(
             tx, ty, tz = -tx, -ty, -tz
         middle = sqrt(hx * hx + hy * hy + hz * hz)
         strain = compliance * middle
-        if end_knot > first_knot:  # of all tensions in it, so that it may be as long as others
+        # averaged over the tensions in it, so that the result does not depend on the segment length
+        if end_knot > first_knot:
             bx, by, bz = fx + qx, fy + qy, fz + qz
             growth = sqrt(bx * bx + by * by + bz * bz) - tension
             strain = mean_curve_strain(knots, first_knot, end_knot, middle, 0.5 * growth)
@@ -200,7 +210,7 @@ def pass_halves(
     near: float,
     expected: Vector,
 ) -> Passed:
-    """Pass a segment, or a part of one: straight, or in two straight halves.
+    """Integrate a segment, or a part of a segment, as one straight piece or as two straight halves.
 
     `near` and `expected` are as in `pass_segment`.
     """
@@ -227,13 +237,13 @@ def vibrating_share(
     ty: float,
     tz: float,
 ) -> tuple[float, float]:
-    """`drag_share` of a cable that strums, and the factor on its Cn.
+    """`drag_share` of a strumming cable, and the factor on its Cn.
 
     Parameters
     ----------
-    vibration : of the cable
-    tx, ty, tz : its last known axis, of any length. Where the segment's own drag hardly turns it
-        the factor there will do for this pass.
+    vibration : vibration of the cable
+    tx, ty, tz : its last known axis, of any length. If the segment's own drag hardly turns it,
+        the factor for this axis is used in this pass.
     """
     speed = sqrt(u * u + v * v + w * w)
     if speed == 0.0:
@@ -260,7 +270,8 @@ def touchdown(
     expected: Vector,
     bed: Bed,
 ) -> Passed:
-    """Pass the part of a segment that hangs: to where it has nothing left to carry above the bed.
+    """Integrate the hanging part of a segment, down to the touchdown, where the force normal to the
+    seabed vanishes.
 
     `halves`, `near` and `expected` are as in `pass_halves`.
     """
@@ -295,7 +306,8 @@ def pass_part(
     expected: Vector,
     share: float,
 ) -> Passed:
-    """Pass a segment as far as the first level, or switch of a law of drag, that splits it.
+    """Integrate a segment down to the first level, or to the first switch of a drag law, that
+    splits it.
 
     Parameters
     ----------
@@ -328,8 +340,8 @@ def split_length(
     expected: Vector,
     share: float,
 ) -> float:
-    """Length of the part of a segment above the first level, or switch of a law of drag, that
-    splits it [m].
+    """Length of the part of a segment above the first level, or switch of a drag law, that splits
+    it [m].
 
     Parameters
     ----------
@@ -365,8 +377,8 @@ def until_level(
 ) -> float:
     """Length of the part of a segment down to a level of the profile [m].
 
-    It follows from the mean load of the segment. If the shape is to be closed to the last digits,
-    secants follow.
+    It follows from the mean load of the segment. If full precision is required, it is then refined
+    by secants.
 
     Parameters
     ----------
@@ -401,7 +413,9 @@ def until_level(
 
 
 def sinking(fx: float, fy: float, fz: float, load: Vector, length: float) -> float:
-    """Depth gained per metre along a segment under an even load [N/m], from the force above it."""
+    """Depth gained per metre along a segment under a uniform load [N/m], from the force above
+    it.
+    """
     half = 0.5 * length
     x, y, z = fx + half * load[0], fy + half * load[1], fz + half * load[2]
     size = sqrt(x * x + y * y + z * z)
@@ -422,9 +436,10 @@ def until_switch(
     expected: Vector,
     law: int,
 ) -> float:
-    """Length of a part of a segment as far as a law of drag switches; all of it if none does [m].
+    """Length of a part of a segment down to the switch of a drag law, or `part` if no law switches
+    [m].
 
-    By regula falsi, whose end that stays is halved.
+    Uses regula falsi; the value at an end that stays fixed is halved (Illinois method).
 
     Parameters
     ----------
@@ -448,18 +463,18 @@ def until_switch(
             low, at_low, at_high = length, here, 0.5 * at_high
         else:
             high, at_high, at_low = length, here, 0.5 * at_low
-        if here == 0.0 or high - low <= NEAR_A_SWITCH * part:
+        if here == 0.0 or high - low <= SWITCH_TOLERANCE * part:
             break
         length = low + (high - low) * at_low / (at_low - at_high)
     return high
 
 
 def switch_at(vibration: Vibration, sea: Sea, state: State, law: int) -> float:
-    """What changes its sign where a law of drag switches, at a node.
+    """Quantity that changes its sign at the switch of a drag law.
 
-    Of friction, which jumps where its size is constant, it is the flow along the cable times the
-    tension, + down the line [N m/s]; of strumming by how much the factor on Cn is below the
-    greatest.
+    For friction, which jumps if its size is constant: the flow along the cable times the tension,
+    positive down the line [N m/s]. For strumming: the margin between the factor on Cn and its
+    maximum.
     """
     _, _, z, fx, fy, fz, _, level = state
     u, v, w, _, _ = water_at(sea, -z, level)
@@ -483,11 +498,12 @@ def segment_length(
     reach: float,
     share: float,
 ) -> float:
-    """Return how long the next segment may be [m]: by its turn, by depth, and to the next level or
-    to where the flow is least.
+    """Longest allowed length of the next segment [m], from its rotation and depth, the next level,
+    and the depth of minimum flow.
 
-    The turn is that of the load at either end of the segment, the tension that at its top. Near a
-    free end the tension vanishes: a floor keeps the count finite. `share` : see `counts_across`.
+    The rotation is computed from the loads at both ends of the segment, and the tension at its top.
+    Near a free end the tension vanishes; a lower limit keeps the number of segments finite. `share`
+    is as in `counts_across`.
     """
     _, _, z, fx, fy, fz, _, level = state
     tension = sqrt(fx * fx + fy * fy + fz * fz)
@@ -521,11 +537,11 @@ def rate_of_turn(
     tz: float,
     angle_step: float,
 ) -> float:
-    """Tension over the allowed length [N/m] for the load at a depth, on a cable of axis t.
+    """Tension divided by the allowed length [N/m], for the load at a depth on a cable of axis t.
 
-    A slack line that hangs on little more than its own weight turns the faster, the more its
-    tension has fallen. So the turn and the fall add up: the tension falls by less than half in a
-    segment, and by far less in one that also turns.
+    A slack line, whose tension is little more than its own weight, rotates faster as its tension
+    falls. So the terms for rotation and fall are added: the tension falls by less than half in a
+    segment, and by far less in a segment that also rotates.
     """
     u, v, w, density, _ = water_at(sea, depth, level)
     lift = segment_lift(cable, 1.0, density, sea.gravity)

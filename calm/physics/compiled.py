@@ -1,9 +1,9 @@
-"""The laws compiled by numba: the same source, made fast for whoever solves many lines.
+"""Compilation of the physics functions by numba, from the same source that CPython runs.
 
-A law is a function over floats, named tuples and sequences of them that CPython runs as it
-stands. Compiled, it is the same function of the same code, whose globals hold the compiled laws
-in place of those it calls; sequences become arrays, those of named tuples arrays of records. No
-liberty is taken with the arithmetic, so that both give the same digits.
+A *law* is a function over floats, named tuples and sequences of named tuples that CPython runs
+directly. The compiled law is the same function, but its globals refer to compiled laws; sequences
+become arrays, and sequences of named tuples arrays of records. The arithmetic is not reordered, so
+both give the same digits.
 """
 
 import hashlib
@@ -21,20 +21,21 @@ import numpy as np
 Law = Callable[..., Any]
 
 SOURCES = ("physics", "solve", "batch")
-"""Packages that have functions to be compiled."""
+"""Packages that contain functions to compile."""
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
-"""Nothing is allocated by a compiled law, so that arrays need not be counted when they are passed
-on: that takes as long as a segment. No law divides by zero, and none raises."""
+"""Compiled laws allocate nothing, so the costly reference counting of arrays is switched off. No
+law divides by zero or raises an exception.
+"""
 
 NEWEST = (0, 68)
-"""Of numba, whose parts are known to be as `calm.physics.law_compiler` uses them."""
+"""Latest version of numba whose internals are known to match `calm.physics.law_compiler`."""
 
 Fn = TypeVar("Fn", bound=Law)
 
 
 def within(law: Fn) -> Fn:
-    """Mark a short law that is compiled within those that call it, as if it were written there."""
+    """Mark a short law for inlining into its callers."""
     _within.add(law)
     return law
 
@@ -43,7 +44,7 @@ _within: set[Law] = set()
 
 
 def set_row(rows: Any, i: int, row: Any) -> None:
-    """Put a named tuple in its place among others: a list, or compiled an array of records."""
+    """Replace row i of a list of named tuples (an array of records in compiled code)."""
     rows[i] = row
 
 
@@ -51,9 +52,9 @@ _entries: dict[Law, Any] = {}
 
 
 def entry(law: Law, *arguments: Any) -> Any:
-    """A law compiled for the types of some arguments, whose types it does not look at again.
+    """Return a law compiled for the types of given arguments, which are not checked again.
 
-    All that it is ever given has these types: that saves what a short solve takes.
+    All later arguments must have these types; this saves time in short solves.
     """
     found = _entries.get(law)
     if found is None:
@@ -66,16 +67,16 @@ def entry(law: Law, *arguments: Any) -> Any:
 
 
 def outcome(law: Law, compiled: bool, *given: Any) -> Any:
-    """Return what a law makes of what it is given, as it stands or compiled by `entry`."""
+    """Call a law with some arguments, interpreted or compiled by `entry`."""
     return (entry(law, *given) if compiled else law)(*given)
 
 
 def by_address(law: Law, *arguments: Any) -> Any:
-    """A law compiled for the types of some arguments, and called by its address.
+    """Return a law compiled for the types of given arguments, to be called by its address.
 
-    Its last argument, besides these, and what it returns are floats. Those that call it are not
-    compiled anew with it, which would take as long for each. As with `entry`, it is only ever given
-    arguments of these types.
+    Its additional last argument and its result are floats. Its callers are compiled without it,
+    which saves its compilation time for each caller. As for `entry`, all later arguments must have
+    these types.
     """
     found = _entries.get(law)
     if found is None:
@@ -90,7 +91,7 @@ def by_address(law: Law, *arguments: Any) -> Any:
 
 @cache
 def called(law: Law) -> Any:
-    """A law compiled into those that call it."""
+    """Return a law compiled for inclusion in its callers."""
     import numba
 
     if law is set_row:
@@ -100,7 +101,7 @@ def called(law: Law) -> Any:
     resolve, plain = dispatcher.get_call_template, numba.types.unliteral
 
     def once_for_all_numbers(types: Any, named: Any) -> Any:
-        """Not anew for every constant that it is given."""
+        """Compile once for numbers instead of once per constant."""
         return resolve(tuple(map(plain, types)), named)
 
     dispatcher.get_call_template = once_for_all_numbers
@@ -108,14 +109,14 @@ def called(law: Law) -> Any:
 
 
 def _linked_options() -> dict[str, Any]:
-    """Options of a law that is only called by others."""
+    """Compiler options of a law that is only called by other laws."""
     wrappers = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     return {**OPTIONS, **wrappers, "pipeline_class": _law_compiler()}
 
 
 @cache
 def _law_compiler() -> Any:
-    """The compiler of laws, or numba's own where that is newer than `NEWEST`."""
+    """Compiler class for laws, or numba's own if numba is newer than `NEWEST`."""
     numba: Any = __import__("numba")
     if numba.version_info.short > NEWEST:
         return numba.core.compiler.Compiler
@@ -126,7 +127,7 @@ def _law_compiler() -> Any:
 
 @cache
 def _record_setter() -> Law:
-    """`set_row` as compiled laws know it: field by field."""
+    """Compiled form of `set_row`, which copies field by field."""
     numba: Any = __import__("numba.extending")
 
     def set_record(rows, i, row):  # type: ignore[no-untyped-def]
@@ -143,7 +144,7 @@ def _record_setter() -> Law:
 
 
 def clone(law: Law) -> Law:
-    """The function, with what it calls compiled, and arrays of its tables."""
+    """Copy a function, with its callees replaced by compiled laws and its tables by arrays."""
     assert isinstance(law, FunctionType)
     names = {**law.__globals__}
     for name in law.__code__.co_names:
@@ -158,7 +159,7 @@ def clone(law: Law) -> Law:
 
 
 def kept(compiler: Callable[..., Any], law: Law) -> Any:
-    """A law compiled, and kept in a folder if there is one."""
+    """Compile a law, cached on disk if there is a cache folder."""
     import numba
 
     folder, options = cache_folder(), {**OPTIONS, "pipeline_class": _law_compiler()}
@@ -174,14 +175,14 @@ def kept(compiler: Callable[..., Any], law: Law) -> Any:
 
 
 def packed(value: Any) -> Any:
-    """A named tuple as compiled laws take it: its sequences as arrays."""
+    """Convert a named tuple for compiled code: its sequences become arrays."""
     named: Any = type(value)
     return named(*[pack(part) for pack, part in zip(_packers(named), value, strict=True)])
 
 
 @cache
 def _packers(named: Any) -> tuple[Callable[[Any], Any], ...]:
-    """Return what packs each field of a named tuple."""
+    """Functions that convert each field of a named tuple."""
     return tuple(map(_packer, get_type_hints(named).values()))
 
 
@@ -198,10 +199,10 @@ def _packer(kind: Any) -> Callable[[Any], Any]:
 
 @cache
 def record_type(named: type) -> np.dtype[Any]:
-    """The numpy type of a named tuple of numbers."""
+    """The numpy record type of a named tuple of numbers."""
     return np.dtype(
         [
-            (name, np.int64 if kind is int else np.float64)
+            (name, np.intp if kind is int else np.float64)
             for name, kind in get_type_hints(named).items()
         ]
     )
@@ -209,10 +210,10 @@ def record_type(named: type) -> np.dtype[Any]:
 
 @cache
 def cache_folder() -> Path | None:
-    """Return where compiled code is kept; None where no such folder can be written.
+    """Folder for compiled code, or None if it cannot be written.
 
-    `NUMBA_CACHE_DIR`, or else CALM's folder in the user's cache. What is compiled from other
-    sources has another folder, as numba itself looks at one file alone.
+    `NUMBA_CACHE_DIR` if set, else CALM's folder in the user's cache. Every version of the sources
+    has its own subfolder, since numba itself only checks a single source file.
     """
     given = os.environ.get("NUMBA_CACHE_DIR")
     folder = (Path(given) if given else _user_cache() / "calm") / f"solver-{fingerprint()}"
@@ -224,10 +225,10 @@ def cache_folder() -> Path | None:
         return None
 
 
-def is_kept() -> bool:
-    """Return whether compiled laws are there already, from an earlier process."""
+def is_cached(law: str) -> bool:
+    """Whether the compiled code of a law is in the cache folder, from this or another process."""
     folder = cache_folder()
-    return folder is not None and next(folder.rglob("*.nbi"), None) is not None
+    return folder is not None and next(folder.rglob(f"*.{law}-*.nbi"), None) is not None
 
 
 def _user_cache() -> Path:
@@ -239,7 +240,7 @@ def _user_cache() -> Path:
 
 
 def fingerprint() -> str:
-    """Of the sources of everything that may be compiled: the laws, and the search."""
+    """Hash of all sources that may be compiled."""
     digest = hashlib.sha256()
     package = Path(__file__).parents[1]
     for folder in SOURCES:

@@ -1,6 +1,7 @@
-"""Drag coefficients by shape, constant with Reynolds number; the laws of friction along cables.
+"""Drag coefficients by shape, independent of Reynolds number, and laws of tangential drag on
+cables.
 
-Every function gives the drag of a shape at 1 m/s in sea water of 1025 kg/m³: Kn across its axis,
+Every function gives the drag of a shape at 1 m/s in sea water of 1025 kg/m³: Kn normal to its axis,
 Kt along it [N/(m/s)²]. Constant coefficients hold for Reynolds numbers from 1e3 to 2e5 (cylinders
 1e4 to 2e5).
 
@@ -10,7 +11,7 @@ differs from Kn|Vn|V only along t. So, with A = F + (0, 0, B)/2 and k = Kn/2,
 
     t is parallel to A + c V,     c = k |Vn| = k |V × t| = k |V × A| / |A + c V|,
 
-one scalar equation for c, solved exactly however strong the drag is.
+which is one scalar equation for c, solved exactly for drag of any strength.
 """
 
 from __future__ import annotations
@@ -28,10 +29,11 @@ CHAIN_CN = 2.75
 CHAIN_CT = 0.46
 CABLE_CN = 1.3
 CABLE_CT = {"smooth": 0.005, "rough": 0.009, "very-rough": 0.013}
-"""On the wetted surface. Smooth: parallel fibre in a sheath, plastic-coated wire; rough: braided;
-very rough: laid strands."""
+"""Ct on the wetted surface. Smooth: parallel fibre in a sheath, plastic-coated wire; rough:
+braided; very rough: laid strands.
+"""
 BLOCK_CD = 1.05
-"""Of a cube that falls with a face ahead (Hoerner, Fluid-Dynamic Drag, 1965)."""
+"""Drag coefficient of a cube with one face towards the flow (Hoerner, Fluid-Dynamic Drag, 1965)."""
 
 _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
@@ -44,7 +46,7 @@ _END_CT = (1.17, 1.07, 0.97, 0.86, 0.82)
 
 
 def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
-    """Value y at x, linear between points of growing x and held beyond both ends."""
+    """Value y at x, linear between points of increasing x and constant beyond both ends."""
     if x <= xs[0]:
         return ys[0]
     low, high = 0, len(xs) - 1
@@ -60,7 +62,7 @@ def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
 
 
 def finite_length_factor(slenderness: float) -> float:
-    """κ, by which a finite cylinder's drag falls short of the long one's.
+    """Factor κ ≤ 1 on the drag coefficient of a long cylinder for finite length.
 
     Parameters
     ----------
@@ -73,7 +75,7 @@ def finite_length_factor(slenderness: float) -> float:
 
 
 def end_face_coefficient(slenderness: float) -> float:
-    """Ct of a cylinder in flow along its axis, on the area of its end face.
+    """Ct of a cylinder in flow along its axis, based on the area of its end face.
 
     Parameters
     ----------
@@ -85,7 +87,9 @@ def end_face_coefficient(slenderness: float) -> float:
 
 
 def sphere_drag(diameter: float, cx: float | None = None) -> float:
-    """K of a sphere of a diameter [m]: ½ρ Cx πD²/4, whatever the direction; Cx = 0.5."""
+    """Drag K = ½ρ Cx πD²/4 of a sphere of a diameter [m], independent of direction; Cx is 0.5 by
+    default.
+    """
     return _HALF_DENSITY * (SPHERE_CX if cx is None else cx) * pi * diameter**2 / 4
 
 
@@ -94,7 +98,7 @@ def cylinder_drag(
 ) -> tuple[float, float]:
     """Kn = ½ρ Cn D L and Kt = ½ρ Ct πD²/4 of a cylinder of diameter and length [m].
 
-    Cn defaults to 1.2 κ(L/D), Ct to that of the end face.
+    By default Cn is 1.2 κ(L/D), and Ct is that of the end face.
     """
     slenderness = length / diameter
     if cn is None:
@@ -105,22 +109,22 @@ def cylinder_drag(
 
 
 def line_drag(diameter: float, cn: float, ct: float) -> tuple[float, float]:
-    """Kn = ½ρ Cn D and Kt = ½ρ Ct πD of a metre of cable or chain of a diameter [m]."""
+    """Kn = ½ρ Cn D and Kt = ½ρ Ct πD per metre of cable or chain of a diameter [m]."""
     return _HALF_DENSITY * cn * diameter, _HALF_DENSITY * ct * pi * diameter
 
 
 def area_drag(area: float, cd: float) -> float:
-    """K of a body of an area [m²] and its drag coefficient: ½ρ Cd A."""
+    """Drag K = ½ρ Cd A of a body with a reference area [m²] and a drag coefficient."""
     return _HALF_DENSITY * cd * area
 
 
 def measured_drag(speeds: Sequence[float], forces: Sequence[float]) -> float:
-    """K that fits measured drags: Σ(F/V) / ΣV, for speeds [m/s] and forces [N]."""
+    """Drag K fitted to measurements: Σ(F/V) / ΣV, for speeds [m/s] and forces [N]."""
     return sum(f / v for v, f in zip(speeds, forces, strict=True)) / sum(speeds)
 
 
 class Friction(Enum):
-    """Tell how the current drags a cable or chain along itself; the name is that of the files.
+    """Law of the tangential drag on a cable or chain, by its name in files.
 
     With Kt for a metre at 1 m/s, t the unit vector along the cable and Vt = (V·t) t:
 
@@ -136,7 +140,7 @@ class Friction(Enum):
 
     @property
     def law(self) -> int:
-        """The number by which `friction_force` knows it."""
+        """Number of the law in `friction_force`."""
         return list(Friction).index(self)
 
 
@@ -144,10 +148,11 @@ BERTEAUX, HOERNER, CONSTANT = (friction.law for friction in Friction)
 
 
 def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float:
-    """Return what a friction of Kt [N/(m/s)²] that is not along the cable pulls with per m/s
-    [N/(m/s)].
+    """Pull per m/s of current from a tangential drag that is not parallel to the cable [N/(m/s)],
+    for Kt in N/(m/s)².
 
-    Along the current u, v, w [m/s]; it turns the cable, which a friction along it does not.
+    The pull acts along the current u, v, w [m/s] and rotates the cable, unlike a friction along the
+    cable.
     """
     return kt * sqrt(u * u + v * v + w * w) if law == HOERNER else 0.0
 
@@ -155,7 +160,7 @@ def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float
 def friction_force(
     law: int, kt: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
 ) -> Vector:
-    """Friction of the current u, v, w [m/s] on a cable of axis t [N], Kt in N/(m/s)²."""
+    """Tangential drag of the current u, v, w [m/s] on a cable of axis t [N], for Kt in N/(m/s)²."""
     if law == HOERNER:
         pull = turning_friction(law, kt, u, v, w)
         return pull * u, pull * v, pull * w
@@ -174,14 +179,14 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
 
     Parameters
     ----------
-    ax, ay, az : force A that turns the element besides its normal drag [N]
+    ax, ay, az : force A that rotates the element in addition to its normal drag [N]
     k : half its normal drag coefficient, Kn/2 [N/(m/s)²]
     vx, vy, vz : relative current V [m/s]
 
     Returns
     -------
-    c [N/(m/s)], so that the axis lies along A + c V. It lies between 0 and k|V|. Where A points
-    against V to within 19.5° there may be three roots; the smallest is the one reached when the
+    c [N/(m/s)], such that the axis is parallel to A + c V. It is between 0 and k|V|. If A is
+    opposite to V to within 19.5° there may be three roots; the smallest is the one reached when the
     current grows from rest.
     """
     vv = vx * vx + vy * vy + vz * vz
@@ -196,7 +201,7 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
     low, high = 0.0, k * sqrt(vv)
     discriminant = 9.0 * av * av - 8.0 * aa * vv
     if av < 0.0 and discriminant > 0.0:
-        # c |A + c V| rises, falls and rises again: keep to the first rise where it gets there
+        # c |A + c V| rises, falls and rises again: use the first rise if it reaches the target
         crest = (-3.0 * av - sqrt(discriminant)) / (4.0 * vv)
         trough = (-3.0 * av + sqrt(discriminant)) / (4.0 * vv)
         if crest * sqrt(aa + crest * (2.0 * av + crest * vv)) >= target:
@@ -215,7 +220,7 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
             high = c
         else:
             low = c
-        near = 1e-9  # whose square is what the next step of Newton's would be
+        near = 1e-9  # its square is about the next Newton step
         if not low <= following <= high:
             following, near = 0.5 * (low + high), 1e-14
         if abs(following - c) <= near * following:
@@ -226,7 +231,7 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
 
 @within
 def share_step(aa: float, av: float, vv: float, target: float, c: float) -> Vector:
-    """Return how far c |A + c V| is above a target; |A + c V|; and their slope by c times that.
+    """Excess of c |A + c V| over a target, the root |A + c V|, and the slope by c times this root.
 
     `aa`, `av` and `vv` are the products A·A, A·V and V·V.
     """
@@ -247,16 +252,17 @@ def few_steps_share(
     vz: float,
     steps: int,
 ) -> tuple[float, float]:
-    """`drag_share` by so many Newton steps, where drag turns the element but little.
+    """Approximate `drag_share` by a given number of Newton steps, if drag rotates the element only
+    slightly.
 
     Parameters
     ----------
-    size : about |A| [N]; the first guess is the share if drag did not turn the element
+    size : approximately |A| [N]; the first guess neglects the rotation by drag
     steps : at least 1
 
     Returns
     -------
-    c [N/(m/s)], and how much the last step turned A + c V, squared [rad²].
+    c [N/(m/s)], and the squared rotation of A + c V in the last step [rad²].
     """
     aa = ax * ax + ay * ay + az * az
     av = ax * vx + ay * vy + az * vz
@@ -275,9 +281,9 @@ def few_steps_share(
 def axis_along(
     ax: float, ay: float, az: float, c: float, vx: float, vy: float, vz: float
 ) -> Vector:
-    """Unit axis, from the free end towards the fixed end, against the force A + c V.
+    """Unit axis, from the free end towards the fixed end, opposite to the force A + c V.
 
-    Where the force vanishes the element trails with the current, or hangs plumb in still water.
+    If the force vanishes, the element is parallel to the current, or plumb in still water.
     """
     x, y, z = ax + c * vx, ay + c * vy, az + c * vz
     if x * x + y * y + z * z == 0.0:
@@ -289,7 +295,7 @@ def axis_along(
 
 @within
 def axis_against(x: float, y: float, z: float) -> Vector:
-    """Unit axis against a force that does not vanish."""
+    """Unit axis opposite to a nonzero force."""
     size = sqrt(x * x + y * y + z * z)
     return -x / size, -y / size, -z / size
 

@@ -1,4 +1,4 @@
-"""A float at the surface: how deep it sits, and how much of it current and wind see."""
+"""A float at the surface: its draft, and its areas exposed to current and wind."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from math import acos, asin, isnan, nan, pi, sin, sqrt
 from typing import NamedTuple
 
 AIR_DENSITY = 1.225
-"""Of the air above the water [kg/m³]: the standard atmosphere at sea level."""
+"""Density of the air above the water [kg/m³]: the standard atmosphere at sea level."""
 
 AWASH = 0.02
-"""Share of the buoyancy in reserve below which a float goes awash: what stands out of it goes under
-with the rest, so that nothing jumps when the line pulls it under."""
+"""Reserve, as a share of the buoyancy, below which the parts above the surface are submerged
+gradually. This avoids a jump when the line pulls the float under.
+"""
 
 SPHERE, SPAR, TABULATED = range(3)
-"""The forms of a hull."""
+"""Kinds of hulls."""
 
 
 class HullRow(NamedTuple):
@@ -29,14 +30,14 @@ class HullRow(NamedTuple):
 
 @dataclass(frozen=True)
 class Hull:
-    """A hull afloat and upright.
+    """An upright hull at the surface.
 
     Attributes
     ----------
     height : keel to top [m]
-    area : of all of it, seen from the side [m²]
+    area : lateral area of the whole hull [m²]
     form : SPHERE, SPAR or TABULATED
-    rows : of a tabulated one
+    rows : rows of a tabulated hull
     """
 
     height: float
@@ -45,29 +46,32 @@ class Hull:
     rows: tuple[HullRow, ...] = ()
 
     def curve(self, share: float) -> tuple[float, float]:
-        """Draft and immersed area, as shares of the whole, by the share of the volume immersed."""
+        """Draft and immersed area, as shares of the whole, at a share of the immersed volume."""
         return immersed_shares(self.form, self.rows, share)
 
 
 def spherical_hull(diameter: float) -> Hull:
-    """A sphere of a diameter [m]: a draft of x diameters immerses x² (3 - 2x) of its volume."""
+    """Spherical hull of a diameter [m]: a draft of x diameters immerses x² (3 - 2x) of its
+    volume.
+    """
     return Hull(diameter, pi * diameter**2 / 4, SPHERE)
 
 
 def cylindrical_hull(diameter: float, length: float) -> Hull:
-    """An upright cylinder, a spar, of a diameter and length [m]."""
+    """Spar hull: an upright cylinder of a diameter and length [m]."""
     return Hull(length, diameter * length, SPAR)
 
 
 def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
-    """A hull by rows of draft [m], displaced volume [m³] and immersed area [m²], all growing.
+    """Hull from rows of draft [m], displaced volume [m³] and immersed area [m²], all increasing.
 
-    Linear between the rows and from nothing to the first; the last is the whole hull.
+    Interpolation is linear between the rows, and from zero to the first row; the last row is the
+    whole hull.
 
     Raises
     ------
     ValueError
-        Drafts or volumes that do not grow, areas that fall.
+        Drafts or volumes do not increase, or areas decrease.
     """
     if not rows:
         raise ValueError("the table of a hull has no rows")
@@ -87,7 +91,7 @@ def immersed_shares(form: int, rows: Sequence[HullRow], share: float) -> tuple[f
     Parameters
     ----------
     form, rows : as in `Hull`
-    share : of the hull's volume that is immersed, 0 to 1
+    share : share of the hull's volume that is immersed, 0 to 1
     """
     if form == SPHERE:
         x = 0.5 - sin(asin(1.0 - 2.0 * share) / 3.0)
@@ -108,15 +112,15 @@ def immersed_shares(form: int, rows: Sequence[HullRow], share: float) -> tuple[f
 
 
 class Riding(NamedTuple):
-    """Tell how a float rides at the surface.
+    """Position of a float at the surface, and the forces on it.
 
     Attributes
     ----------
-    draft, freeboard : [m]; NaN where its hull is not known
-    standing : share of the float's length out of the water
-    above : share of what is rigid with the float above it that is out of the water
-    drag : there over that below the surface
-    push_east, push_north : of the wind [N]
+    draft, freeboard : draft and freeboard [m]; NaN if its hull is unknown
+    standing : share of the float's length above the water
+    above : share of the rigid pieces connected above the float that is out of the water
+    drag : drag at the surface divided by drag when immersed
+    push_east, push_north : force of the wind [N]
     """
 
     draft: float
@@ -129,22 +133,22 @@ class Riding(NamedTuple):
 
     @property
     def push(self) -> tuple[float, float]:
-        """Both parts of the push of the wind [N]."""
+        """East and north component of the wind force [N]."""
         return self.push_east, self.push_north
 
 
 @dataclass(frozen=True)
 class Floating:
-    """Hold what a float is besides its buoyancy, for when it is at the surface.
+    """Properties of a float that matter at the surface, in addition to its buoyancy.
 
     Attributes
     ----------
-    hull : its form; None where it is not known, and then its draft is not either
-    weight : in air [N]
-    lift : net force when it is all immersed [N]
-    surface_drag : drag afloat over drag below, where it is given; else that of the immersed area
-    wind : to the east and north [m/s]
-    wind_area : in the air [m²], where it is given; else what of the hull is not immersed
+    hull : its hull; None if unknown, and then the draft is unknown too
+    weight : weight in air [N]
+    lift : net buoyancy when fully immersed [N]
+    surface_drag : drag at the surface divided by drag when immersed; None uses the immersed area
+    wind : wind velocity to the east and north [m/s]
+    wind_area : area exposed to the wind [m²]; None uses the area above the water
     wind_cd : drag coefficient of that area
     """
 
@@ -158,16 +162,18 @@ class Floating:
 
     @property
     def blown(self) -> bool:
-        """Return whether there is any wind."""
+        """Whether the wind speed is not zero."""
         return self.wind != (0.0, 0.0)
 
     def riding(self, used: float) -> Riding:
-        """Return how it rides with a share of its net buoyancy in use, 0 to 1."""
+        """Compute the position of the float at the surface with a share of its net buoyancy in use,
+        0 to 1.
+        """
         return riding_of(self.as_numbers, self.hull.rows if self.hull else (), used)
 
     @property
     def as_numbers(self) -> SurfaceFloat:
-        """Return the same as the solver takes it."""
+        """The float in the array form used by the solver."""
         form, height, area = UNKNOWN_HULL, nan, 0.0
         if self.hull is not None:
             form, height, area = self.hull.form, self.hull.height, self.hull.area
@@ -189,7 +195,9 @@ UNKNOWN_HULL = -1
 
 
 class SurfaceFloat(NamedTuple):
-    """A `Floating` as numbers: `form` is that of its hull, and what is not given is NaN."""
+    """A `Floating` as numbers: `form` is the kind of its hull; NaN stands for unspecified
+    values.
+    """
 
     form: int
     height: float
@@ -203,15 +211,15 @@ class SurfaceFloat(NamedTuple):
     wind_cd: float
 
 
-NEVER_AFLOAT = SurfaceFloat(UNKNOWN_HULL, nan, 0.0, 0.0, 1.0, nan, 0.0, 0.0, nan, 1.0)
-"""In place of a float of which nothing is known."""
+UNKNOWN_FLOAT = SurfaceFloat(UNKNOWN_HULL, nan, 0.0, 0.0, 1.0, nan, 0.0, 0.0, nan, 1.0)
+"""Placeholder for a float with unknown properties."""
 
 
 def riding_of(floats: SurfaceFloat, rows: Sequence[HullRow], used: float) -> Riding:
-    """Return how a float rides with a share of its net buoyancy in use, 0 to 1.
+    """Compute the position of a float with a share of its net buoyancy in use, 0 to 1.
 
-    The displaced water carries the weight and what the line pulls, so the share of the volume
-    immersed is (weight + used lift)/(weight + lift). `rows` are those of its hull.
+    The displaced water carries the weight and the pull of the line, so the immersed share of the
+    volume is (weight + used lift)/(weight + lift). `rows` are the rows of its hull.
     """
     above = min((1.0 - used) / AWASH, 1.0)
     draft, seen, height, area = 1.0, 1.0, nan, 0.0

@@ -1,10 +1,9 @@
-"""numba's compiler with what laws do not need left out, which is most of the time that it takes.
+"""numba's compiler reduced to the steps that laws need, which shortens compilation considerably.
 
-A law that others call is not made machine code by itself. It is linked into the law that is called
-from Python, and optimised in it once; numba itself optimises and translates every law again on each
-level of the calls. An operation on types that were seen before is not resolved again, passes for
-what no law has are left out, what is assigned once needs no place in memory, and an array is handed
-on by fewer numbers.
+Only laws called from Python become machine code. All other laws are linked into these and optimised
+there once; numba itself optimises and translates every law again at each level of the calls. The
+types of an operation are resolved only once, passes for language features that laws do not use are
+left out, variables assigned once need no memory, and arrays are passed as fewer numbers.
 """
 
 import copy
@@ -23,27 +22,29 @@ _Lower: Any = core.lowering.Lower
 _Lowering: Any = core.typed_passes.NativeLowering
 _Compiler: Any = core.compiler.CompilerBase
 
-NEEDLESS = {
+UNUSED_PASSES = {
     "WithLift", "InlineClosureLikes", "RewriteSemanticConstants", "DeadBranchPrune",
     "RewriteDynamicRaises", "MakeFunctionToJitFunction", "InlineInlinables", "FindLiterallyCalls",
     "LiteralUnroll", "LiteralPropagationSubPipelinePass", "InlineOverloads", "NopythonRewrites",
     "NoPythonSupportedFeatureValidation", "IRLegalization", "DumpParforDiagnostics",
 }  # fmt: skip
-"""Passes for closures, array expressions, and what else no law has."""
+"""Passes for closures, array expressions and other features that laws do not use."""
 
 COUNT, SIZE, DATA, SHAPE, STRIDES = range(2, 7)
-"""Where it stands in numba's own form of an array; who holds it, before these, no law needs."""
+"""Indices into numba's own representation of an array, after the members that manage its memory."""
 
-SELDOM = 100_000, 20, 100
-"""When garbage is collected while laws are compiled: hardly one of millions of objects is."""
+GC_THRESHOLDS = 100_000, 20, 100
+"""Thresholds of garbage collection while laws are compiled: almost none of the millions of objects
+can be freed.
+"""
 
 _seen: dict[Any, Any] = {}
 
 
 def resolving_once(typing: Any) -> Any:
-    """A typing context that remembers the signature of an operation on some types.
+    """Typing context that remembers the signature of an operation on some types.
 
-    numba's own tries all candidates each time. Only the compiler of laws is given this one.
+    numba's own context tries all candidates each time. Only the compiler of laws uses this one.
     """
     remembering = copy.copy(typing)
 
@@ -59,30 +60,32 @@ def resolving_once(typing: Any) -> Any:
 
 
 def short_name(name: str, given: Any, **more: Any) -> str:
-    """The symbol of a law: the types of what it is given, written out, are pages."""
+    """Return a short symbol for a law; with all argument types written out, symbols are pages
+    long.
+    """
     digest = hashlib.sha256(repr(given).encode()).hexdigest()[:16]
     return str(core.funcdesc.default_mangler(f"{name}_{digest}", (), **more))
 
 
 class LawArray(_Array):  # type: ignore[misc]
-    """An array, handed on as its place and its shape, from which all else follows.
+    """An array passed as its address and shape, from which everything else follows.
 
-    What numba itself compiles for laws, such as `max`, is given numbers alone.
+    Functions that numba itself compiles for laws, such as `max`, take only numbers.
     """
 
     def get_argument_type(self) -> Any:
-        """Return the types of its place and its shape."""
+        """Return the types of the address and the shape."""
         assert self._fe_type.layout == "C"
         parts = self.get_value_type().elements
         return parts[DATA], (parts[COUNT],) * self._fe_type.ndim
 
     def as_argument(self, builder: Any, value: Any) -> Any:
-        """Return its place and its shape."""
+        """Return the address and the shape."""
         shape = [builder.extract_value(value, [SHAPE, k]) for k in range(self._fe_type.ndim)]
         return builder.extract_value(value, [DATA]), tuple(shape)
 
     def from_argument(self, builder: Any, value: Any) -> Any:
-        """Return the array of a place and a shape."""
+        """Rebuild the array from its address and shape."""
         data, shape = value
         item = self._dmm[self._fe_type.dtype].get_data_type()
         size = core.cgutils.sizeof(builder, item.as_pointer())
@@ -97,19 +100,19 @@ class LawArray(_Array):  # type: ignore[misc]
 
 
 class LinkedLibrary(_Library):  # type: ignore[misc]
-    """A law that is linked into those called from Python."""
+    """Library of a law that is linked into the laws called from Python."""
 
     def finalize(self) -> None:
-        """Leave it as it is; what it calls is linked beside it."""
+        """Skip the machine code; linked laws are compiled with their callers."""
         self._finalize_dynamic_globals()
         self._finalized = True
 
 
 class LawLower(_Lower):  # type: ignore[misc]
-    """What makes LLVM's instructions of a law."""
+    """Translation of a law to LLVM instructions."""
 
     def _find_singly_assigned_variable(self) -> None:
-        """A variable assigned once, before all its uses, is a value."""
+        """Treat a variable that is assigned once, before all its uses, as a value."""
         blocks = self.func_ir.blocks
         before = core.analysis.compute_cfg_from_blocks(blocks).dominators()
         assigned, used = defaultdict(list), defaultdict(set)
@@ -129,13 +132,13 @@ class LawLower(_Lower):  # type: ignore[misc]
 
 @core.compiler_machinery.register_pass(mutates_CFG=True, analysis_only=False)
 class LawLowering(_Lowering):  # type: ignore[misc]
-    """The last pass: a law that is called from Python becomes machine code, any other does not."""
+    """Last pass: only laws called from Python become machine code."""
 
     _name = "law_lowering"
     lowering_class = LawLower
 
     def run_pass(self, state: Any) -> bool:
-        """Return True, as such passes do."""
+        """Return True, as required of such passes."""
         if not (state.flags.no_cpython_wrapper and state.flags.no_cfunc_wrapper):
             return bool(super().run_pass(state))
         target, name = state.targetctx, state.func_id.func_qualname
@@ -153,37 +156,37 @@ class LawLowering(_Lowering):  # type: ignore[misc]
 
 _arrays = core.datamodel.manager.DataModelManager({_numba.types.Array: LawArray})
 core.registry.cpu_target.target_context.refresh()
-OURS: dict[str, Any] = {
+OWN_ATTRIBUTES: dict[str, Any] = {
     "data_model_manager": _arrays.chain(core.datamodel.default_manager),
     "mangler": short_name,
     "cached_internal_func": {},
     "refresh": lambda: None,
 }
-"""What is other than in numba's own context, which looks for new operations again and again."""
+"""Differences from numba's own context, which repeatedly searches for new operations."""
 
 
 class LawCompiler(_Compiler):  # type: ignore[misc]
-    """The compiler of laws."""
+    """Compiler class for laws."""
 
     def __init__(self, typing: Any, target: Any, *others: Any) -> None:
-        super().__init__(resolving_once(typing), target.subtarget(**OURS), *others)
+        super().__init__(resolving_once(typing), target.subtarget(**OWN_ATTRIBUTES), *others)
 
     def compile_extra(self, law: Any) -> Any:
-        """Compile a law and all that it calls."""
+        """Compile a law and its callees."""
         collected = gc.get_threshold()
-        gc.set_threshold(*SELDOM)
+        gc.set_threshold(*GC_THRESHOLDS)
         try:
             return super().compile_extra(law)
         finally:
             gc.set_threshold(*collected)
 
     def define_pipelines(self) -> list[Any]:
-        """Return numba's passes without those that are needless."""
+        """Return numba's passes without the needless ones."""
         pipeline = core.compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
         pipeline.passes = [
             (LawLowering if each is _Lowering else each, about)
             for each, about in pipeline.passes
-            if each.__name__ not in NEEDLESS
+            if each.__name__ not in UNUSED_PASSES
         ]
         pipeline.finalize()
         return [pipeline]

@@ -1,9 +1,10 @@
-"""The line and the water as the march takes them: plain float64 arrays, checked on entry;
-where a march stands, and the record it may leave.
+"""Input to the march (line and water as float64 arrays, checked on entry), its state and its
+record.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 from functools import partial, wraps
 from math import inf
@@ -24,16 +25,17 @@ if TYPE_CHECKING:
 
 
 class MarchError(ArithmeticError):
-    """The march cannot go on: an element has no balance, or the line needs endless segments."""
+    """The march cannot continue: an element has no balance, or the line needs too many segments."""
 
 
 State = tuple[float, float, float, float, float, float, float, int]
-"""The point reached, x, y, z, fx, fy, fz, tz and level: its place [m], the force above it [N], the
-last axis's rise, the interval of the water. A bare tuple: in CPython a named one costs as much as
-half of a segment's balance."""
+"""State of a march, x, y, z, fx, fy, fz, tz and level: position [m], force above it [N], rise of
+the last axis, and interval of the water. It is a bare tuple, since in CPython a named tuple costs
+half as much as the balance of a segment.
+"""
 
 GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
-"""Whether a march can go on, or why it cannot."""
+"""Outcome of a march: whether it can continue, or the reason why not."""
 FAILURES = (
     "",
     "the line runs off to infinity",
@@ -42,19 +44,19 @@ FAILURES = (
     "the line would need more than 50000 segments",
     "there is no room for so many segments",
 )
-"""The same in words."""
+"""Text for each outcome of a march."""
 NO_BALANCE = -2.0
-"""In place of the strain of a segment, or of the rise of a rod, that finds no balance."""
+"""Value that replaces the strain of a segment, or the rise of a rod, without balance."""
 
 
 class Bed(NamedTuple):
-    """The seabed below an anchor, as a plane, and how it holds a line that lies on it.
+    """The seabed below an anchor, as a plane, and its action on a line that lies on it.
 
     Attributes
     ----------
-    east, north : how much deeper it is per metre [-]
-    friction : along a line that lies there [-]
-    excess : what a displaced cubic metre lifts more there than in reference water [N/m³]
+    east, north : slope: increase in depth per metre east and north [-]
+    friction : friction coefficient along a line on the seabed [-]
+    excess : additional buoyancy per displaced cubic metre, relative to reference water [N/m³]
     """
 
     east: float
@@ -65,33 +67,37 @@ class Bed(NamedTuple):
 
 @within
 def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
-    """Height of a place above the plane through another, by the way from there; of a force, what
-    it has across the plane, times √(1 + tan² slope)."""
+    """Height of a point above the seabed plane through another point, from the vector between them.
+
+    For a force: its component normal to the plane, times √(1 + tan² slope).
+    """
     return z + bed.east * x + bed.north * y
 
 
 @within
 def along_bed(bed: Bed, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """A force without what it has across the plane."""
+    """Component of a force parallel to the seabed plane."""
     across = off_bed(bed, x, y, z) / (1.0 + bed.east * bed.east + bed.north * bed.north)
     x, y = x - across * bed.east, y - across * bed.north
     return x, y, 0.0 - bed.east * x - bed.north * y
 
 
 Record = Any
-"""Columns of numbers, as written by `write_node`: lists, or the rows of an array."""
+"""Columns of numbers written by `write_node`: lists, or rows of an array."""
 COLUMNS = 17
 SEGMENT, BETTER = 10, 11
-"""Column of how an element ends, see below, and the first of six with extrapolated places and
-forces."""
+"""Column with the kind of an element's end (see below), and the first of six columns with
+extrapolated positions and forces.
+"""
 NO_SEGMENT, ENDS, HALVES, SPLITS = range(4)
-"""An element is no part of a hanging segment; it ends one; it ends in the middle of a part that is
-passed in two halves; it ends at a level that splits one."""
+"""Kinds of an element's end: not part of a hanging segment; end of a segment; middle of a part that
+is integrated in two halves; level that splits a segment.
+"""
 
 
 @within
 def write_node(record: Record, n: int, state: State) -> None:
-    """Write node n: the place [m] and the force above it [N] of a state."""
+    """Write node n: the position [m] and the force above it [N] of a state."""
     x, y, z, fx, fy, fz, _, _ = state
     record[0][n] = x
     record[1][n] = y
@@ -115,16 +121,17 @@ def write_element(
 
 @dataclass(frozen=True)
 class Trace:
-    """Hold what a recorded march leaves: k + 1 nodes and the k elements between, free end first.
+    """Nodes and elements of a recorded march, free end first: k + 1 nodes and k elements between
+    them.
 
     Attributes
     ----------
-    position : (k+1, 3) [m]
-    force : (k+1, 3) above each node [N]
-    piece, clamp : (k,) the piece of each element, and the clamp that it is or -1
+    position : (k+1, 3) position [m]
+    force : (k+1, 3) force above each node [N]
+    piece, clamp : (k,) piece and clamp of each element; the clamp is -1 for a part of the piece
     cut : (k,) unstretched length [m]
-    strain : (k,) of cables and chains
-    better : (k+1, 6) extrapolated place [m] and force [N] of each node, of a shape that was refined
+    strain : (k,) strain of cables and chains
+    better : (k+1, 6) extrapolated position [m] and force [N] of each node of a refined shape
     """
 
     position: Floats
@@ -137,13 +144,14 @@ class Trace:
 
     @staticmethod
     def of(record: Record, nodes: int) -> Trace:
-        """The trace of a record with so many nodes."""
-        columns = np.array([column[:nodes] for column in record])
+        """Build the trace of a record with a number of nodes."""
+        compiled = isinstance(record, np.ndarray)
+        columns = record[:, :nodes].copy() if compiled else np.array([c[:nodes] for c in record])
         return Trace(
             position=columns[:3].T.copy(),
             force=columns[3:6].T.copy(),
-            piece=columns[6, 1:].astype(np.int64),
-            clamp=columns[7, 1:].astype(np.int64),
+            piece=columns[6, 1:].astype(np.intp),
+            clamp=columns[7, 1:].astype(np.intp),
             cut=columns[8, 1:],
             strain=columns[9, 1:],
             better=columns[BETTER : BETTER + 6].T,
@@ -151,17 +159,21 @@ class Trace:
 
 
 Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
+Integers = NDArray[np.intp]
 Booleans = NDArray[np.bool_]
 
 
 class _Arrays:
-    """A frozen dataclass of arrays, whose arguments `_of_arrays` converts."""
+    """Base class of a frozen dataclass of arrays, whose arguments `_of_arrays` converts."""
 
     @classmethod
     def completed(cls, given: dict[str, Any]) -> dict[str, Any]:
-        """Return the arguments with those that depend on others, before they are converted."""
+        """Complete the arguments by columns that depend on other columns, before conversion."""
         return given
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Pickle the fields only, without what `once_per_input` has stored."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
 
     def _same_length(self, *names: str) -> None:
         lengths = {name: len(getattr(self, name)) for name in names}
@@ -169,15 +181,34 @@ class _Arrays:
             raise ValueError(f"{type(self).__name__}: arrays differ in length: {lengths}")
 
 
-_DTYPES: dict[str, Any] = {"Floats": np.float64, "Integers": np.int64, "Booleans": np.bool_}
+_Given = TypeVar("_Given", bound=_Arrays)
+_Made = TypeVar("_Made")
+
+
+def once_per_input(make: Callable[[_Given], _Made]) -> Callable[[_Given], _Made]:
+    """Store the result of a function of a `Line` or a `Water` with it, as neither ever changes."""
+    name = f"{make.__module__}.{make.__qualname__}"
+
+    @wraps(make)
+    def stored(given: _Given) -> _Made:
+        kept = vars(given)
+        if name not in kept:
+            kept[name] = make(given)
+        result: _Made = kept[name]
+        return result
+
+    return stored
+
+
+_DTYPES: dict[str, Any] = {"Floats": np.float64, "Integers": np.intp, "Booleans": np.bool_}
 
 _OfArrays = TypeVar("_OfArrays", bound=_Arrays)
 
 
 def _of_arrays(made: type[_OfArrays]) -> type[_OfArrays]:
-    """Have a dataclass take whatever numpy makes arrays of, each by the type of its field.
+    """Make a dataclass convert its arguments to arrays, by the types of its fields.
 
-    ValueError: an array has a value that is not finite.
+    Raises ValueError if an array has a value that is not finite.
     """
     plain = made.__init__
     names = [column.name for column in fields(made)]  # type: ignore[arg-type]
@@ -200,7 +231,7 @@ def _of_arrays(made: type[_OfArrays]) -> type[_OfArrays]:
 
 
 def _frozen(value: Any, kind: Any, name: str) -> NDArray[Any]:
-    """Return a value as an array of a type; one that is frozen already, as it is."""
+    """Return a value as a read-only array of a type; read-only arrays are returned unchanged."""
     if type(value) is np.ndarray and not value.flags.writeable and value.dtype == kind:
         return value
     array = np.array(value, dtype=kind, ndmin=1)
@@ -222,7 +253,7 @@ _ZERO_BY_DEFAULT = {
     "length": ("lift", "diameter", "push_east", "push_north"),
     "clamp_at": ("clamp_lift",),
 }
-"""Columns that are zeros if not given, by the column that is as long."""
+"""Columns that default to zeros, by the column that has the same length."""
 
 _CURVES = ("elongation", "drag_curve", "clamp_drag_curve")
 
@@ -230,40 +261,42 @@ _CURVES = ("elongation", "drag_curve", "clamp_drag_curve")
 @_of_arrays
 @dataclass(frozen=True)
 class Line(_Arrays):
-    """The n pieces of a line and the m instruments clamped on them.
+    """The n pieces of a line, and the m instruments clamped on them.
 
-    Those of a mooring stand above the anchor, free end first; those of a tow reach from the ship
+    The pieces of a mooring are listed from the free end to the anchor, those of a tow from the ship
     to the towed body.
 
-    Buoyancies and drags are those in sea water of 1025 kg/m³. Where a piece is `flexible`
-    (cable, chain) its `buoyancy`, `volume` and drags are per unstretched metre.
+    Buoyancies and drags refer to sea water of 1025 kg/m³. For `flexible` pieces (cable, chain),
+    `buoyancy`, `volume` and drags are per unstretched metre.
 
     Attributes
     ----------
     length : (n,) unstretched length [m]
     flexible : (n,) cable or chain, cut into segments; else one rigid element
-    buoyancy : (n,) net force in water, + up [N or N/m]
-    volume : (n,) displaced volume that follows the water's density [m³ or m³/m]; 0 where unknown
-    normal_drag, tangential_drag : (n,) Kn and Kt [N/(m/s)², per metre where flexible]
-    directional : (n,) False where the drag is Kn|V|V whatever the axis
-    compliance : (n,) 1/EA [1/N]; 0 where inextensible
-    thinning : (n,) drag per unstretched metre grows by (1 + strain)**thinning: 1/2 where the
-        volume is conserved (cables), 0 where only the length grows (chains)
-    clamp_piece : (m,) index of the piece a clamp sits on
+    buoyancy : (n,) net buoyancy, positive up [N or N/m]
+    volume : (n,) displaced volume, whose buoyancy follows the density of the water [m³ or m³/m]; 0
+        if unknown
+    normal_drag, tangential_drag : (n,) Kn and Kt [N/(m/s)², per metre if flexible]
+    directional : (n,) False if the drag is Kn|V|V for any axis
+    compliance : (n,) 1/EA [1/N]; 0 if inextensible
+    thinning : (n,) drag per unstretched metre grows by (1 + strain)**thinning: 1/2 if the
+        volume is conserved (cables), 0 if only the length grows (chains)
+    clamp_piece : (m,) index of the piece that a clamp is fixed to
     clamp_at : (m,) distance from that piece's top along its unstretched length [m]
     clamp_buoyancy, clamp_volume, clamp_drag : (m,) [N], [m³], K of K|V|V [N/(m/s)²]
-    anchor_height : the line ends this far above the seabed [m]
-    lift, clamp_lift : (n,), (m,) upward force of bodies at 1 m/s [N/(m/s)²]; 0 where not given
-    diameter : (n,) of cables and chains [m]; 0 where not given, and then nothing strums
+    anchor_height : height of the end of the line above the seabed [m]
+    lift, clamp_lift : (n,), (m,) upward force of bodies at 1 m/s [N/(m/s)²]; 0 by default
+    diameter : (n,) diameter of cables and chains [m]; 0 by default, which excludes strumming
     friction : the law of `tangential_drag` on cables and chains
-    strumming : of the cables, whose `normal_drag` then is that at rest; None without
-    towed : whether the free end is towed: then no pieces there are rigid with one another
-    push_east, push_north : (n,) force of the wind on a piece [N]; 0 where not given
-    floating : how the first float rides when it is at the surface; None leaves it just below
-    elongation : (n,) of cables that stretch by a table, whose `compliance` is not used; None for
-        the others, and nothing, (), where no cable does
-    drag_curve, clamp_drag_curve : (n,), (m,) how the normal drag of a smooth sphere or cylinder
-        goes with the Reynolds number; None for the others, and (), where none does
+    strumming : strumming law of the cables, whose `normal_drag` then applies at rest; None without
+        strumming
+    towed : whether the free end is towed: the pieces there are then not rigidly connected
+    push_east, push_north : (n,) force of the wind on a piece [N]; 0 by default
+    floating : properties of the first float at the surface; None places it just below the surface
+    elongation : (n,) curves of cables that stretch by a table, whose `compliance` is ignored; None
+        for other pieces; () if no cable has a curve
+    drag_curve, clamp_drag_curve : (n,), (m,) curves of normal drag of smooth spheres and cylinders
+        against Reynolds number; None for other bodies, () if there are no curves
     """
 
     length: Floats
@@ -296,7 +329,7 @@ class Line(_Arrays):
 
     @classmethod
     def completed(cls, given: dict[str, Any]) -> dict[str, Any]:
-        """Return the arguments with zeros for forces and diameters that are not given."""
+        """Return the arguments, with zeros for forces and diameters that are not given."""
         absent = {
             name: np.zeros(np.size(given.get(like, ())))
             for like, names in _ZERO_BY_DEFAULT.items()
@@ -330,15 +363,16 @@ class Line(_Arrays):
 
     @property
     def total_buoyancy(self) -> Floats:
-        """(n,) net force of each whole piece with its clamps in reference water [N]."""
+        """(n,) net buoyancy of each whole piece with its clamps in reference water [N]."""
         return self.net_force(np.zeros(len(self.length)))
 
     def net_force(self, excess: Floats) -> Floats:
-        """(n,) net force of each whole piece with its clamps [N].
+        """(n,) net buoyancy of each whole piece with its clamps [N].
 
         Parameters
         ----------
-        excess : (n,) what a displaced cubic metre lifts more than in reference water [N/m³]
+        excess : (n,) additional buoyancy per displaced cubic metre, relative to reference water
+            [N/m³]
         """
         whole = np.where(self.flexible, self.length, 1.0)
         total: Floats = (self.buoyancy + excess * self.volume) * whole
@@ -346,15 +380,25 @@ class Line(_Arrays):
         np.add.at(total, on, self.clamp_buoyancy + excess[on] * self.clamp_volume)
         return total
 
+    @property
+    def plumb_drag(self) -> Floats:
+        """(n,) drag of each whole piece with its clamps in a flow along the plumb line
+        [N/(m/s)²], in reference water and by constant coefficients.
+        """
+        along = np.where(self.directional, self.tangential_drag, self.normal_drag)
+        total: Floats = along * np.where(self.flexible, self.length, 1.0)
+        np.add.at(total, self.clamp_piece, self.clamp_drag)
+        return total
+
     def with_length(self, piece: int, length: float) -> Line:
-        """Return the same line with one piece cut to another unstretched length [m]."""
+        """Return a copy of the line with another unstretched length of one piece [m]."""
         lengths = self.length.copy()
         lengths[piece] = length
         return replace(self, length=lengths)
 
     @property
     def _of_pieces(self) -> dict[str, Any]:
-        """Return what it holds of every piece."""
+        """Return the columns that have one value per piece."""
         return {
             column.name: getattr(self, column.name)
             for column in fields(self)
@@ -363,7 +407,9 @@ class Line(_Arrays):
         }
 
     def below_a_point(self) -> Line:
-        """Return the same line below a piece without length, weight and drag, to be pulled at."""
+        """Return the line with an additional first piece without length, weight and drag, as a
+        point load.
+        """
         columns: dict[str, Any] = {
             name: np.append(np.zeros(1, column.dtype), column)
             if isinstance(column, np.ndarray)
@@ -373,7 +419,7 @@ class Line(_Arrays):
         return replace(self, **columns, clamp_piece=self.clamp_piece + 1)
 
     def reversed(self) -> Line:
-        """Return the same line from its other end, from where its clamps are measured then."""
+        """Return the line listed from its other end, with its clamps measured from there."""
         on = self.clamp_piece
         return replace(
             self,
@@ -390,16 +436,17 @@ class Water(_Arrays):
 
     Attributes
     ----------
-    depth : water depth [m]; inf where the seabed is out of reach (of a tow)
+    depth : water depth [m]; inf without a seabed (for a tow)
     level : (k,) depths of the levels [m], strictly increasing, k ≥ 1
     u, v, w : (k,) current to the east, to the north, upward [m/s]
-    density : (k,) [kg/m³]
-    gravity : [m/s²]
-    deeper_east, deeper_north : how much deeper the seabed is per metre from the anchor [-]
+    density : (k,) density [kg/m³]
+    gravity : acceleration of gravity [m/s²]
+    deeper_east, deeper_north : increase in depth of the seabed per metre east and north of the
+        anchor [-]
     viscosity_level, viscosity : (j,), (j,) depths [m], strictly increasing, and the kinematic
-        viscosity at them [m²/s], for drags that go with the Reynolds number
+        viscosity at them [m²/s], for drags that depend on the Reynolds number
 
-    Between levels everything is linear in depth; above the first and below the last it is constant.
+    Values are linear between levels, and constant above the first and below the last level.
     """
 
     depth: float
@@ -426,11 +473,11 @@ class Water(_Arrays):
 
     @property
     def moving(self) -> bool:
-        """Return whether there is any current at all."""
+        """Whether the current is not zero."""
         return bool(self.u.any() or self.v.any() or self.w.any())
 
     def still(self) -> Water:
-        """Return the same water without current."""
+        """Return the water without current."""
         return replace(self, u=(zero := np.zeros_like(self.u)), v=zero, w=zero)
 
     def current_at(self, depth: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""One march down a line from Python: see `calm.physics.passing`."""
+"""One march down a line, called from Python (see `calm.physics.passing`)."""
 
 from __future__ import annotations
 
@@ -27,46 +27,50 @@ from calm.physics.profile import Profile
 from calm.physics.track import Track
 
 ROOM = 1024
-"""Segments that a march may choose at first; if it needs more, it is done again with more room."""
+"""Initial number of segments that the work arrays hold; if a march needs more, it is repeated with
+larger arrays.
+"""
 
 
 class Cuts(NamedTuple):
-    """The unstretched lengths of the segments of all cables [m], and how many each cable has."""
+    """Unstretched lengths of the segments of all cables [m], and the number of segments of each
+    cable.
+    """
 
     lengths: Floats
     counts: Integers
 
     def halved(self) -> Cuts:
-        """Every segment cut in two."""
+        """Return the cuts with every segment halved."""
         return Cuts(np.repeat(0.5 * self.lengths, 2), 2 * self.counts)
 
     def first(self, cables: int) -> Cuts:
-        """Return those of the first cables."""
+        """Return the cuts of the first cables."""
         counts = self.counts[:cables]
         return Cuts(self.lengths[: counts.sum()], counts)
 
     def after(self, cables: int) -> Cuts:
-        """Return those of the other cables."""
+        """Return the cuts of the remaining cables."""
         return Cuts(self.lengths[self.counts[:cables].sum() :], self.counts[cables:])
 
     def and_then(self, others: Cuts) -> Cuts:
-        """Return those of more cables, too."""
+        """Return these cuts followed by the cuts of further cables."""
         lengths = np.concatenate([self.lengths, others.lengths])
         return Cuts(lengths, np.concatenate([self.counts, others.counts]))
 
 
-NO_CUTS = Cuts(np.zeros(0), np.zeros(0, np.int64))
+NO_CUTS = Cuts(np.zeros(0), np.zeros(0, np.intp))
 
 
 @dataclass(frozen=True)
 class End:
-    """Hold where and how a march ended.
+    """End of a march: height, force, and the segments used.
 
     Attributes
     ----------
     z, force : height [m], force above [N]
     cuts : the segments used
-    record, nodes : what was recorded, and how many nodes of it
+    record, nodes : the record, and its number of nodes
     """
 
     z: float
@@ -77,7 +81,7 @@ class End:
 
     @cached_property
     def trace(self) -> Trace:
-        """The shape; of a march that was recorded."""
+        """The recorded shape."""
         return Trace.of(self.record, self.nodes)
 
 
@@ -96,17 +100,17 @@ def march(
 
     Parameters
     ----------
-    depth : of the free end [m]
-    angle_step : how much a segment may turn [rad]
-    reach : the longest a segment may be [m]
+    depth : depth of the free end [m]
+    angle_step : largest rotation of a segment [rad]
+    reach : largest length of a segment [m]
     cuts : the segments to use; None lets the march choose them
     record : whether to keep every node and element
-    compiled : whether the march is compiled, or interpreted as it stands
+    compiled : whether the march is compiled, or interpreted
 
     Raises
     ------
     MarchError
-        An element finds no balance or a cable would need more than 50 000 segments.
+        An element has no balance, or a cable needs more than 50 000 segments.
     """
     course, sea = (track.packed, profile.packed) if compiled else (track.course, profile.sea)
     stages, level, known = len(course.stages), Bed(0.0, 0.0, 0.0, 0.0), cuts is not None
@@ -124,7 +128,7 @@ def march(
         raise MarchError(FAILURES[int(left[FAILURE])])
     if cuts is None:
         used = np.array(lengths[: int(left[USED])])
-        cuts = Cuts(used, np.array(counts, np.int64))
+        cuts = Cuts(used, np.array(counts, np.intp))
     force = float(left[FX]), float(left[FY]), float(left[FZ])
     return End(float(left[Z]), force, cuts, columns, int(left[NODES]))
 
@@ -132,10 +136,10 @@ def march(
 def _paper(
     course: Any, cuts: Cuts | None, room: int, nodes: int, compiled: bool
 ) -> tuple[Any, ...]:
-    """Cuts and their counts, the record and what is left, for a march to write on."""
+    """Create the work arrays of a march: cuts, their counts, the record, and its results."""
     cables = len(course.cables)
     if compiled:
-        lengths, counts = cuts or (np.empty(room), np.zeros(cables, np.int64))
+        lengths, counts = cuts or (np.empty(room), np.zeros(cables, np.intp))
         return lengths.copy(), counts.copy(), np.empty((COLUMNS, nodes)), np.zeros(LEFT)
     if cuts is None:
         given: tuple[list[float], list[int]] = ([0.0] * room, [0] * cables)

@@ -1,4 +1,4 @@
-"""Materials that components are made of, and what follows from each."""
+"""Materials of components, and their properties."""
 
 import re
 from dataclasses import dataclass
@@ -14,16 +14,18 @@ LEAD_DENSITY = 11340.0
 
 @dataclass(frozen=True)
 class Material:
-    """Hold what is known of a material.
+    """A material, with its density, corrosion potential and stiffness.
 
     Attributes
     ----------
-    name : as it stands in a file
-    words : pattern of what people call it, from the beginning of a word
-    family : what follows from it: a metal corrodes, a fibre stretches
-    density : of the solid [kg/m³], None where it is that of no one material
+    name : name in files
+    words : regular expression for its common names, from the beginning of a word
+    family : metal (corrodes), fibre (stretches) or other
+    density : density of the solid [kg/m³], None if it varies
     potential : middle of its corrosion potential in sea water [V]
-    stiffnesses : what is published of ropes of it
+    stiffnesses : published stiffnesses of its ropes
+    strength : largest tensile strength of its rope wire or yarn [Pa], None if no ropes are made of
+        it
     """
 
     name: str
@@ -32,6 +34,7 @@ class Material:
     density: float | None = None
     potential: float | None = None
     stiffnesses: tuple[StiffnessLaw, ...] = ()
+    strength: float | None = None
 
 
 MATERIALS = (
@@ -40,7 +43,7 @@ MATERIALS = (
         r"(?:super )?duplex(?: stainless)?(?: steel)?|stainl\w*(?: steel)?|inox\w*|nirosta"
         r"|(?:a[24]|v[24]a|nitronic ?\d*|(?:aisi |ss ?)?(?:304|316)l?|1\.4\d\d\d?)\b(?: stainless)?"
         r"(?: steel)?",
-        "metal", STEEL_DENSITY, -0.05,
+        "metal", STEEL_DENSITY, -0.05, strength=2160e6,
     ),
     Material("titanium", r"titan\w*|ti\b", "metal", 4500.0, 0.0),
     Material("nickel alloy", r"(?:inconel|hastelloy|monel|nickel)\w*", "metal", 8400.0, 0.0),
@@ -50,36 +53,37 @@ MATERIALS = (
     Material(
         "steel",
         r"galv\w*\.?(?: steel)?|hdg|steel\w*|stahl\w*|acier|acero|nilspin",
-        "metal", STEEL_DENSITY, -0.66,
+        "metal", STEEL_DENSITY, -0.66, strength=2160e6,
     ),
     Material("aluminium", r"alumini?um\w*|alu\b", "metal", 2700.0, -0.88),
     Material("zinc", r"zin[ck]", "metal", 7140.0, -1.0),
     Material("lead", r"lead\b|blei|plomb", "metal", LEAD_DENSITY),
     Material(
         "nylon", r"nylon\w*|polyamide?\w*|perlon|pa6?\b", "fibre", 1140.0,
-        stiffnesses=((1.18e8, 0.0), (2.71e8, 0.0), (1.035e9, 1.15e9)),
+        stiffnesses=((1.18e8, 0.0), (2.71e8, 0.0), (1.035e9, 1.15e9)), strength=960e6,
     ),
     Material(
         "polyester", r"polyester\w*|dacron|terylene", "fibre", 1380.0,
-        stiffnesses=((1.09e9, 0.0), (5.42e8, 0.0), (4.312e9, 0.0)),
+        stiffnesses=((1.09e9, 0.0), (5.42e8, 0.0), (4.312e9, 0.0)), strength=1130e6,
     ),
     Material(
         "polypropylene", r"polypropyl\w*|pp\b", "fibre", 910.0,
-        stiffnesses=((1.06e9, 0.0), (2.71e8, 0.0)),
+        stiffnesses=((1.06e9, 0.0), (2.71e8, 0.0)), strength=620e6,
     ),
     Material(
         "HMPE", r"hmpe|uhmw\w*|dyneema|spectra|plasma|amsteel\w*", "fibre", 975.0,
-        stiffnesses=((7.85e10, 0.0), (3.248e10, 3.6456e10)),
+        stiffnesses=((7.85e10, 0.0), (3.248e10, 3.6456e10)), strength=3500e6,
     ),
     Material(
-        "polyethylene", r"polyethyl\w*|hdpe|pe\b", "fibre", 950.0, stiffnesses=((5.42e8, 0.0),)
+        "polyethylene", r"polyethyl\w*|hdpe|pe\b", "fibre", 950.0,
+        stiffnesses=((5.42e8, 0.0),), strength=620e6,
     ),
     Material("polyolefin", r"polyolefin\w*", "fibre"),
     Material(
         "aramid", r"aramid\w*|kevlar|technora|twaron", "fibre", 1440.0,
-        stiffnesses=((5.42e10, 0.0),),
+        stiffnesses=((5.42e10, 0.0),), strength=3100e6,
     ),
-    Material("Vectran", r"vectran|lcp\b", "fibre", 1410.0),
+    Material("Vectran", r"vectran|lcp\b", "fibre", 1410.0, strength=3200e6),
     Material("glass", r"(?:fibre|fiber)?glass|verre|glas\b|vitrovex", "other", 2230.0),
     Material("syntactic foam", r"(?:syntactic|pvc)? ?foam|syntactic|mousse", "other"),
     Material("concrete", r"concrete|b[ée]ton|cement", "other", CONCRETE_DENSITY),
@@ -92,13 +96,15 @@ MATERIALS = (
     Material("ceramic", r"ceramic\w*|alumina", "other"),
     Material("wood", r"wood\w*|bois", "other"),
 )  # fmt: skip
-"""Every material that a component can be made of.
+"""All materials of components.
 
-Densities are handbook figures. Potentials: the middle of the galvanic series in flowing sea water
-(ASTM G82); galvanised steel counts as steel, which its zinc protects. Stiffnesses of ropes: the
-tables of OrcaFlex, as MoorPy takes them over (nylon, polyester, polypropylene); the moduli of
-R. Dewey's Mooring Design & Dynamics, on πD²/4; MoorPy's default properties (nylon 5, polyester 14,
-HMPE 56 times its breaking load).
+Densities are handbook values. Potentials are the middle of the galvanic series in flowing sea water
+(ASTM G82); galvanised steel counts as steel, which its zinc protects. Stiffnesses of ropes are from
+the tables of OrcaFlex, as adopted by MoorPy (nylon, polyester, polypropylene); the moduli of R.
+Dewey's Mooring Design & Dynamics, on πD²/4; and MoorPy's default properties (nylon 5, polyester 14,
+HMPE 56 times its breaking load). Strengths are the highest rope grade of wire, 2160 MPa
+(EN 12385-2, grades 1770 to 2160), and the largest tenacity of industrial yarns (McKenna, Hearle and
+O'Hear 2004, Handbook of Fibre Rope Technology, chapter 2).
 """
 
 MATERIAL_NAMES = ", ".join(material.name for material in MATERIALS)
@@ -111,22 +117,22 @@ _INSULATED = re.compile(r"plastic|jacket|sheath|coated|insulat", re.IGNORECASE)
 
 
 def materials_in(text: str | None) -> tuple[Material, ...]:
-    """Return the materials that a text names, in its order; none of a text that names none."""
+    """Materials named in a text, in order of appearance."""
     found = _NAMED.finditer(text or "")
     return tuple(MATERIALS[int((match.lastgroup or "_0")[1:])] for match in found)
 
 
 def density_of(text: str | None) -> float | None:
-    """Return the density of the one material that a text names [kg/m³].
+    """Density of the single material named in a text [kg/m³].
 
-    None where it names none, or several that differ.
+    None if the text names no material, or several with different densities.
     """
     densities = {material.density for material in materials_in(text)}
     return densities.pop() if len(densities) == 1 else None
 
 
 def fibre_of(text: str | None) -> Material | None:
-    """Return the fibre of a rope, of a blend the first named; None of wire in a plastic jacket."""
+    """Fibre of a rope (the first fibre of a blend), or None for wire, with or without a jacket."""
     named = materials_in(text)
     if any(material.family == "metal" and material.name != "lead" for material in named):
         return None
@@ -134,9 +140,9 @@ def fibre_of(text: str | None) -> Material | None:
 
 
 def potential_of(text: str | None) -> float | None:
-    """Return the corrosion potential in sea water of the noblest metal named [V].
+    """Corrosion potential in sea water of the noblest metal named in a text [V].
 
-    None where no metal is named, or where it is insulated.
+    None if the text contains no metal, or if the metal is insulated.
     """
     if text is None or _INSULATED.search(text):
         return None
@@ -145,12 +151,12 @@ def potential_of(text: str | None) -> float | None:
 
 
 def published_stiffnesses(text: str | None, diameter: float) -> tuple[float, ...]:
-    """Return EA of a rope by everyone who gives one for its fibre [N], the softest first.
+    """All published values of EA for a rope's fibre [N], in increasing order.
 
     Parameters
     ----------
-    text : its material as a person writes it
-    diameter : [m]
+    text : its material in free text
+    diameter : diameter of the rope [m]
     """
     fibre = fibre_of(text)
     laws = fibre.stiffnesses if fibre else ()

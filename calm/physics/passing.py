@@ -1,13 +1,13 @@
-"""A line passed from its free end down, stage by stage: laws alone.
+"""March along a line from its free end down, stage by stage, in compiled functions.
 
-The march knows where the free end is and that nothing pulls it from above; it finds where the other
-end comes out and with what force. What is unknown, and how the end is brought to the anchor, is the
-business of `calm.solve`.
+The march starts at a given position of the free end, which no force acts on from above, and returns
+position and force at the other end. The search for the unknowns that bring this end to the anchor
+is the task of `calm.solve`.
 
-A cable or chain is passed in straight segments. If no cuts are given the march chooses them: each
-segment turns by about the angle step, is short against the water depth, and ends at a level of the
-profile. Given cuts keep their lengths, which makes the end of the line a smooth function of its
-start. A segment that comes to straddle a level is split there.
+A cable or chain is divided into straight segments. If no cuts are given the march chooses them:
+each segment rotates by about the angle step, is short against the water depth, and ends at a level
+of the profile. Given cuts keep their lengths, which makes the end of the line a smooth function of
+its start. A segment that straddles a level is split there.
 """
 
 from collections.abc import MutableSequence
@@ -35,7 +35,7 @@ from calm.physics.line import (
     write_element,
     write_node,
 )
-from calm.physics.profile import SLIVER, Sea, interval_at
+from calm.physics.profile import LEAST_PART, Sea, interval_at
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
 from calm.physics.seabed import lay_line
 from calm.physics.strumming import with_beat
@@ -44,38 +44,41 @@ from calm.physics.track import CABLE, ROD, Course
 MOST_SEGMENTS = 50_000
 
 Z, FX, FY, FZ, USED, NODES, LANDED, HANGING, GROUNDED, FAILURE = range(10)
-"""Where it stands in what a march leaves: height [m] and force above [N] of the end; how many
-segments were used, and nodes passed; the stage where the line came down on the seabed, -1 where it
-did not, how many nodes hang, and the unstretched length that lies [m]; why the march stopped, see
-`calm.physics.line`."""
+"""Indices into the results of a march: height [m] and force above [N] of the end; numbers of
+segments used and nodes passed; stage of the touchdown, -1 without; number of hanging nodes;
+unstretched length on the seabed [m]; reason why the march stopped, see `calm.physics.line`.
+"""
 LEFT = 10
 
 SHORT = 1e-6
-"""Length of a segment, as a share of the longest, that says nothing of the load of the next."""
+"""Length of a segment, as a share of the longest, below which its load is no estimate for the
+next.
+"""
 EXACT, ROUGH = 1e-12, 1e-3
-"""Change of the mean flow along a segment, as a share of the flow, from which the segment is split
-at a level: of a shape to be closed to the last digits, and of other marches."""
+"""Change of the mean flow along a segment, as a share of the flow, above which the segment is split
+at a level: at full precision, and in other marches.
+"""
 ROUNDING = 1e-12
-"""Part of a cable that is left by the rounding of sums, and passed over."""
+"""Length of cable, as a share, that remains by rounding of sums and is ignored."""
 
 
 class How(NamedTuple):
-    """Tell how a line is to be marched.
+    """Settings of a march.
 
     Attributes
     ----------
-    angle_step : how much a segment may turn [rad]
-    reach : the longest a segment may be [m]
-    near : how far from a load the water may be looked up [m]; 0 where all is to settle to the last
-        digits
-    stages : how many stages of the line are marched
-    lands : whether it comes down on the seabed: below the last buoyant piece, where the force
-        across that vanishes; the rest lies there
+    angle_step : largest rotation of a segment [rad]
+    reach : largest length of a segment [m]
+    near : allowed distance between a load and its water sample [m]; 0 requires full
+        precision
+    stages : number of stages to march
+    lands : whether it has a touchdown, below the last buoyant piece, where the normal force
+        on the seabed vanishes; the rest lies on the seabed
     bed : the seabed
-    given : whether the segments are given, else chosen
-    exact : whether segments are split at every level, if all is to settle to the last digits, and
-        not only where it counts
-    halves : whether each segment, or part of one, is passed in two halves
+    given : whether the segments are given, or chosen by the march
+    exact : whether segments are split at every level, at full precision, or only at levels that
+        matter
+    halves : whether each segment or part is integrated in two halves
     recording : whether every node and element is recorded
     """
 
@@ -106,11 +109,11 @@ def pass_line(
 
     Parameters
     ----------
-    out : length of the head that is to be above the surface [m], which sets the depth; 0 without
-    cuts, counts : the segments and how many each cable has, read where they are given, else
+    out : length of the pieces above the surface [m], which determines the depth; 0 without
+    cuts, counts : the segments, and their number for each cable, read if they are given, else
         written
-    record : where nodes and elements are written, if they are
-    left : filled with how it ended
+    record : array for nodes and elements
+    left : array for the results
     """
     if out > 0.0:
         depth = floating_depth(course.stages[0], course.loads, sea, out, how.near)
@@ -177,12 +180,12 @@ def pass_cable(
     record: Record,
     nodes: int,
 ) -> tuple[State, float, int, int, int]:
-    """Take the state down a stretch of cable, `place` among the cables.
+    """March along a stretch of cable, number `place` among the cables.
 
     Returns
     -------
-    The state; the unstretched length above its touchdown [m], -1 where it has none; how many
-    segments have been used and nodes passed so far; whether the march can go on.
+    The state; the unstretched length above its touchdown [m], -1 without; the numbers of segments
+    used and nodes passed so far; and the outcome.
     """
     cable, knots, vibration = course.cables[place], course.knots, course.vibration
     if vibration.beat != 0.0:
@@ -202,7 +205,7 @@ def pass_cable(
                 cable, knots, vibration, sea, state, how.angle_step, how.reach, share
             )
             cut = min(left, cut)
-            if left - cut < SLIVER * cut:
+            if left - cut < LEAST_PART * cut:
                 cut = left
         used += 1
         left, long, uncut = cut, 0.0, True
@@ -239,7 +242,7 @@ def pass_cable(
                 nodes, long = nodes + 1, long - way
             state, left, done, long = below, left - part, done + part, long + hung
             splits = left > 0.0 and hanging < 0.0
-            if splits and not how.given and part > SLIVER * cut:
+            if splits and not how.given and part > LEAST_PART * cut:
                 cut, left, splits = cut - left, 0.0, False
             if not splits or near == 0.0:
                 if how.recording:
@@ -272,9 +275,10 @@ def cut_evenly(
     length: float,
     reach: float,
 ) -> int:
-    """Segments of one length for a cable that is not marched; returns how many are used in all.
+    """Choose equal segments for a cable that is not marched, and return the total number of
+    segments used.
 
-    As far as there is room for them.
+    Segments are written only as far as the array extends.
     """
     if length <= 0.0:
         return used

@@ -1,4 +1,4 @@
-"""Current, density and viscosity by depth, as the march looks them up."""
+"""Current, density and viscosity by depth, as used by the march."""
 
 from collections.abc import MutableSequence, Sequence
 from functools import cached_property
@@ -6,22 +6,24 @@ from math import inf, isfinite, sqrt
 from typing import NamedTuple
 
 from calm.physics.compiled import packed, within
-from calm.physics.line import Floats, Water
+from calm.physics.line import Floats, Water, once_per_input
 from calm.physics.seawater import REFERENCE_DENSITY
 
-SLIVER = 0.01
-"""Part of a segment, as a share of it, at which no chosen segment ends."""
+LEAST_PART = 0.01
+"""Smallest part of a segment, as a share, at which a chosen segment may end."""
 
 
 NEAR_A_LEVEL = 1e-6
-"""Depth range beyond a level, as a share of that of the segment, that is never split off: in still
-water at the level any part counts."""
+"""Depth range beyond a level, as a share of the segment's depth range, below which a part is not
+split off. In water that is still at the level, every part would otherwise be split.
+"""
 
 
 class Interval(NamedTuple):
-    """The water between two levels: its origin [m], values there and what they grow by per metre.
+    """Water between two levels: depth of origin [m], values at the origin and their increase per
+    metre.
 
-    Current u, v, w [m/s] and density [kg/m³].
+    Values are the current u, v, w [m/s] and the density [kg/m³].
     """
 
     origin: float
@@ -36,7 +38,9 @@ class Interval(NamedTuple):
 
 
 class Stratum(NamedTuple):
-    """Kinematic viscosity from a depth on [m]: its value there [m²/s] and growth per metre."""
+    """Kinematic viscosity below a depth [m]: its value at the origin [m²/s] and its increase per
+    metre.
+    """
 
     top: float
     origin: float
@@ -45,15 +49,15 @@ class Stratum(NamedTuple):
 
 
 class Sea(NamedTuple):
-    """The water as the march takes it.
+    """Water profile in the form used by the march.
 
     Attributes
     ----------
     levels : depths that bound the intervals [m], from -inf to inf
-    intervals : the water in each
-    bends : at each level, see `find_bends` [1/m]
-    gravity : [m/s²]
-    strata : kinematic viscosity, from -inf down
+    intervals : water in each interval
+    bends : change of slope at each level, see `find_bends` [1/m]
+    gravity : acceleration of gravity [m/s²]
+    strata : kinematic viscosity, from depth -inf down
     """
 
     levels: Sequence[float]
@@ -64,9 +68,9 @@ class Sea(NamedTuple):
 
 
 def interval_at(levels: Sequence[float], depth: float, i: int) -> int:
-    """Index of the interval that holds `depth` [m], searched from interval `i`.
+    """Index of the interval that contains `depth` [m], searched from interval `i`.
 
-    Where a line has run off to infinity, that one.
+    Returns `i` if the line has diverged to infinity.
     """
     if not isfinite(depth):
         return i
@@ -79,7 +83,9 @@ def interval_at(levels: Sequence[float], depth: float, i: int) -> int:
 
 @within
 def water_at(sea: Sea, depth: float, i: int) -> tuple[float, float, float, float, int]:
-    """Current u, v, w [m/s], density [kg/m³] and interval at a depth [m], searched from one."""
+    """Current u, v, w [m/s], density [kg/m³] and interval at a depth [m], searched from interval
+    `i`.
+    """
     levels = sea.levels
     if not levels[i] <= depth < levels[i + 1]:
         i = interval_at(levels, depth, i)
@@ -106,15 +112,17 @@ def viscosity_at(sea: Sea, depth: float) -> float:
 def distance_to_bend(
     sea: Sea, depth: float, sinking: float, i: int, length: float, share: float
 ) -> float:
-    """Way from a depth to where the drag bends next, along a path that sinks so much per metre [m].
+    """Distance along a path to the next kink of the drag [m], for a path that descends by `sinking`
+    per metre.
 
-    That is at the next level; and before it where the flow is least, if it all but vanishes within
-    a length: |V| V bends there. Searched from interval `i`. A level no farther than `SLIVER` of the
-    length is as good as reached, unless a segment of that length has to be split there.
+    The kink is at the next level, or before it at the depth of minimum flow, if the flow almost
+    vanishes within a segment: |V| V has a kink there. The search begins at interval `i`. A level
+    within `LEAST_PART` of the length is skipped, unless a segment of that length has to be split
+    there.
 
     Parameters
     ----------
-    length : of a segment [m]
+    length : length of a segment [m]
     share : see `counts_across`
     """
     if sinking == 0.0 or not isfinite(sinking):
@@ -123,7 +131,7 @@ def distance_to_bend(
     i = interval_at(sea.levels, depth, i)
     k = i + 1 if down else i
     gap = (sea.levels[k] - depth) / sinking
-    while gap <= SLIVER * length:
+    while gap <= LEAST_PART * length:
         off = abs(sea.levels[k] - depth)
         if counts_across(sea, k, min(off, deep - off), deep, share):
             break
@@ -134,7 +142,7 @@ def distance_to_bend(
     if square > 0.0:
         growth = row.u * row.du + row.v * row.dv + row.w * row.dw
         way = (row.origin - growth / square - depth) / sinking
-        if SLIVER * shorter < way < shorter:
+        if LEAST_PART * shorter < way < shorter:
             least = row.u * row.u + row.v * row.v + row.w * row.w - growth * growth / square
             if least < square * shorter * shorter * sinking * sinking:
                 return way
@@ -142,13 +150,13 @@ def distance_to_bend(
 
 
 def in_interval(sea: Sea, i: int, start: float, end: float) -> bool:
-    """Whether two depths are in an interval [m]."""
+    """Whether two depths [m] are in an interval."""
     upper, lower = sea.levels[i], sea.levels[i + 1]
     return upper <= start < lower and upper <= end < lower
 
 
 def level_within(sea: Sea, hint: int, start: float, end: float, share: float) -> int:
-    """Index of the first level that a straight segment has to be split at; 0 if there is none.
+    """Index of the first level at which a straight segment has to be split, 0 if there is none.
 
     Parameters
     ----------
@@ -169,12 +177,12 @@ def level_within(sea: Sea, hint: int, start: float, end: float, share: float) ->
 
 @within
 def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> bool:
-    """Whether a segment that extends beyond a level needs to be split there.
+    """Whether a segment that extends beyond a level has to be split there.
 
-    The water at the middle of a segment stands for the mean along it. If the slope of the current
-    changes by b at a level, the mean is off by b·off²/(2·length): twice that may be at most `share`
-    of the flow at the level. The same holds for the density, which jumps where a tow leaves the
-    water.
+    The water at the midpoint of a segment is used for the mean along it. If the slope of the
+    current changes by b at a level, the mean is off by b·off²/(2·length): twice that may be at most
+    `share` of the flow at the level. The same holds for the density, which jumps where a tow leaves
+    the water.
 
     Parameters
     ----------
@@ -186,13 +194,12 @@ def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> 
 
 
 def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> None:
-    """Fill in by how much the slopes of current and density change at each level, over the current
-    and the density there [1/m].
+    """Compute the relative change of the slopes of current and density at each level [1/m].
 
     Parameters
     ----------
-    intervals : of the water, whose k-th begins at level k
-    bends : one for each level, from -inf to inf
+    intervals : intervals of the water; interval k begins at level k
+    bends : results for each level, from -inf to inf
     """
     bends[0] = 0.0
     for k in range(1, len(intervals)):
@@ -208,7 +215,7 @@ def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> 
 
 
 class Profile:
-    """A `Water` laid out for the march, extended beyond its first and last level."""
+    """A `Water` prepared for the march, extended beyond its first and last level."""
 
     def __init__(self, water: Water) -> None:
         depths = water.level.tolist()
@@ -240,20 +247,24 @@ class Profile:
 
     @cached_property
     def packed(self) -> Sea:
-        """Return the same as compiled laws take it."""
+        """The profile in the array form used by compiled code."""
         sea: Sea = packed(self.sea)
         return sea
 
     def excess_at(self, depth: float) -> float:
-        """Return what a displaced cubic metre lifts more at a depth than in reference water
+        """Additional buoyancy per displaced cubic metre at a depth, relative to reference water
         [N/m³].
         """
         *_, density, _ = water_at(self.sea, depth, 0)
         return (density - REFERENCE_DENSITY) * self.sea.gravity
 
 
+profile_of = once_per_input(Profile)
+"""Return the `Profile` of a `Water`."""
+
+
 def _values_and_slopes(depths: list[float], column: Floats) -> tuple[list[float], list[float]]:
-    """Value at its origin and slope of every interval; constant in the first and the last."""
+    """Value at the origin and slope of every interval, constant in the first and the last."""
     values = column.tolist()
     slopes = [
         (values[i + 1] - values[i]) / (depths[i + 1] - depths[i]) for i in range(len(depths) - 1)

@@ -1,7 +1,8 @@
-"""Referee of the march: what every element of a shape is loaded with, and how it should hang.
+"""Independent check of the march: load on every element of a shape, and its moment balance.
 
-All follows from the coordinates. The flow is looked up, and drag and friction are written, apart
-from the laws of the march; only measured curves (of stretch, of drag, of strumming) are the same.
+All results follow from the coordinates. The lookup of the flow and the laws of drag and friction
+are independent implementations; only measured curves (stretch, drag, strumming) are shared with the
+march.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -17,9 +18,11 @@ from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.strumming import Vibration, strummed
 
 ROUNDING = 32.0 * float_info.epsilon
-"""Of a coordinate, or a force, as a share of the greatest."""
+"""Rounding error of a coordinate, or a force, as a share of the largest."""
 SETTLED = 1e-10
-"""Share of its load to which the passes settle a segment: 4e-11 of one that stretches by 2 %."""
+"""Convergence of a segment's load in the passes, as a share: 4e-11 for a segment with a stretch of
+2 %.
+"""
 
 
 class RefereeBody(NamedTuple):
@@ -29,8 +32,8 @@ class RefereeBody(NamedTuple):
     ----------
     flexible, length, buoyancy, volume, normal_drag, tangential_drag, directional, compliance,
     thinning, lift, push_east, push_north, diameter : as in `Line`
-    smooth, lengthening : diameter [m] and lengthening of its `DragCurve`; 0 where it has none
-    first_knot, end_knot : of its elongation curve; the same where it has none
+    smooth, lengthening : diameter [m] and lengthening of its `DragCurve`; 0 without a curve
+    first_knot, end_knot : knots of its elongation curve; equal without a curve
     """
 
     flexible: int
@@ -53,9 +56,10 @@ class RefereeBody(NamedTuple):
 
 
 class Moored(NamedTuple):
-    """A line and its water: the pieces and, after them, the clamps; `head` pieces are one rod.
+    """A line and its water: the pieces, followed by the clamps. The first `head` pieces form one
+    rod.
 
-    `friction` is the number of a law, `frequency` that of the cables that strum [Hz].
+    `friction` is the number of a law, and `frequency` is that of the strumming cables [Hz].
     """
 
     bodies: Sequence[RefereeBody]
@@ -80,9 +84,9 @@ class RefereeShape(NamedTuple):
 
     Attributes
     ----------
-    record : its nodes, and at each the element that ends there: see `calm.physics.line`
-    nodes, hanging : how many nodes there are, and elements above the touchdown
-    first, last : node of every piece
+    record : its nodes, and for each node the element that ends there, see `calm.physics.line`
+    nodes, hanging : numbers of nodes, and of elements above the touchdown
+    first, last : first and last node of every piece
     """
 
     record: Record
@@ -107,7 +111,8 @@ def element_loads(
 ) -> None:
     """Write buoyancy and drag of every element to the columns of `loads` [N].
 
-    A rigid piece's are those at its own middle, spread over its elements by length.
+    The load of a rigid piece is computed at its midpoint and distributed over its elements by
+    length.
     """
     east, north, up = loads[0], loads[1], loads[2]
     for i in range(shape.nodes - 1):
@@ -120,7 +125,7 @@ def element_loads(
             amount = cut
         elif clamp < 0:
             top, bottom = shape.first[piece], shape.last[piece]
-            # of those without length the last has it
+            # if it has no length, the last element takes the whole load
             amount = 1.0 if bottom == i + 1 else 0.0
             if body.length > 0.0:
                 amount = cut / body.length
@@ -147,13 +152,15 @@ def element_loads(
 
 
 def chord(shape: RefereeShape, top: int, bottom: int) -> Vector:
-    """From one node to another [m]."""
+    """Vector from one node to another [m]."""
     x, y, z = shape.record[0], shape.record[1], shape.record[2]
     return x[bottom] - x[top], y[bottom] - y[top], z[bottom] - z[top]
 
 
 def rigid_axis(moored: Moored, shape: RefereeShape, piece: int) -> Vector:
-    """Along the rod of a rigid piece; where it has no length, against the force at its ends."""
+    """Axis of the rod of a rigid piece, or the direction opposite to the force at its ends if the
+    rod has no length.
+    """
     top, bottom = rod_nodes(moored, shape, piece)
     x, y, z = chord(shape, top, bottom)
     if x == 0.0 and y == 0.0 and z == 0.0:
@@ -230,7 +237,7 @@ def drag_on(
 
 
 def varied(moored: Moored, body: RefereeBody, depth: float, speed: float) -> float:
-    """Return how many times its constant drag a body has at a speed across it [m/s]."""
+    """Ratio of a body's drag to its constant drag, at a speed normal to its axis [m/s]."""
     if body.smooth == 0.0:
         return 1.0
     viscosity = interpolated(moored.viscosity_level, moored.viscosity, depth)
@@ -246,9 +253,9 @@ def strumming(
     w: float,
     across: float,
 ) -> float:
-    """Return how much strumming raises the normal drag of a cable above that at rest.
+    """Factor by which strumming increases the normal drag of a cable.
 
-    `across` : speed of the current across its axis [m/s]
+    `across` is the speed of the current normal to its axis [m/s].
     """
     if across <= 0.0:
         return 1.0
@@ -263,11 +270,11 @@ def worst_moment(
 ) -> float:
     """Largest angle between an element's axis and the mean of the forces at its ends [rad].
 
-    The forces follow from the loads. Or, where that is larger, departure of a cable's strain from
-    what these forces ask for. Both beyond the rounding of the coordinates; of what hangs. Towards a
-    limp end the tension vanishes, and with it what sets the direction: there counts what the force
-    across the line is beyond the rounding of the greatest tension and the load that passes leave
-    unsettled.
+    The forces follow from the loads. The result also covers the deviation of a cable's strain from
+    the strain at these forces, if this is larger. Both are counted beyond the rounding of the
+    coordinates, for hanging elements only. Towards a slack end the tension vanishes, and the
+    direction becomes undetermined. There only the part of the normal force counts that exceeds the
+    rounding of the largest tension and the load left unconverged by the passes.
     """
     rounding = ROUNDING * greatest_size(shape, 0)
     hanging = shape.hanging
@@ -307,7 +314,7 @@ def worst_moment(
 
 
 def greatest_size(shape: RefereeShape, first: int) -> float:
-    """Of places, the greatest of any coordinate [m]; of forces, from column 3, of any size [N]."""
+    """Largest absolute coordinate [m] (first column 0), or largest force [N] (first column 3)."""
     greatest = 0.0
     for n in range(shape.nodes):
         x, y, z = shape.record[first][n], shape.record[first + 1][n], shape.record[first + 2][n]
@@ -319,7 +326,9 @@ def greatest_size(shape: RefereeShape, first: int) -> float:
 
 
 def expected_strain(moored: Moored, body: RefereeBody, middle: float, half: float) -> float:
-    """Strain of a segment whose tension goes evenly from `middle` - `half` to their sum [N]."""
+    """Strain of a segment whose tension varies linearly from `middle` - `half` to `middle` + `half`
+    [N].
+    """
     if body.first_knot == body.end_knot:
         return body.compliance * middle
     return mean_curve_strain(moored.knots, body.first_knot, body.end_knot, middle, half)
@@ -334,9 +343,9 @@ def rod_moment(
     fy: float,
     fz: float,
 ) -> float:
-    """Angle between a rod of several elements and the force that turns it [rad].
+    """Angle between a rod of several elements and the force that rotates it [rad].
 
-    That is the force above it and, of every load, the share that its lever gives.
+    This is the force above the rod plus the share of every load given by its lever.
     """
     dx, dy, dz = chord(shape, top, bottom)
     length = sqrt(dx * dx + dy * dy + dz * dz)
@@ -344,7 +353,7 @@ def rod_moment(
         return 0.0
     for i in range(top, bottom):
         x, y, z = chord(shape, top, i)
-        if shape.record[7][i + 1] < 0:  # a piece's load is at its own middle
+        if shape.record[7][i + 1] < 0:  # the load of a piece acts at its midpoint
             piece = int(shape.record[6][i + 1])
             first, last = shape.first[piece], shape.last[piece]
             x, y, z = chord(shape, top, first)
@@ -356,7 +365,7 @@ def rod_moment(
 
 
 def angle_against(x: float, y: float, z: float, fx: float, fy: float, fz: float) -> float:
-    """Angle between an axis and a force reversed [rad]; 0 where either vanishes."""
+    """Angle between an axis and a reversed force [rad]; 0 if either vanishes."""
     cx, cy, cz = y * fz - z * fy, z * fx - x * fz, x * fy - y * fx
     across = sqrt(cx * cx + cy * cy + cz * cz)
     along = -(x * fx + y * fy + z * fz)

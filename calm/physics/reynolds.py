@@ -1,8 +1,8 @@
 """Drag coefficients of smooth shapes against Reynolds number, drag crisis included.
 
-They hold for clean, smooth bodies in smooth flow. Paint, fittings and growth move the crisis or
-remove it: a 1 m float in 0.5 m/s comes out at Cx = 0.1 as a smooth sphere, where 0.5 to 0.65 is
-used for real ones. So nothing takes these curves unless it is declared smooth.
+They hold for clean, smooth bodies in smooth flow. Paint, fittings and biofouling shift the crisis
+or remove it: a 1 m float in 0.5 m/s has Cx = 0.1 as a smooth sphere, while 0.5 to 0.65 is used for
+real floats. So these curves apply only to components declared smooth.
 """
 
 from dataclasses import dataclass
@@ -41,11 +41,11 @@ _CREEPING, _SLOWEST = 0.1, 1.0
 _SCAN = 16
 
 LARGEST_SPHERE, LARGEST_CYLINDER = 1e6, 4.94e6
-"""Reynolds numbers where the curves end; beyond, they are held."""
+"""Reynolds numbers at the ends of the curves; the coefficients are constant above."""
 
 
 def cylinder_coefficient(reynolds: float) -> float:
-    """Cn of a long smooth cylinder in flow across its axis.
+    """Cn of a long smooth cylinder in flow normal to its axis.
 
     Parameters
     ----------
@@ -54,8 +54,8 @@ def cylinder_coefficient(reynolds: float) -> float:
     Wieselsberger's measurements (NACA report 121) up to 1.61e5, where Cn is 1.18, DNV's
     recommendation (DNV-RP-C205, figure 6-6, smooth) from 2.1e5, where it is 1.21, joined linearly
     in log Re. From 3e4 to 1.61e5 the measurements lie 2 to 4 % below the recommendation. In the
-    crisis the latter falls later, to the safe side, and goes on to higher Re, so there it is the
-    one taken. Roshko (1961) found 0.7 above 3.5e6, where this comes to 0.65 to 0.68.
+    crisis the recommendation falls later, on the safe side, and extends to higher Re, so it is used
+    there. Roshko (1961) found 0.7 above 3.5e6, compared with 0.65 to 0.68 here.
     """
     return interpolated(_CYLINDER_AT, _CYLINDER_CN, log(max(reynolds, _SLOWEST)))
 
@@ -84,12 +84,12 @@ def sphere_coefficient(reynolds: float) -> float:
 
 
 class Smooth(NamedTuple):
-    """Hold what of a smooth sphere or cylinder, and of the water about it, sets its drag.
+    """Properties of a smooth sphere or cylinder and of the water that determine its drag.
 
     Attributes
     ----------
     reynolds : its Reynolds number at 1 m/s [-]
-    lengthening : of a cylinder, κ(L/D) above the crisis over that below; 0 of a sphere
+    lengthening : for a cylinder, κ(L/D) above the crisis divided by κ below it; 0 for a sphere
     """
 
     reynolds: float
@@ -97,9 +97,10 @@ class Smooth(NamedTuple):
 
 
 def drag_variation(smooth: Smooth, speed: float) -> float:
-    """Drag at a speed across the axis [m/s] over that by the constant coefficient.
+    """Ratio of the drag at a speed normal to the axis [m/s] to the drag with the constant
+    coefficient.
 
-    That is Cx = 0.5 of a sphere or Cn = 1.2 κ of a cylinder.
+    The constant coefficient is Cx = 0.5 for a sphere and Cn = 1.2 κ for a cylinder.
     """
     reynolds = smooth.reynolds * speed
     if smooth.lengthening == 0.0:
@@ -116,19 +117,19 @@ def drag_variation(smooth: Smooth, speed: float) -> float:
 def varying_share(
     ax: float, ay: float, az: float, k: float, smooth: Smooth, vx: float, vy: float, vz: float
 ) -> float:
-    """`drag_share` of a smooth element, whose coefficient varies with the speed across it.
+    """`drag_share` of a smooth element, whose coefficient varies with the speed normal to its axis.
 
     Parameters
     ----------
-    k : half its normal drag coefficient where its factor f is 1 [N/(m/s)²]
-    smooth : by which `drag_variation` gives f > 0, continuous, of |Vn| [m/s]
+    k : half its normal drag coefficient for f = 1 [N/(m/s)²]
+    smooth : body for which `drag_variation` gives f > 0, a continuous function of |Vn| [m/s]
 
     Returns
     -------
-    c = k f(s) s [N/(m/s)] for the smallest root s = |Vn| of s |A + k f(s) s V| = |V × A|, told
-    apart from others to |V|/16. In the drag crisis, where less speed makes more drag, an element
-    may lean in the slow flow along it or stand in the fast flow across it; the smallest root, the
-    more drag, is the one reached when the current grows from rest.
+    c = k f(s) s [N/(m/s)] for the smallest root s = |Vn| of s |A + k f(s) s V| = |V × A|; roots
+    less than |V|/16 apart are not distinguished. In the drag crisis, where a lower speed causes
+    more drag, an element may be inclined in slow normal flow or upright in fast normal flow. The
+    smallest root, with more drag, is the one reached when the current grows from rest.
     """
     speed = sqrt(vx * vx + vy * vy + vz * vz)
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
@@ -164,7 +165,7 @@ def varying_share(
 def _turned(
     ax: float, ay: float, az: float, k: float, s: float, vx: float, vy: float, vz: float
 ) -> float:
-    """Its left side at k and s: s |A + k s V|."""
+    """Left side of the equation at k and s: s |A + k s V|."""
     c = k * s
     x, y, z = ax + c * vx, ay + c * vy, az + c * vz
     return s * sqrt(x * x + y * y + z * z)
@@ -172,12 +173,12 @@ def _turned(
 
 @dataclass(frozen=True)
 class DragCurve:
-    """Tell how the drag of a smooth sphere or cylinder goes with the Reynolds number.
+    """Variation of the drag of a smooth sphere or cylinder with the Reynolds number.
 
     Attributes
     ----------
-    diameter : [m]
-    slenderness : length over diameter of a cylinder [-]; None of a sphere
+    diameter : diameter of the body [m]
+    slenderness : length over diameter of a cylinder [-]; None for a sphere
     """
 
     diameter: float
@@ -185,16 +186,16 @@ class DragCurve:
 
     @property
     def largest_reynolds(self) -> float:
-        """The Reynolds number up to which the curve is known."""
+        """Largest Reynolds number of the curve."""
         return LARGEST_SPHERE if self.slenderness is None else LARGEST_CYLINDER
 
     def factor(self, reynolds: float) -> float:
-        """`drag_variation` at a Reynolds number."""
+        """Ratio of the drag to the constant drag at a Reynolds number (see `drag_variation`)."""
         return drag_variation(Smooth(reynolds, self.lengthening), 1.0)
 
     @cached_property
     def lengthening(self) -> float:
-        """As in `Smooth`."""
+        """Ratio of κ above the crisis to κ below it (see `Smooth`)."""
         if self.slenderness is None:
             return 0.0
         below = finite_length_factor(self.slenderness)
@@ -202,7 +203,7 @@ class DragCurve:
 
 
 def finite_length_factor_above(slenderness: float) -> float:
-    """κ above the crisis, from Re = 2.2e5; up to 1.8e5 `drag.finite_length_factor` holds.
+    """Factor κ above the crisis, from Re = 2.2e5 (`drag.finite_length_factor` applies up to 1.8e5).
 
     Parameters
     ----------

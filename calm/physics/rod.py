@@ -1,4 +1,6 @@
-"""A rigid body in moment equilibrium: one piece with its clamps, or the head of the line."""
+"""A rigid body in moment equilibrium: a piece with its clamps, or the rigid pieces at the head of
+the line.
+"""
 
 from collections.abc import Sequence
 from math import inf
@@ -30,7 +32,7 @@ def pass_clamp(
     recording: bool,
     nodes: int,
 ) -> tuple[State, float, int]:
-    """Take the state past an instrument clamped on a cable: as `pass_rod`."""
+    """March past an instrument clamped on a cable (see `pass_rod`)."""
     x, y, z, fx, fy, fz, tz, level = state
     qx, qy, qz = force_at(load, sea, -z, level, 0.0, 0.0, -1.0)
     sx, sy, sz, hanging = fx + qx, fy + qy, fz + qz, -1.0
@@ -56,19 +58,20 @@ def pass_rod(
     recording: bool,
     nodes: int,
 ) -> tuple[State, float, int]:
-    """Take the state from the top of a rod to its bottom.
+    """March from the top of a rod to its bottom.
 
     Parameters
     ----------
-    lands : whether the seabed, `bed`, carries what the line cannot: at the rod's lower end, or all
-        along it where it would tip over
+    lands : whether the seabed, `bed`, supports loads that the line cannot carry: at the rod's lower
+        end, or along the whole rod if it would tip over
     near : as in `rod_axis`
-    record, recording, nodes : where to write it, if at all, and how many nodes are there
+    record, recording, nodes : array for the record, whether to record, and the number of nodes so
+        far
 
     Returns
     -------
-    The state, its rise `NO_BALANCE` where the rod has none; 0 where the rod lies on the seabed, inf
-    where it stands on it, -1 where it does neither; and how many nodes there are.
+    The state, its rise `NO_BALANCE` if the rod has no balance; 0 if the rod lies on the seabed, inf
+    if it stands on the seabed, else -1; and the number of nodes.
     """
     x, y, z, fx, fy, fz, before, level = state
     tx, ty, tz = rod_axis(rod, loads, sea, state, near)
@@ -94,10 +97,10 @@ def pass_rod(
 
 
 def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float, near: float) -> float:
-    """Depth of the free end that has a length `out` of the head above the surface [m].
+    """Depth of the free end at which a length `out` of the head is above the surface [m].
 
-    The head of the line leans as its loads have it, and they depend a little on its depth. Where it
-    finds no balance it is upright.
+    The inclination of the head follows from its loads, which depend slightly on its depth. The head
+    is upright if it has no balance.
     """
     depth = -out
     for _ in range(_LEANINGS):
@@ -122,9 +125,10 @@ def _record(
     record: Record,
     nodes: int,
 ) -> int:
-    """Record a rod piece by piece; a piece's own load counts as spread along it, a clamp's not.
+    """Record a rod piece by piece; the load of a piece is distributed along it, that of a clamp is
+    concentrated.
 
-    The loads of a rod go down it: of every piece its own, then its clamps.
+    The loads of a rod are listed downwards: for every piece its own load, then its clamps.
     """
     x, y, top, fx, fy, fz, _, level = state
     z = top

@@ -1,5 +1,5 @@
-"""Lean of a rigid body, by the forces of the water on it and its clamps: the axis about whose
-middle no force turns it.
+"""Inclination of a rigid body under the forces of the water on it and its clamps: the axis at which
+the moment about its midpoint vanishes.
 """
 
 from collections.abc import Sequence
@@ -19,22 +19,21 @@ _NOTHING = 1e-12
 
 
 def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: float) -> Vector:
-    """Axis for which the moments about the rod's middle vanish.
+    """Compute the axis at which the moments about the rod's midpoint vanish.
 
-    With several loads q_i at distances a_i from the top the rule of one load becomes
-    t ∥ F + Σ (1 - a_i/L) q_i. The normal drags are gathered into one current and one coefficient
+    t ∥ F + Σ (1 - a_i/L) q_i. The normal drags are combined into one current and one coefficient
     that reproduce their sum at the present axis, so each pass solves a single element exactly,
-    its drag curve included, and only shear along the rod is left to the passes; where several
-    drags follow curves, these are, too.
+    including its drag curve, and only shear along the rod is left to the passes. If several drags
+    follow curves, these are left to the passes, too.
 
     Parameters
     ----------
-    near : how far a load may be from where the water is looked up [m]; 0 lets the axis settle to
-        the last digits
+    near : allowed distance between a load and its water sample [m]; 0 requires full
+        precision
 
     Returns
     -------
-    The axis; its rise is `NO_BALANCE` where there is none.
+    The axis; its rise is `NO_BALANCE` if there is none.
     """
     _, _, _, fx, fy, fz, rise, _ = state
     tx, ty, tz = 0.0, 0.0, rise
@@ -69,9 +68,9 @@ def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: fl
 def lone_axis(
     load: Load, sea: Sea, state: State, tx: float, ty: float, tz: float, settled: float
 ) -> Vector:
-    """The axis of a rod of one load of constant drag, from another one, in few passes.
+    """Axis of a rod with a single load of constant drag, in few passes from another axis.
 
-    Its rise is `NO_BALANCE` where they do not settle.
+    Its rise is `NO_BALANCE` if the passes do not converge.
     """
     _, _, z, fx, fy, fz, _, level = state
     for _ in range(_FEW):
@@ -86,7 +85,7 @@ def lone_axis(
         change = abs(rise - tz)
         tx, ty, tz = x, y, rise
         if change < settled:
-            # pulled, and not pushed
+            # under tension, not compression
             if (ax + c * u) * x + (ay + c * v) * y + (az + c * w) * rise < 0.0 or fz <= 0.0:
                 return x, y, rise
             break
@@ -94,14 +93,14 @@ def lone_axis(
 
 
 def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
-    """The axis of `rod_axis` where the water changes so much along the rod that passes stall.
+    """Axis of a rod in water that changes so much along the rod that `rod_axis` does not converge.
 
-    The depths of the loads, and with them the water, follow from the axis's rise alone. For the
-    water at a rise s the axis that balances has a rise r(s) between -1 and 1, so that r(s) - s
-    falls through zero in between, which is bisected. Where r jumps there, as it does for a float
-    that lends nothing of its buoyancy where the current begins, no force turns it.
+    The depths of the loads, and thus the water, follow from the rise of the axis alone. For the
+    water at a rise s, the axis in balance has a rise r(s) between -1 and 1, so r(s) - s falls
+    through zero in between, which is found by bisection. If r jumps there, as for a float without
+    net buoyancy at the upper edge of a current, the moment on the rod vanishes.
 
-    Where a force does, its rise is `NO_BALANCE`.
+    If the moment does not vanish, the rise is `NO_BALANCE`.
     """
     low, high = -1.0, 1.0
     tx, ty, tz = 0.0, 0.0, -1.0
@@ -132,7 +131,7 @@ def _axis_in_water_at(
     ty: float,
     tz: float,
 ) -> Vector:
-    """The axis that balances in the water of the depths that the loads have at a rise."""
+    """Axis in balance for the water at the depths of the loads at a given rise."""
     damping, earlier = 1.0, inf
     for _ in range(_PASSES):
         x, y, z = _following_axis(rod, loads, sea, state, rise, tx, ty, tz)
@@ -153,7 +152,9 @@ def _axis_in_water_at(
 def _turning(
     rod: Stage, loads: Sequence[Load], sea: Sea, state: State, tx: float, ty: float, tz: float
 ) -> float:
-    """The force that turns a rod of axis t about its middle, as a share of its lifts and drags."""
+    """Force that rotates a rod of axis t about its midpoint, as a share of its lift and drag
+    forces.
+    """
     _, _, z, fx, fy, fz, _, level = state
     own = 0.0
     for i in range(rod.first, rod.first + rod.size):
@@ -174,9 +175,9 @@ def _following_axis(
     ty: float,
     tz: float,
 ) -> Vector:
-    """The axis of a rod whose drags are gathered at another one, t: see `rod_axis`.
+    """Axis of a rod whose drags are combined at another axis, t (see `rod_axis`).
 
-    The water is looked up where the loads are at a `rise`.
+    The water is sampled at the positions of the loads for a `rise`.
     """
     _, _, z, fx, fy, fz, _, level = state
     ax, ay, az = fx, fy, fz
@@ -230,7 +231,7 @@ def _following_axis(
 
 @within
 def load_lift(load: Load, squared: float, density: float, gravity: float) -> float:
-    """Buoyancy of a rigid piece or clamp and its lift in a current of a squared speed [N]."""
+    """Buoyancy of a rigid piece or clamp, plus its lift in a current of a squared speed [N]."""
     lift = load.buoyancy + (density - REFERENCE_DENSITY) * gravity * load.volume
     return lift + density / REFERENCE_DENSITY * load.lift * squared
 
@@ -248,11 +249,11 @@ def load_force(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Buoyancy, drag, lift and wind of a rigid piece or clamp of axis t [N].
+    """Buoyancy, drag, lift and wind force on a rigid piece or clamp of axis t [N].
 
     Parameters
     ----------
-    varied : how many times its constant normal drag it has: see `load_variation`
+    varied : ratio of its normal drag to the constant normal drag, see `load_variation`
     """
     scale, squared = density / REFERENCE_DENSITY, u * u + v * v + w * w
     kn = varied * scale * load.normal_drag
@@ -268,8 +269,8 @@ def load_force(
 def load_variation(
     load: Load, viscosity: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
 ) -> float:
-    """Return how many times its constant normal drag a load of axis t has, in water of a
-    viscosity.
+    """Ratio of the normal drag of a load with axis t to its constant normal drag, for a viscosity
+    [m²/s].
     """
     if load.diameter == 0.0:
         return 1.0
@@ -283,7 +284,7 @@ def load_variation(
 def force_at(
     load: Load, sea: Sea, depth: float, level: int, tx: float, ty: float, tz: float
 ) -> Vector:
-    """`load_force` at a depth [m] of the sea, searched from an interval."""
+    """`load_force` at a depth [m] of the sea, searched from interval `level`."""
     u, v, w, density, _ = water_at(sea, depth, level)
     varied = 1.0
     if load.diameter > 0.0:

@@ -1,5 +1,4 @@
-"""The part of a line that lies on the seabed, a plane: straight, held by friction, out of the
-current."""
+"""The part of a line on the seabed, a plane: straight, held by friction, and without drag."""
 
 from collections.abc import MutableSequence, Sequence
 from math import sqrt
@@ -15,7 +14,7 @@ from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.track import CABLE, CLAMP, CableStretch, Course
 
 NOTHING = 1e-9
-"""Pull at a touchdown, as a share of all loads, that has no direction for the audit."""
+"""Smallest pull at a touchdown, as a share of all loads, that has a direction in the audit."""
 
 
 def lay_line(
@@ -28,20 +27,21 @@ def lay_line(
     recording: bool,
     nodes: int,
 ) -> tuple[State, int, float]:
-    """Lay a line from its touchdown to the anchor; returns the end's state, the nodes and the
-    length that lies [m].
+    """Lay a line on the seabed from its touchdown to the anchor, and return the state at its end,
+    the number of nodes, and the length on the seabed [m].
 
-    It lies straight along the force at touchdown, in the plane of the seabed. Down the line its
-    tension falls by friction times what presses on the bed, and by the weight's share down the
-    slope, or grows where it leads up; it never falls below nothing. There is no drag. A line that
-    nothing pulls lies across the slope. What the touchdown itself could not carry, a rigid piece or
-    a clamp, rests there at a point.
+    The line is straight, along the force at the touchdown, in the plane of the seabed. Down the
+    line its tension falls by friction times the contact force, and by the downslope component of
+    the weight, or grows if the line leads upslope; it is never negative. There is no drag. A slack
+    line lies across the slope. A rigid piece or a clamp that the line at the touchdown could not
+    carry rests on the seabed at a point.
 
     Parameters
     ----------
-    stage, hanging : where the line came down: the unstretched length of that stage above the seabed
-        [m], of a rod or clamp inf, it stands there, or 0, it lies there
-    record, recording, nodes : where to write it, if at all, and how many nodes are there
+    stage, hanging : stage of the touchdown, and its unstretched length above the seabed
+        [m]; for a rod or clamp inf if it stands on the seabed, 0 if it lies there
+    record, recording, nodes : array for the record, whether to record, and the number of nodes so
+        far
     """
     x, y, z, fx, fy, fz, tz, level = state
     tension = sqrt(fx * fx + fy * fy + fz * fz)
@@ -73,7 +73,8 @@ def lay_line(
                 write_node(record, nodes, (x, y, z, fx, fy, fz, tz, level))
             nodes, grounded = nodes + 1, grounded + length
         elif hung == 0.0:
-            # the loads of a rod go down it: of every piece its own, spread along it, then clamps
+            # the loads of a rod are listed downwards: for every piece its own, distributed along
+            # it, then its clamps
             reached, end, own, length, last = 0.0, 0.0, 0.0, 0.0, first + here.size - 1
             for k in range(first, last + 1):
                 load = course.loads[k]
@@ -99,8 +100,9 @@ def lay_line(
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:
-    """Share of a part that the tension reaches into against friction, up to `hold`, and what is
-    left of it at its end [N]."""
+    """Share of a part in which the tension acts against friction up to `hold`, and the tension at
+    the end of the part [N].
+    """
     if hold <= tension:
         return 1.0, tension - hold
     return tension / hold, 0.0
@@ -109,7 +111,7 @@ def held_back(tension: float, hold: float) -> tuple[float, float]:
 def lying_strain(
     cable: CableStretch, knots: Sequence[Knot], pulled: float, tension: float, left: float
 ) -> float:
-    """Mean strain of a part where the tension falls evenly over a share `pulled` of its length."""
+    """Mean strain of a part whose tension falls linearly over a share `pulled` of its length."""
     middle = 0.5 * (tension + left)
     if cable.first_knot == cable.end_knot:
         return pulled * cable.compliance * middle
@@ -124,15 +126,15 @@ Forces = NDArray[np.floating[Any]]
 def required_weight(
     vertical: Forces | float, horizontal: Forces | float, factor: float, friction: float
 ) -> Forces:
-    """Return the weight in water that keeps a dead-weight anchor where it is [N].
+    """Submerged weight that a dead-weight anchor needs to stay in position [N].
 
-    It is never below 0: an anchor that the line presses down on the bed needs none.
+    It is never negative: an anchor that is pressed on the seabed by the line needs none.
 
     Parameters
     ----------
-    vertical, horizontal : pull of the line on the anchor [N], + up; floats or columns of them
-    factor : safety on both the lift and the slide [-], 1.5 in practice
-    friction : of the anchor on the bed [-], 0.6 in practice
+    vertical, horizontal : load of the line on the anchor [N], positive up; floats or arrays
+    factor : safety factor against lifting and sliding [-], typically 1.5
+    friction : friction coefficient between anchor and seabed [-], typically 0.6
 
     W ≥ factor (V + H / friction): the rule of Dewey's Mooring Design & Dynamics and of WHOI.
     """
@@ -147,17 +149,17 @@ def closure(
     landed: bool,
     bed: Bed,
 ) -> float:
-    """Relative departure of the sum of the loads from the force at the line's end.
+    """Relative difference between the sum of the loads and the force at the line's end.
 
-    Where the line lies on the seabed, the loads above its touchdown must leave no force across
-    that: but a downward one where a rigid piece or clamp stands, and an upward one that the weight
-    of a rigid piece lying there holds down. Friction, and the weight down the slope, take their
-    share of the rest.
+    If the line has a part on the seabed, the loads above its touchdown must leave no force normal
+    to the seabed, except for a downward force at a rigid piece or clamp that stands there, and an
+    upward force that is less than the weight of a rigid piece that lies there. Friction and the
+    downslope component of the weight reduce the remaining force.
 
     Parameters
     ----------
-    loads : of every element, as by `element_loads`
-    landed : whether the line lies on the seabed
+    loads : loads of every element, from `element_loads`
+    landed : whether the line has a part on the seabed
     """
     record, end = shape.record, shape.nodes - 1
     x = y = z = whole = 0.0
@@ -185,7 +187,7 @@ def closure(
 
 
 def bears_at_a_point(moored: Moored, shape: RefereeShape, element: int) -> bool:
-    """Return whether the seabed can bear on an element at a point: a rigid piece or a clamp."""
+    """Whether an element can rest on the seabed at a point: a rigid piece or a clamp."""
     if element >= shape.nodes - 1:
         return False
     piece = int(shape.record[6][element + 1])
@@ -193,7 +195,7 @@ def bears_at_a_point(moored: Moored, shape: RefereeShape, element: int) -> bool:
 
 
 def weight_on_seabed(moored: Moored, shape: RefereeShape, excess: float) -> float:
-    """Weight in water of what lies on the seabed [N]."""
+    """Submerged weight of the elements on the seabed [N]."""
     weight = 0.0
     for i in range(shape.hanging, shape.nodes - 1):
         piece, clamp = int(shape.record[6][i + 1]), int(shape.record[7][i + 1])

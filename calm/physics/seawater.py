@@ -1,6 +1,6 @@
 """Sea water and gravity: density by TEOS-10, viscosity by Sharqawy, gravity by latitude.
 
-Positions are geographic, in degrees north and east, as TEOS-10 takes them.
+Positions are geographic, in degrees north and east, as in TEOS-10.
 """
 
 from __future__ import annotations
@@ -14,14 +14,15 @@ REFERENCE_DENSITY = 1025.0
 """Density of the sea water [kg/m³] for which buoyancies and drags are given."""
 
 REFERENCE_VISCOSITY = 1.36e-6
-"""Kinematic viscosity of sea water of 10 °C and 35 [m²/s], where nothing else is known."""
+"""Default kinematic viscosity [m²/s]: sea water of 10 °C and salinity 35."""
 
 MID_LATITUDE = 45.0
-"""Where no position is given [degrees]. Latitude only turns depth into pressure: between the
-equator and a pole the density at 5000 m differs by 0.12 kg/m³."""
+"""Latitude assumed if no position is given [degrees]. Latitude only affects the conversion of depth
+to pressure: between the equator and a pole the density at 5000 m differs by 0.12 kg/m³.
+"""
 
 SOUTHERNMOST = -86.0
-"""No sea, and no entry in the atlas of its composition, lies beyond this latitude [degrees]."""
+"""Southern limit of the sea and of the composition atlas [degrees]."""
 
 
 def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> NDArray[np.float64]:
@@ -30,11 +31,11 @@ def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> NDArray[np
     Parameters
     ----------
     temperature : (...) in situ [°C], 0 to 180
-    salinity : (...) [g/kg], 0 to 150; a practical salinity is 0.5 % less, which changes nothing
-        here
+    salinity : (...) [g/kg], 0 to 150; a practical salinity, which is 0.5 % less, may be used
+        instead
 
-    Valid at atmospheric pressure, to 1.5 %; the pressure of the deep sea changes it by a few
-    percent at most.
+    Valid at atmospheric pressure, to 1.5 %; the pressure of the deep sea changes it by at most a
+    few percent.
 
     Source: Sharqawy, Lienhard & Zubair (2010), Desalination and Water Treatment 16, 354-380,
     equations 22 and 23.
@@ -50,7 +51,9 @@ def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> NDArray[np
 def kinematic_viscosity(
     temperature: ArrayLike, salinity: ArrayLike, density: ArrayLike
 ) -> NDArray[np.float64]:
-    """Kinematic viscosity of sea water [m²/s] of a temperature [°C], salinity, density [kg/m³]."""
+    """Kinematic viscosity of sea water [m²/s], from temperature [°C], salinity and density
+    [kg/m³].
+    """
     viscosity: NDArray[np.float64] = dynamic_viscosity(temperature, salinity) / np.asarray(
         density, dtype=float
     )
@@ -60,9 +63,9 @@ def kinematic_viscosity(
 def gravity(latitude: float) -> float:
     """Acceleration of gravity at the sea surface [m/s²], by latitude [degrees].
 
-    It grows by 0.011 m/s² down to 5000 m, which is left out.
+    Its increase of 0.011 m/s² down to 5000 m is neglected.
 
-    Source: the international gravity formula as TEOS-10 takes it, to 1e-6 m/s².
+    Source: the international gravity formula as adopted in TEOS-10, to 1e-6 m/s².
     """
     square = sin(radians(latitude)) ** 2
     return 9.780327 * (1.0 + 0.0053024 * square - 0.0000058 * sin(radians(2.0 * latitude)) ** 2)
@@ -75,20 +78,20 @@ def density(
     latitude: float = MID_LATITUDE,
     longitude: float | None = None,
 ) -> NDArray[np.float64]:
-    """Density in situ [kg/m³] from what a probe measures.
+    """In situ density [kg/m³] from temperature, salinity and depth.
 
     Parameters
     ----------
     temperature : (...) in situ, ITS-90 [°C]
     salinity : (...) practical [-]
-    depth : (...) below the surface [m]
-    latitude : [degrees]
-    longitude : [degrees]; without one, and far inland, sea water is of the reference composition,
+    depth : (...) depth below the surface [m]
+    latitude : latitude [degrees]
+    longitude : [degrees]; without longitude, and far inland, the reference composition is assumed,
         whose density is off by less than 0.03 kg/m³ in the open ocean
 
     Returns
     -------
-    (...) as the three are broadcast.
+    (...) density, with the broadcast shape of the three inputs.
 
     Valid for the sea: 0 to 42 g/kg, -6 to 40 °C, down to 10 km.
     """
@@ -106,13 +109,14 @@ def density(
 def potential_density(
     temperature: ArrayLike, salinity: ArrayLike, depth: ArrayLike
 ) -> NDArray[np.float64]:
-    """Density [kg/m³] of water raised to the surface without heat: what lies below is not less.
+    """Density of water raised adiabatically to the surface [kg/m³]; in stable water it does not
+    decrease with depth.
 
     Parameters
     ----------
     temperature : (...) in situ, ITS-90 [°C]
     salinity : (...) practical [-], of the reference composition
-    depth : (...) that it is raised from [m], at 45 degrees of latitude
+    depth : (...) original depth [m], at 45 degrees of latitude
     """
     import gsw
 
@@ -122,7 +126,7 @@ def potential_density(
 
 
 def pressure_at(depth: ArrayLike, latitude: float) -> NDArray[np.float64]:
-    """Return the pressure of the sea [dbar] at depths [m] at a latitude [degrees], by TEOS-10."""
+    """Pressure of the sea [dbar] at depths [m] and a latitude [degrees], from TEOS-10."""
     import gsw
 
     return np.asarray(gsw.p_from_z(-np.asarray(depth, dtype=float), latitude), dtype=float)
@@ -134,13 +138,13 @@ def absolute_density(
     depth: ArrayLike,
     latitude: float = MID_LATITUDE,
 ) -> NDArray[np.float64]:
-    """Density in situ [kg/m³] from TEOS-10's own variables.
+    """In situ density [kg/m³] from absolute salinity and conservative temperature.
 
     Parameters
     ----------
     absolute_salinity : (...) [g/kg]
     conservative_temperature : (...) [°C]
-    depth : (...) below the surface [m]
+    depth : (...) depth below the surface [m]
     latitude : [degrees]
 
     Source: IOC, SCOR & IAPSO (2010), the thermodynamic equation of seawater; 75-term expression

@@ -1,4 +1,4 @@
-"""Stretch of a rope, by the curve of its elongation."""
+"""Stretch of a rope, from its elongation curve."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from math import isfinite, sqrt
 from typing import NamedTuple
 
 TRUSTED_LOAD = 0.8
-"""Share of the breaking load beyond which an elongation curve should not be trusted."""
+"""Share of the breaking load above which an elongation curve is unreliable."""
 
 _GAUSS = sqrt(1.0 / 3.0)
 
 
 class Knot(NamedTuple):
-    """A point of an elongation curve: its tension [N], and the strain beyond it as a cubic.
+    """A point of an elongation curve: its tension [N], and the strain above it as a cubic
+    polynomial.
 
-    That is a + x (b + x (c + x d)), x newtons beyond the point.
+    The strain is a + x (b + x (c + x d)) at x newtons above the tension of the point.
     """
 
     tension: float
@@ -27,9 +28,9 @@ class Knot(NamedTuple):
 
 
 def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) -> float:
-    """Strain of a rope at a tension ≥ 0 [N], by the knots of its curve from `first` to `end` [-].
+    """Strain of a rope at a tension ≥ 0 [N], from the knots `first` to `end` of its curve [-].
 
-    Monotone cubic interpolation; beyond the last knot it goes on straight.
+    Monotone cubic interpolation, with linear extrapolation above the last knot.
     """
     knot = knots[_knots_below(knots, first + 1, end, tension) - 1]
     x = tension - knot.tension
@@ -39,9 +40,10 @@ def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) ->
 def mean_curve_strain(
     knots: Sequence[Knot], first: int, end: int, tension: float, half: float
 ) -> float:
-    """Mean strain where the tension goes evenly from `tension` - `half` to `tension` + `half`.
+    """Mean strain for a tension that varies linearly from `tension` - `half` to `tension` + `half`
+    [-].
 
-    By two Gauss points between the knots that lie in the range: exact [-].
+    Two Gauss points between each pair of knots in the range make this exact.
     """
     half = abs(half)
     low, high = tension - half, tension + half
@@ -70,32 +72,32 @@ def _knots_below(knots: Sequence[Knot], first: int, end: int, tension: float) ->
 
 
 class ElongationCurve:
-    """Strain of a rope against its tension, through a maker's table.
+    """Strain of a rope against its tension, through a manufacturer's table.
 
-    Monotone cubic interpolation: it passes through every point, has a continuous slope and never
-    falls where the table does not. Beyond the last point it goes on straight, with the chord of
+    Monotone cubic interpolation: the curve passes through every point, has a continuous slope and
+    decreases only where the table decreases. Above the last point it is linear, with the chord of
     the last interval. A table of one point is a linear stiffness.
 
     Parameters
     ----------
-    points : (load / breaking load [-], strain [-]) by growing load, up to 1; (0, 0) is added
-        where the table does not begin with it
-    breaking_load : [N]
-    permanent : elongation that stays once the rope has been loaded [-], added at every tension
+    points : (load / breaking load [-], strain [-]) in order of increasing load, up to 1; (0, 0) is
+        added if the table does not begin with it
+    breaking_load : breaking load [N]
+    permanent : permanent elongation after the first loading [-], added at every tension
 
     Attributes
     ----------
-    tensions, strains : the points of the table, from (0, 0) on [N], [-]
+    tensions, strains : points of the table, starting with (0, 0) [N], [-]
     breaking_load, permanent : as given [N], [-]
-    knots : the curve as the march takes it, permanent elongation included
-    limit : tension beyond which an answer deserves a warning [N]: that of the last point, and at
+    knots : the curve in the form used by the march, including permanent elongation
+    limit : tension above which results need a warning [N]: that of the last point, and at
         most 80 % of the breaking load
 
     Raises
     ------
     ValueError
-        Loads that do not grow, strains that fall, a strain at no load, a load above the breaking
-        load, figures that are negative or not finite.
+        Loads do not increase, strains decrease, there is a strain without load or a load above the
+        breaking load, or values are negative or not finite.
 
     Source: F. N. Fritsch & J. Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304, for the
     slopes at the points.
@@ -123,11 +125,11 @@ class ElongationCurve:
         )
 
     def strain(self, tension: float) -> float:
-        """Strain at a tension ≥ 0 [N], permanent elongation included [-]."""
+        """Strain at a tension ≥ 0 [N], including permanent elongation [-]."""
         return curve_strain(self.knots, 0, len(self.knots), tension)
 
     def stiffer(self, factor: float) -> ElongationCurve:
-        """The curve of a rope whose strain at every tension is less by a factor."""
+        """Return the curve of a rope whose strain at every tension is smaller by a factor."""
         loads = (tension / self.breaking_load for tension in self.tensions)
         strains = (strain / factor for strain in self.strains)
         return ElongationCurve(
@@ -136,7 +138,7 @@ class ElongationCurve:
 
 
 def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[float]]:
-    """Loads and strains of a table that can be a rope's, (0, 0) in front."""
+    """Return loads and strains of a valid table, starting with (0, 0)."""
     loads, strains = [0.0], [0.0]
     for number, (load, strain) in enumerate(points, start=1):
         if not (isfinite(load) and isfinite(strain)):
@@ -159,7 +161,9 @@ def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[f
 
 
 def _cubics(xs: list[float], ys: list[float]) -> list[tuple[float, float, float, float]]:
-    """Coefficients of y in powers of x - xs[i], for every interval and the line beyond the last."""
+    """Coefficients of y in powers of x - xs[i], for every interval and the line beyond the last
+    point.
+    """
     widths = [b - a for a, b in pairwise(xs)]
     chords = [(b - a) / h for (a, b), h in zip(pairwise(ys), widths, strict=True)]
     slopes = _slopes(widths, chords)
@@ -172,7 +176,7 @@ def _cubics(xs: list[float], ys: list[float]) -> list[tuple[float, float, float,
 
 
 def _slopes(widths: list[float], chords: list[float]) -> list[float]:
-    """Slope at every point: at the ends of a parabola, elsewhere a weighted harmonic mean."""
+    """Slope at every point: a weighted harmonic mean, but from a parabola at both ends."""
     if len(chords) == 1:
         return [chords[0], chords[0]]
     slopes = [_end_slope(widths[0], widths[1], chords[0], chords[1])]

@@ -1,8 +1,8 @@
-"""Strumming: how fast a line in a current vibrates, how far, and by how much that raises its Cn.
+"""Strumming (vortex-induced vibration) of a line: frequency, amplitude, and increase of Cn.
 
-Amplitudes A are single and relative to the diameter, A/D [-]; angles are in radians. A long line
-has a mode near every frequency, so it is taken to strum wherever it sheds vortices: in a sheared
-current, with attachments or fairing, it strums less, and these factors are the upper end.
+Amplitudes A are single amplitudes relative to the diameter, A/D [-]; angles are in radians. A long
+line has a mode near every frequency, so it is assumed to strum wherever it sheds vortices. In a
+sheared current, with attachments or fairing, it strums less; these factors are upper limits.
 """
 
 from collections.abc import Callable, Mapping
@@ -14,23 +14,25 @@ from typing import NamedTuple
 from calm.physics.drag import drag_share
 
 STROUHAL = 0.2
-"""Strouhal number for static work, whatever the Reynolds number."""
+"""Strouhal number for static calculations, at all Reynolds numbers."""
 
 STRUCTURAL_DAMPING = 0.005
-"""Damping ratio where none is measured: what DNV-RP-F105 takes for pipes free of concrete."""
+"""Default damping ratio, as used by DNV-RP-F105 for pipes without concrete."""
 
 CABLE_MODE = 1.155
-"""Mode factor γ of a taut line, √(4/3): its crests move more than a rigid cylinder would; 1.0."""
+"""Mode factor γ of a taut line, √(4/3): its antinodes move more than a rigid cylinder (γ = 1)
+would.
+"""
 
 _BLEVINS_CAP = 1.0
 
 
 def shedding_frequency(speed: float, diameter: float, strouhal: float = STROUHAL) -> float:
-    """Frequency St |Vn|/D [Hz] at which vortices leave a line of a diameter [m].
+    """Frequency St |Vn|/D [Hz] of vortex shedding from a line of a diameter [m].
 
     Parameters
     ----------
-    speed : |Vn|, of the current across the line [m/s]
+    speed : |Vn|, speed of the current normal to the line [m/s]
     """
     return strouhal * speed / diameter
 
@@ -42,9 +44,9 @@ def reduced_damping(
 
     Parameters
     ----------
-    mass : of a metre of line [kg/m]
-    diameter : [m]
-    density : of the water [kg/m³]
+    mass : mass per metre of line [kg/m]
+    diameter : diameter of the line [m]
+    density : density of the water [kg/m³]
     damping : ζ, structural damping over critical [-]
     """
     return 8.0 * pi**2 * strouhal**2 * mass * damping / (density * diameter**2)
@@ -62,23 +64,23 @@ def griffin_skop(damping: float, mode: float = CABLE_MODE) -> float:
 def line_amplitude(
     mass: float, diameter: float, density: float, damping: float = STRUCTURAL_DAMPING
 ) -> float:
-    """A/D of a mooring line that strums: `griffin_skop` in the mode of a cable.
+    """A/D of a strumming mooring line: `griffin_skop` with the mode factor of a cable.
 
     Parameters
     ----------
-    mass : of a metre of line [kg/m]
-    diameter : [m]
-    density : of the water [kg/m³]
+    mass : mass per metre of line [kg/m]
+    diameter : diameter of the line [m]
+    density : density of the water [kg/m³]
     damping : ζ, structural damping over critical [-]
 
-    The current does not enter: whatever its speed, some mode of a long line answers. Ropes and
-    wires in water come out between 0.68 and 0.74.
+    The result does not depend on the current: at any speed, some mode of a long line is excited.
+    Values for ropes and wires in water are between 0.68 and 0.74.
     """
     return griffin_skop(reduced_damping(mass, diameter, density, damping))
 
 
 def vandiver(amplitude: float) -> float:
-    """Cn of a line that strums over Cn at rest: 1 + 1.043 (2 Y_rms/D)^0.65, Y_rms = A/√2.
+    """Ratio of Cn of a strumming line to Cn at rest: 1 + 1.043 (2 Y_rms/D)^0.65, Y_rms = A/√2.
 
     Source: Vandiver (1983), Offshore Technology Conference, paper 4490.
     """
@@ -86,10 +88,10 @@ def vandiver(amplitude: float) -> float:
 
 
 def blevins(amplitude: float) -> float:
-    """Cn of a line that strums over Cn at rest: 1 + 2.1 A/D, held beyond A/D = 1.
+    """Ratio of Cn of a strumming line to Cn at rest: 1 + 2.1 A/D, constant above A/D = 1.
 
-    Beyond, the straight line runs away from what cables were measured to do: Cn of 2.4 to 3.2,
-    2.0 to 2.7 times that at rest (Griffin et al. 1984).
+    Above this limit, the straight line exceeds the values measured on cables: Cn of 2.4 to 3.2, 2.0
+    to 2.7 times that at rest (Griffin et al. 1984).
 
     Source: Blevins (1990), Flow-Induced Vibration, second edition.
     """
@@ -97,10 +99,10 @@ def blevins(amplitude: float) -> float:
 
 
 def skop_griffin(amplitude: float) -> float:
-    """Cn of a line that strums over Cn at rest: 1 + 1.16 (w_r - 1)^0.65, w_r = 1 + 2 A/D.
+    """Ratio of Cn of a strumming line to Cn at rest: 1 + 1.16 (w_r - 1)^0.65, w_r = 1 + 2 A/D.
 
-    Source: Skop, Griffin & Ramberg (1977), Offshore Technology Conference, paper 2884, at
-    resonance, where the reduced speed times the Strouhal number is 1.
+    Source: Skop, Griffin & Ramberg (1977), Offshore Technology Conference, paper 2884, at resonance
+    (reduced speed times Strouhal number equal to 1).
     """
     return 1.0 + 1.16 * pow(2.0 * amplitude, 0.65)
 
@@ -108,15 +110,16 @@ def skop_griffin(amplitude: float) -> float:
 AMPLIFICATIONS: Mapping[str, Callable[[float], float]] = MappingProxyType(
     {"vandiver": vandiver, "blevins": blevins, "skop-griffin": skop_griffin}
 )
-"""The factor on Cn from A/D, by the name a mooring file gives it."""
+"""Functions for the factor on Cn from A/D, by their names in mooring files."""
 
 
 def drag_factor(ratio: float) -> float:
-    """Drag of a cylinder that vibrates over drag at rest, as Bourget & Marichal equate power.
+    """Ratio of the drag of a vibrating cylinder to its drag at rest, by the power balance of
+    Bourget & Marichal.
 
     Parameters
     ----------
-    ratio : λ, greatest speed of the vibration over the speed of the current across the line [-]
+    ratio : λ, maximum speed of the vibration over the speed of the current normal to the line [-]
 
     f(λ) = (1/π) ∫₀^π (1 + λ² cos²θ)^{3/2} dθ = (2/3π) √(1 + λ²) [2 (2 + λ²) E(m) - K(m)],
     m = λ²/(1 + λ²), by arithmetic-geometric means. (The paper prints 2/π, which would give
@@ -136,15 +139,15 @@ def drag_factor(ratio: float) -> float:
 
 
 class Vibration(NamedTuple):
-    """Tell how a cable strums: the law of Bourget & Marichal as the march takes it.
+    """Law of strumming by Bourget & Marichal in the form used by the march.
 
     Attributes
     ----------
     a1, b1, c1 : a/D = a1 + b1 φ + c1 φ², φ in degrees
-    greatest : factor on the cable's Cn at rest [-]
-    beat : F D/|V|, the frequency of the cable made dimensionless with its diameter and the speed
-        there; 0.166 sin φ_n in an even flow, whatever its speed [-]. Of a line it is F [Hz], and
-        of one of its cables F D [m/s]
+    greatest : largest factor on the cable's Cn at rest [-]
+    beat : F D/|V|, the dimensionless frequency of the cable from its diameter and the local speed
+        [-]; 0.166 sin φ_n in a uniform flow of any speed. For a line it is F [Hz], and for one of
+        its cables F D [m/s]
     """
 
     a1: float
@@ -155,31 +158,31 @@ class Vibration(NamedTuple):
 
 
 AT_REST = Vibration(0.0, 0.0, 0.0, 1.0, 0.0)
-"""Of a line that does not strum."""
+"""Law of a line that does not strum."""
 
 
 def with_beat(vibration: Vibration, beat: float) -> Vibration:
-    """The same law of vibration at another beat."""
+    """Return the law of vibration with another beat."""
     a1, b1, c1, greatest, _ = vibration
     return Vibration(a1, b1, c1, greatest, beat)
 
 
 def amplitude(vibration: Vibration, angle: float) -> float:
-    """a/D [-] where the cable is at an angle φ to the flow [rad]."""
+    """a/D [-] for a cable at an angle φ to the flow [rad]."""
     phi = angle * (180.0 / pi)
     return vibration.a1 + (vibration.b1 + vibration.c1 * phi) * phi
 
 
 def strummed(vibration: Vibration, across: float) -> float:
-    """C*/C₀ = f(λ), at most the greatest, by the sine of the angle φ of the cable to the flow.
+    """C*/C₀ = f(λ), limited to its maximum, from the sine of the angle φ between cable and flow.
 
-    λ = 2π (a/D) F D/(|V| sin φ). Along the flow the factor is the greatest.
+    λ = 2π (a/D) F D/(|V| sin φ). For flow along the cable the factor is the maximum.
     """
     return min(strummed_freely(vibration, across), vibration.greatest)
 
 
 def strummed_freely(vibration: Vibration, across: float) -> float:
-    """f(λ) as it would be without the greatest factor, at most twice that."""
+    """f(λ) without its limit, but at most twice the limit."""
     if vibration.beat == 0.0:
         return 1.0
     if across <= 0.0:
@@ -191,19 +194,19 @@ def strummed_freely(vibration: Vibration, across: float) -> float:
 def amplified_share(
     ax: float, ay: float, az: float, k: float, vibration: Vibration, vx: float, vy: float, vz: float
 ) -> tuple[float, float]:
-    """`drag_share` of a cable that strums, whose coefficient grows as it leans: k f(sin φ).
+    """`drag_share` of a strumming cable, whose coefficient k f(sin φ) grows with its inclination.
 
     Parameters
     ----------
     k : half its normal drag coefficient at rest [N/(m/s)²]
-    vibration : by which `strummed` gives f ≥ 1, falling with the sine of the angle φ between axis
-        and current
+    vibration : law for which `strummed` gives f ≥ 1, decreasing with the sine of the angle φ
+        between axis and current
 
     Returns
     -------
-    c [N/(m/s)], the smallest root of c |A + c V| = k f |V × A|, and f there. Putting f(c) back
-    climbs to it from below and never past it; the climb is extrapolated as long as that stays
-    below, too.
+    c [N/(m/s)], the smallest root of c |A + c V| = k f |V × A|, and f at this root. Fixed-point
+    iteration with f(c) approaches the root monotonically from below; the iteration is extrapolated
+    as long as the result stays below.
     """
     speed = sqrt(vx * vx + vy * vy + vz * vz)
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
@@ -243,16 +246,16 @@ def _leaning(
 
 @dataclass(frozen=True)
 class BourgetMarichal:
-    """Strumming of a towed cable: the frequency is set at the ship, the amplitude by the angle.
+    """Strumming of a towed cable: the ship sets the frequency, the angle sets the amplitude.
 
     Attributes
     ----------
-    a1, b1, c1 : a/D = a1 + b1 φ + c1 φ², φ in degrees. The paper does not print them; the
-        defaults meet its own figures (a/D = 0.5 at 90°; in its example C* = 1.25 at the sphere
-        and 16.28° at the ship).
-    rest : C₀, the cable's Cn at rest; claimed for φ > 15° only
-    ceiling : the greatest C* allowed
-    strouhal : of the cable, on the speed across it
+    a1, b1, c1 : a/D = a1 + b1 φ + c1 φ², φ in degrees. The paper does not give them; the defaults
+        match its published values (a/D = 0.5 at 90°; in its example C* = 1.25 at the sphere and
+        16.28° at the ship).
+    rest : C₀, the cable's Cn at rest; valid for φ > 15° only
+    ceiling : largest allowed C*
+    strouhal : Strouhal number of the cable, for the speed normal to it
 
     Angles φ are between cable and flow, above 0 and up to π/2 [rad].
     """
@@ -265,19 +268,19 @@ class BourgetMarichal:
     strouhal: float = 0.166
 
     LEAST_ANGLE = radians(15.0)
-    """Below this angle the cable's Cn at rest is not claimed."""
+    """Angle below which the cable's Cn at rest is not valid [rad]."""
 
     @property
     def greatest(self) -> float:
-        """The greatest factor on the cable's Cn at rest [-]."""
+        """Largest factor on the cable's Cn at rest [-]."""
         return self.ceiling / self.rest
 
     def amplitude(self, angle: float) -> float:
-        """a/D [-] where the cable is at an angle φ to the flow [rad]."""
+        """a/D [-] for a cable at an angle φ to the flow [rad]."""
         return amplitude(self.vibration(0.0), angle)
 
     def vibration(self, beat: float) -> Vibration:
-        """The law at a beat: see `Vibration`."""
+        """Return the law with a beat (see `Vibration`)."""
         return Vibration(self.a1, self.b1, self.c1, self.greatest, beat)
 
     def frequency(self, speed: float, ship_angle: float, diameter: float) -> float:
@@ -285,51 +288,51 @@ class BourgetMarichal:
 
         Parameters
         ----------
-        speed : V₀, of the ship through the water [m/s]
-        ship_angle : φ_n, between cable and flow at the ship [rad]
+        speed : V₀, speed of the ship through the water [m/s]
+        ship_angle : φ_n, angle between cable and flow at the ship [rad]
         """
         return self.strouhal * speed * sin(ship_angle) / diameter
 
     def factor(self, angle: float, beat: float) -> float:
-        """C*/C₀, at most 3.0/C₀, where the cable is at an angle φ to the flow [rad].
+        """C*/C₀, at most 3.0/C₀, for a cable at an angle φ to the flow [rad].
 
-        `beat` : see `Vibration`.
+        `beat` is as in `Vibration`.
         """
         return strummed(self.vibration(beat), min(sin(angle), 1.0))
 
     def coefficient(self, angle: float, ship_angle: float) -> float:
-        """C* of a cable at an angle φ in an even flow, the same at every speed.
+        """C* of a cable at an angle φ in a uniform flow, at any speed.
 
         Parameters
         ----------
-        angle, ship_angle : φ, there and at the ship [rad]
+        angle, ship_angle : angles φ on the cable and at the ship [rad]
         """
         return self.rest * self.factor(angle, self.strouhal * sin(ship_angle))
 
     def from_bare_cable(
         self, angle: float, speed: float, diameter: float, weight: float, density: float
     ) -> tuple[float, float]:
-        """C* and a/D of a bare cable from the angle at which it tows.
+        """C* and a/D of a bare cable from its angle under tow.
 
         Parameters
         ----------
-        angle : φ measured, the same all along [rad]
-        speed : V₀ of the ship [m/s]
-        diameter : [m]
-        weight : of a metre in water [N/m]
-        density : of the water [kg/m³]
+        angle : φ measured, constant along the cable [rad]
+        speed : V₀, speed of the ship [m/s]
+        diameter : diameter of the cable [m]
+        weight : weight per metre in water [N/m]
+        density : density of the water [kg/m³]
 
         Returns
         -------
-        C* for which the drag across the cable holds its weight, w cos φ = ½ρ D C* (V₀ sin φ)²,
-        and the a/D that explains it; 0 where C* is not above C₀.
+        C* for which the drag normal to the cable balances its weight, w cos φ = ½ρ D C* (V₀ sin
+        φ)², and the corresponding a/D, 0 if C* does not exceed C₀.
         """
         coefficient = weight * cos(angle) / (0.5 * density * diameter * (speed * sin(angle)) ** 2)
         return coefficient, _ratio(coefficient / self.rest) / (2.0 * pi * self.strouhal)
 
 
 def _ratio(factor: float) -> float:
-    """λ for which f(λ) is a factor; 0 where it is not above 1."""
+    """Speed ratio λ for a given factor f(λ), 0 if the factor does not exceed 1."""
     if factor <= 1.0:
         return 0.0
     # f is above 1 + ¾ λ² and above 4 λ³/3π

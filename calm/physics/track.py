@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from calm.physics.compiled import packed
-from calm.physics.line import Line
+from calm.physics.line import Line, once_per_input
 from calm.physics.stretch import ElongationCurve, Knot
 from calm.physics.strumming import AT_REST, Vibration
 
@@ -23,14 +23,14 @@ class Load(NamedTuple):
 
     Attributes
     ----------
-    piece, clamp : of the line; the clamp is -1 for the piece itself
-    at : [m]
-    lever : 1 - at/length, the share of the load that turns the rod; ½ for a rod of no length
-    length : of the piece [m]; 0 of a clamp
+    piece, clamp : indices in the line; the clamp is -1 for the piece itself
+    at : distance from the top of the rod [m]
+    lever : 1 - at/length, the share of the load that rotates the rod; ½ for a rod of no length
+    length : length of the piece [m]; 0 for a clamp
     buoyancy, volume, normal_drag, tangential_drag, directional, lift, push_east, push_north : as
         in `Line`
-    diameter, lengthening : of the curve that its drag follows, see `DragCurve`; the diameter is 0
-        where it follows none
+    diameter, lengthening : of its drag curve, see `DragCurve`; the diameter is 0
+        without a curve
     """
 
     piece: int
@@ -55,13 +55,13 @@ class CableStretch(NamedTuple):
 
     Attributes
     ----------
-    piece : of the line
+    piece : index in the line
     length : unstretched [m]
     buoyancy, volume, normal_drag, tangential_drag, compliance, thinning : as in `Line`
     friction : number of the law, see `Friction`
-    first_knot, end_knot : of its elongation curve among the knots of the track; the same where it
-        has none
-    diameter : by which it strums [m]; 0 where it does not
+    first_knot, end_knot : range of its elongation curve among the knots of the track; equal if it
+        has no curve
+    diameter : diameter for strumming [m]; 0 without strumming
     """
 
     piece: int
@@ -82,14 +82,14 @@ ROD, CABLE, CLAMP = range(3)
 
 
 class Stage(NamedTuple):
-    """A rod, a stretch of cable or a clamp as the march comes to it.
+    """A rod, a stretch of cable or a clamp, in the order of the march.
 
     Attributes
     ----------
     kind : ROD, CABLE or CLAMP
-    first, size : its first load among those of the course and how many it has; of a cable, its
-        place among the cables and 1
-    length : [m]
+    first, size : index of its first load in the course and number of loads; for a cable, its
+        index among the cables and 1
+    length : length of the stage [m]
     """
 
     kind: int
@@ -99,9 +99,9 @@ class Stage(NamedTuple):
 
 
 class Course(NamedTuple):
-    """A `Track` as the march takes it: what stands in it, kind by kind, down the line.
+    """A `Track` in the form used by the march: its parts by kind, down the line.
 
-    `landing` is the first stage that may come down on the seabed: none below it is buoyant.
+    `landing` is the first stage that may touch the seabed, below the last buoyant stage.
     """
 
     stages: Sequence[Stage]
@@ -118,8 +118,8 @@ class Track:
 
     Attributes
     ----------
-    stages, loads, cables, knots : of a `Stage`, a `Load`, a `CableStretch` and a `Knot` each
-    vibration : the law by which the cables strum
+    stages, loads, cables, knots : rows, each a `Stage`, `Load`, `CableStretch` or `Knot`
+    vibration : law of strumming of the cables
     """
 
     stages: list[tuple[Any, ...]]
@@ -130,21 +130,21 @@ class Track:
 
     @cached_property
     def course(self) -> Course:
-        """As the march takes it."""
+        """The track as named tuples, for interpreted code."""
         stages, cables = map(Stage._make, self.stages), map(CableStretch._make, self.cables)
         loads = list(map(Load._make, self.loads))
         return Course(list(stages), loads, list(cables), self.knots, self.vibration, self.landing)
 
     @cached_property
     def packed(self) -> Course:
-        """Return the same as compiled laws take it."""
+        """The track as arrays, for compiled code."""
         rows: Any = (self.stages, self.loads, self.cables, self.knots)
         course: Course = packed(Course._make([*rows, self.vibration, self.landing]))
         return course
 
     @property
     def landing(self) -> int:
-        """The first stage that may come down on the seabed: none below it is buoyant."""
+        """First stage that may touch the seabed, below the last buoyant stage."""
         for i in range(len(self.stages), 0, -1):
             kind, first, size, _ = self.stages[i - 1]
             if kind == CABLE:
@@ -158,7 +158,7 @@ class Track:
         return 0
 
     def first_pieces(self, count: int) -> Track:
-        """The track as far as the first pieces go."""
+        """Return the track of the first pieces only."""
         cables = [row for row in self.cables if row[0] < count]
         stages = [
             row
@@ -168,6 +168,7 @@ class Track:
         return replace(self, stages=stages, cables=cables)
 
     @staticmethod
+    @once_per_input
     def of(line: Line) -> Track:
         """Lay out a line, free end first; its head (see `head_count`) becomes one rod."""
         vibration = AT_REST if line.strumming is None else line.strumming.vibration(0.0)
@@ -198,7 +199,7 @@ class Track:
         start, end, first = 0.0, rows.length[piece], len(self.knots)
         self.knots.extend(() if curve is None else curve.knots)
         figures = (*rows.cable[piece], first, len(self.knots), rows.strums[piece])
-        rounding = 1e-12 * end  # a clamp so near to an end, or to another, is there
+        rounding = 1e-12 * end  # clamps this close to an end or to each other share one position
         for clamp in rows.clamps.get(piece, ()):
             at = rows.clamp_at[clamp]
             if at - start > rounding:
@@ -215,11 +216,11 @@ class Track:
 
 
 def head_count(line: Line) -> int:
-    """Return how many pieces at the free end make one rigid body: down to the first buoyant piece.
+    """Number of pieces at the free end that form one rigid body: down to the first buoyant piece.
 
-    Pieces without buoyancy listed above the first buoyant one (a beacon, ballast) are rigid with
-    it; where a cable lies between, or nothing is buoyant, the first piece stands alone. At a
-    towed end each does.
+    Pieces without buoyancy listed above the first buoyant piece (a beacon, ballast) are rigidly
+    connected to it. If a cable is in between, or no piece is buoyant, the first piece is separate.
+    At a towed end every piece is separate.
     """
     if line.towed:
         return 0
@@ -232,15 +233,15 @@ def head_count(line: Line) -> int:
 
 
 class _Rows:
-    """A line by rows of plain numbers, which are looked up far faster than arrays one by one.
+    """A line as rows of plain numbers, which are looked up much faster than array elements.
 
     Attributes
     ----------
     length, clamp_at : as in `Line`
-    rigid, clamp : of each piece, and of each clamp, what comes after the length in a `Load`
-    cable : of each piece, what comes between the length and the knots in a `CableStretch`
-    strums : of each piece, the diameter of a `CableStretch`
-    clamps : of each piece, from its top
+    rigid, clamp : for each piece, and for each clamp: the fields of a `Load` after its length
+    cable : for each piece: the fields of a `CableStretch` between its length and its knots
+    strums : for each piece: the diameter of its `CableStretch`
+    clamps : clamps of each piece, from its top
     """
 
     def __init__(self, line: Line) -> None:
@@ -267,7 +268,7 @@ class _Rows:
 
 
 def _rows(count: int, *columns: Any) -> list[tuple[Any, ...]]:
-    """Columns, or single values throughout, row by row."""
+    """Combine columns, or single values throughout, to rows."""
     values = (
         column.tolist() if isinstance(column, np.ndarray) else [column] * count
         for column in columns
@@ -276,7 +277,7 @@ def _rows(count: int, *columns: Any) -> list[tuple[Any, ...]]:
 
 
 def _followed(curves: Sequence[DragCurve | None]) -> tuple[Any, Any]:
-    """The columns `diameter` and `lengthening` of loads that follow a curve, or 0 for none."""
+    """Columns `diameter` and `lengthening` of loads with drag curves, 0 without a curve."""
     if not curves:
         return 0.0, 0.0
     return (

@@ -7,7 +7,7 @@ What was located is written into the mooring file that it was for.
 """
 
 from dataclasses import asdict, dataclass
-from math import atan2, degrees, hypot, nan, sqrt
+from math import atan2, degrees, hypot, log, nan, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -32,13 +32,16 @@ LEVEL = 0.05
 """Depth below the ship, in lengths of the ranges, of what answers at the ship's own level."""
 MOST_REJECTED = 1.0 / 3.0
 """Share of the ranges that may be rejected without a doubt."""
-CLEARLY = 0.5
-"""Of two places the nearer is meant that is within this share of the other's distance."""
+FALL_BACK, LEAST_FALL_BACK = 0.1, 50.0
+"""Standard deviation of the distance of an anchor from its plan, as a share of the depth it falls
+back over, and at the least [m]."""
+ODDS = 20.0
+"""Of two places one is taken whose odds against the other are at least these."""
 
 
 @dataclass(frozen=True)
 class SecondPlace:
-    """Describe another place that fits nearly as well.
+    """Describe another place that fits within twice the scatter of ranging.
 
     Attributes
     ----------
@@ -73,7 +76,8 @@ class Located:
     warnings : about geometry and consistency
     place : (3,) east, north, up in the frame of the survey [m]
     depth_given : whether the depth was given
-    second : another place that fits nearly as well; None where there is none
+    second : another place that fits; None where there is none
+    undecided : whether both of these remain
     doubts : why the place is not to be written down without a person's word
     """
 
@@ -92,6 +96,7 @@ class Located:
     place: Floats
     depth_given: bool
     second: SecondPlace | None
+    undecided: bool
     doubts: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
@@ -138,8 +143,8 @@ def locate(
     survey : ranges as read, or their file, by a transducer at the surface
     sound : its speed, for times: by depth, or one for all depths [m/s]
     depth : of what answers [m], where it is known; else it is found too
-    near : latitude and longitude [degrees] of about where it was dropped: of two places that fit
-        alike the nearer is taken
+    near : latitude and longitude [degrees] of the plan: two places that fit are weighed by how far
+        an anchor can fall back from there
 
     Raises
     ------
@@ -173,7 +178,9 @@ def locate(
             f"{missed:.0f} m, for ranges of {reach:.0f} m; are positions and ranges from one "
             "survey?"
         )
-    x, other, meant = _nearer(model, x, model.another_place(x, used), near)
+    scattered = SCATTERED + SCATTERED_SHARE * reach
+    other = model.another_place(x, used, 2.0 * scattered)
+    x, other, undecided = _weighed(model, x, other, used, near, scattered)
     residuals = model.residuals(x)
     freedom = int(used.sum()) - unknowns
     rms = _scatter(residuals[used], freedom)
@@ -190,7 +197,7 @@ def locate(
     )
     second = None if other is None else _second(model, x, other, used)
     doubts = []
-    if rms > SCATTERED + SCATTERED_SHARE * reach:
+    if rms > scattered:
         doubts.append(f"the ranges scatter by {rms:.0f} m, more than ranging does")
     if (~used).sum() > MOST_REJECTED * count:
         doubts.append(f"{int((~used).sum())} of {count} ranges do not fit the others")
@@ -202,12 +209,14 @@ def locate(
         *(f"{doubt[0].upper()}{doubt[1:]}." for doubt in doubts),
     ]
     if second is not None:
+        assert other is not None
+        its, own = (np.sqrt(np.mean(model.residuals(each)[used] ** 2)) for each in (other, x))
         warnings.append(
-            f"Another place fits nearly as well, {second.distance:.0f} m away: latitude "
-            f"{second.latitude:.6f}, longitude {second.longitude:.6f}."
+            f"Another place fits, {second.distance:.0f} m away: latitude {second.latitude:.6f}, "
+            f"longitude {second.longitude:.6f}; the rms of its residuals is {its:.1f} m, here "
+            f"{own:.1f} m."
         )
-        if not meant:
-            doubts.append("two places fit; say with --near LAT,LON which is meant")
+    doubts += [undecided] if undecided else []
     if not freedom:
         warnings.append(
             "There are no more ranges than unknowns: nothing tells how well they fit, and no "
@@ -229,21 +238,45 @@ def locate(
         place=place,
         depth_given=depth is not None,
         second=second,
+        undecided=bool(undecided),
         doubts=tuple(doubts),
     )
 
 
-def _nearer(
-    model: range_model.RangeModel, x: Floats, other: Floats | None, near: tuple[float, float] | None
-) -> tuple[Floats, Floats | None, bool]:
-    """Return the place that is meant, the other one, and whether it is clear which is meant."""
-    if other is None or near is None:
-        return x, other, other is None
-    there = model.frame.place(np.array(near[0]), np.array(near[1]), np.array(0.0))
-    away, its = (float(np.linalg.norm((there - model.place(each))[:2])) for each in (x, other))
-    if its < away:
-        x, other, away, its = other, x, its, away
-    return x, other, away <= CLEARLY * its
+def _weighed(
+    model: range_model.RangeModel,
+    x: Floats,
+    other: Floats | None,
+    used: Booleans,
+    near: tuple[float, float] | None,
+    scattered: float,
+) -> tuple[Floats, Floats | None, str]:
+    """Return the likelier place, the other one, and why both remain; empty where one does.
+
+    A place is as likely as the scatter [m] of its ranges and its distance from the plan together,
+    both normal. The place near the plan does not decide it alone where the other fits far better.
+    """
+    if other is None:
+        return x, None, ""
+    if near is None:
+        return x, other, "two places fit; say with --near LAT,LON which is meant"
+    plan = model.frame.place(np.array(near[0]), np.array(near[1]), np.array(0.0))
+    misses, away, cost = [], [], []
+    for each in (x, other):
+        place = model.place(each)
+        misses.append(float(np.sum(model.residuals(each)[used] ** 2)))
+        away.append(float(np.linalg.norm((plan - place)[:2])))
+        fall_back = max(FALL_BACK * abs(float(place[2])), LEAST_FALL_BACK)
+        cost.append(0.5 * (misses[-1] / scattered**2 + (away[-1] / fall_back) ** 2))
+    order = (0, 1) if cost[0] <= cost[1] else (1, 0)
+    first, second = ((x, other)[at] for at in order)
+    least = float(used.sum()) * range_model.FLOOR**2
+    undecided = ""
+    if abs(cost[0] - cost[1]) < log(ODDS):
+        undecided = "two places fit, at {:.0f} and {:.0f} m from the plan"
+    elif misses[order[0]] > 4.0 * max(misses[order[1]], least):
+        undecided = "two places remain, at {:.0f} and {:.0f} m from the plan: the nearer fits worse"
+    return first, second, undecided.format(*(away[at] for at in order))
 
 
 def _second(model: range_model.RangeModel, x: Floats, other: Floats, used: Booleans) -> SecondPlace:
@@ -300,8 +333,9 @@ FAR = 2.0
 """Times the depth of the water from the planned position: farther than an anchor is laid astray."""
 NEAR = 0.5
 """Share of the distance as written, within which degrees read as degrees and minutes are meant."""
-DEEPER = 0.05
-"""Share by which the depth may differ from the planned one without a word of doubt."""
+DEEPER, DEEPER_SHARE = 30.0, 0.03
+"""Difference of the depth from the planned one [m], or as a share of it if that is larger, beyond
+which it is in doubt."""
 
 
 def located_mooring(path: Path) -> MooringFile:
@@ -359,10 +393,11 @@ def _beside_the_plan(
     assert plan_depth is not None  # of a mooring
     deeper = water_depth - plan_depth
     said = [f"{abs(deeper):.1f} m {'deeper' if deeper >= 0.0 else 'less deep'} than planned"]
-    if abs(deeper) > DEEPER * plan_depth:
-        said.append("the depth is far from the planned one: is it right?")
+    doubts = []
+    if abs(deeper) > max(DEEPER, DEEPER_SHARE * plan_depth):
+        doubts.append(f"the depth, {water_depth:.0f} m, is far from the planned {plan_depth:.0f} m")
     if planned is None:
-        return tuple(said), ()
+        return tuple(said), tuple(doubts)
     frame = Frame(planned.latitude, planned.longitude)
 
     def away(latitude: float, longitude: float) -> float:
@@ -376,7 +411,7 @@ def _beside_the_plan(
                 "planned position")  # fmt: skip
     limit = FAR * max(water_depth, plan_depth)
     if distance <= limit:
-        return tuple(said), ()
+        return tuple(said), tuple(doubts)
     if abs(there[1]) <= 90.0 and away(there[1], there[0]) <= limit:
         raise UsageError(
             f"{located.survey.path}: latitude and longitude are exchanged: the anchor "
@@ -386,4 +421,4 @@ def _beside_the_plan(
     if away(*map(read_as_minutes, there)) <= NEAR * distance:
         doubt += ", and near it if the positions are degrees and minutes, as 48 18 for 48.18"
     said.append("that is far from the planned position: is it this mooring's?")
-    return tuple(said), (doubt,)
+    return tuple(said), (*doubts, doubt)

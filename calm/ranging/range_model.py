@@ -7,7 +7,7 @@ A survey may not agree with itself, or not tell one place from another: it is sa
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import sqrt
 
 import numpy as np
@@ -211,15 +211,22 @@ class RangeModel:
             return [said]
         return [f"{said}: were they taken with another speed of sound?"]
 
-    def another_place(self, x: Floats, used: Booleans) -> Floats | None:
-        """Return the unknowns of another place that fits nearly as well; None without one."""
+    def another_place(self, x: Floats, used: Booleans, scatter: float) -> Floats | None:
+        """Return the unknowns of another place that fits nearly as well, or within a scatter [m].
+
+        None without one. Places on either side of the track are looked at.
+        """
         starts = [mirrored(self.ships[used], self.place(x))[: len(x)], *self._starts()]
         fits = [self.least_squares(start, used) for start in starts]
+        if self.depth is None:  # a place as deep that fits is one, if a deeper one fits better
+            same = replace(self, depth=self.frame.position(x)[2])
+            fits += [np.append(same.least_squares(start[:2], used), x[2]) for start in starts]
 
         def misses(x: Floats) -> float:
             return float(np.sum(self.residuals(x)[used] ** 2))
 
-        most = 4.0 * max(misses(x), float(used.sum()) * FLOOR**2)
+        freedom = max(int(used.sum()) - self.unknowns, 1)
+        most = max(4.0 * max(misses(x), float(used.sum()) * FLOOR**2), freedom * scatter**2)
         apart = [fit for fit in fits if np.linalg.norm((fit - x)[:2]) > APART]
         best = min(apart, key=misses, default=None)
         return None if best is None or misses(best) > most else best

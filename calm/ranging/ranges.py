@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.errors import InputError, Problem, shown
+from calm.errors import InputError, Problem, UsageError, shown
 from calm.physics.line import Floats
 from calm.positions import HEMISPHERES, Frame, degrees_of
 from calm.records import delimited
@@ -68,7 +68,7 @@ class Survey:
         return Frame(float(self.latitude.mean()), float(middle))
 
 
-def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
+def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Survey:
     """Return the ranges of a file.
 
     A row without a range, its cell blank or `nan`, is one that was not answered: it is left out.
@@ -77,6 +77,7 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
     Parameters
     ----------
     transducer : depth of the ship's transducer [m]; that of the file, or the surface, where it is 0
+    hemisphere : letters of positions that have neither letter nor sign, such as ``"S,W"``
 
     Raises
     ------
@@ -84,6 +85,7 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
         With every mistake of the file, each with its line.
     """
     problems: list[Problem] = []
+    signs = hemisphere_signs(hemisphere)
     table, its_transducer, said = _survey_table(path)
     columns = read_named_columns(table, _COLUMNS, problems, other_names=_OTHER_NAMES)
     heads = columns.factors
@@ -106,7 +108,9 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
         for name in [name for name in ("latitude", "longitude", measure) if name in places]:
             text = row.cells[places[name]]
             try:
-                numbers.append(_figure(name, text, heads[name]))
+                bare = not re.match(r"[+-]|.*[NSEWnsew]", text.strip())
+                figure = _figure(name, text, heads[name])
+                numbers.append(figure * (signs.get(name, 1.0) if bare else 1.0))
             except ValueError as error:
                 problems.append(row.problem(f"`{name}: {shown(text)}` {error}", places[name]))
         if len(numbers) == 3:
@@ -136,6 +140,20 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
         transducer=transducer or its_transducer or 0.0,
         notices=tuple(notices),
     )
+
+
+def hemisphere_signs(letters: str) -> dict[str, float]:
+    """Return the signs of latitudes and longitudes by the letters of their hemispheres.
+
+    UsageError: a letter is none of N, S, E and W, or names the same coordinate twice.
+    """
+    signs: dict[str, float] = {}
+    for letter in filter(None, (part.strip().upper() for part in letters.split(","))):
+        name = next((name for name, both in HEMISPHERES.items() if letter in both), None)
+        if name is None or name in signs:
+            raise UsageError(f"--hemisphere: `{letters[:20]}` is no pair such as S,W")
+        signs[name] = -1.0 if letter in ("S", "W") else 1.0
+    return signs
 
 
 def _figure(name: str, text: str, factor: float) -> float:

@@ -9,8 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from importlib.util import find_spec
-from math import inf
+from math import inf, prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +20,7 @@ from calm.errors import CalmError, refused
 from calm.physics.line import Floats
 from calm.records.current_terms import ZONES_OF_UTC, TimeChoiceError
 from calm.records.instrument_text import reader_of
-from calm.units import QuantityError, unit_factor
+from calm.units import QuantityError, unit_factor, unit_line
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,8 +30,9 @@ _CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
 _FIRST, _LAST = "1678-01-01", "2262-01-01"
 _ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
 _ZONED = ("time_zone", "timezone", "tz", "time_reference")
-_SAID_IN = re.compile(r"(?i)long_name|title|summary|(time_)?(comments?|notes?|description)|history")
 _MOST_LISTED = 5
+MOST_VALUES = 50_000_000
+"""Values that are read at once: as times, those of a second for a year and a half."""
 _NORTH_NAMED = re.compile(
     r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
 )
@@ -80,6 +80,8 @@ def holds_arrays(path: Path) -> bool:
         if not is_zarr(path):
             raise refused(path, "is a folder, and not a zarr store; join its files into one first")
         return True
+    if not path.is_file():  # a pipe or a device would be waited for
+        raise refused(path, "is not a regular file" if path.exists() else "no such file")
     with path.open("rb") as file:
         head = file.read(_SHELL)
     begun = [kind for begin, kind in _KINDS.items() if head.startswith(begin)]
@@ -99,7 +101,7 @@ def reading(path: Path) -> Iterator[None]:
     """Turn what is wrong with a file into an InputError."""
     try:
         yield
-    except (CalmError, TimeChoiceError):
+    except (CalmError, TimeChoiceError, ModuleNotFoundError):
         raise
     except UnreadableError as error:
         raise refused(path, str(error)) from None
@@ -136,15 +138,51 @@ def open_current(path: Path) -> xr.Dataset:
     import xarray as xr
 
     if path.is_dir():
-        if find_spec("zarr") is None:
-            raise UnreadableError("is zarr; to read it: pip install 'calm-mooring[cluster]'")
+        _refuse_large(path)
         return xr.open_dataset(
             path, engine="zarr", decode_times=False, cache=False, consolidated=False
         )
     engine = engine_of(path)
     if not engine and (read := reader_of(path)):
         return read(path)
+    _refuse_large(path)
     return xr.open_dataset(path, engine=engine, decode_times=False, cache=False)
+
+
+def _refuse_large(path: Path) -> None:
+    """Refuse a file that declares more than is read at once, before anything of it is read.
+
+    Variables of one dimension are read whole, others by their chunks. A classic NetCDF file cannot
+    declare more than it has. UnreadableError: with the variable.
+    """
+    declared: list[tuple[str, Any]] = []
+    if path.is_dir():
+        import zarr
+
+        declared += zarr.open_group(path, mode="r").arrays()
+    elif engine_of(path) == "h5netcdf":
+        import h5py
+
+        with h5py.File(path, "r") as file:
+            file.visititems(lambda name, one: declared.append((name, one)))
+            _check_sizes(declared)
+        return
+    _check_sizes(declared)
+
+
+def _check_sizes(declared: Iterable[tuple[str, Any]]) -> None:
+    for name, array in declared:
+        shape = getattr(array, "shape", None) or ()
+        at_once = shape if len(shape) < 2 else getattr(array, "chunks", None) or ()
+        if prod(at_once) > MOST_VALUES:
+            raise UnreadableError(_too_large(name, prod(at_once)))
+
+
+def _too_large(name: object, count: int) -> str:
+    return (
+        f"`{name}` has {count:,} values to be read at once, more than {MOST_VALUES:,}: give a part "
+        "of it (`ncks -d`)"
+    )
 
 
 def engine_of(path: Path) -> str:
@@ -203,20 +241,20 @@ def factor_of(variable: xr.DataArray, dimension: str) -> float:
         raise UnreadableError(message) from None
 
 
-_CELSIUS = ("degree_celsius", "degrees_celsius", "celsius", "degc", "deg_c", "°c", "degree_c", "c",
-            "degrees celsius", "degree celsius", "degrees_c", "deg c")  # fmt: skip
-_KELVIN = ("k", "kelvin", "degree_kelvin", "degrees_kelvin")
+def converted(variable: xr.DataArray, values: Floats, wanted: str) -> Floats:
+    """Return values of a variable in another unit, as pint writes it.
 
-
-def celsius_zero(variable: xr.DataArray) -> float:
-    """Return what is taken from a temperature to have it in °C."""
+    UnreadableError: it has no unit, or that of something else.
+    """
     unit = str(variable.attrs.get("units", "")).strip()
-    if unit.rpartition(",")[2].strip().lower() in _CELSIUS:  # `ITS-90, deg C`
-        return 0.0
-    if unit.lower() in _KELVIN:
-        return 273.15
-    said = f"`{unit}`, is not degree_Celsius or K" if unit else "is missing: degree_Celsius or K"
-    raise UnreadableError(f"`{variable.name}`: its unit, {said}")
+    if not unit:
+        raise UnreadableError(f"`{variable.name}`: its unit is missing, such as {wanted}")
+    try:
+        factor, zero = unit_line(unit, wanted)
+    except QuantityError as error:
+        message = f"`{variable.name}`: its unit, `{unit}`, {error.complaint}"
+        raise UnreadableError(message) from None
+    return factor * values + zero
 
 
 _PRACTICAL = ("", "1", "psu", "pss", "pss-78", "pss78", "1e-3", "0.001", "ppt", "psal")
@@ -241,6 +279,8 @@ def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
     `valid_range`, or `valid_min` and `valid_max`, are those of the NetCDF User Guide: of packed
     values where they are of the packed kind.
     """
+    if variable.size > MOST_VALUES:
+        raise UnreadableError(_too_large(variable.name, variable.size))
     values = np.array(variable.values, np.float64)
     low, high = valid_range(variable)
     if low > -inf or high < inf:
@@ -350,18 +390,12 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
 
 
 def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
-    """Return what is said where the times, or the file, name another zone than UTC."""
-    from calm.records.attributes import is_local
-
+    """Return what is said where an attribute for it names another zone than UTC."""
     for attributes in (dataset[name].attrs, dataset.attrs):
-        for key, said in attributes.items():
-            zone, comment = str(said).strip(), _SAID_IN.fullmatch(str(key))
-            another = key in _ZONED and zone and zone.upper() not in ZONES_OF_UTC
-            if another or (comment and is_local(zone)):
-                return [
-                    f"`{name}` says `{zone[:80]}`: all {dataset[name].size} times are taken as "
-                    "they stand, in UTC"
-                ]
+        for key in _ZONED:
+            zone = str(attributes.get(key, "")).strip()
+            if zone and zone.upper() not in ZONES_OF_UTC:
+                return [f"`{key}` is `{zone[:80]}`: the times are taken as they stand, in UTC"]
     return []
 
 

@@ -10,13 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import refused
+from calm.physics.line import Floats
 from calm.records import cf_files, velocity
-from calm.records.attributes import remarks_in_texts
-from calm.records.current_terms import Terms, current_notices
+from calm.records.card import ReadCard, VariableSummary, said_of, texts_in
+from calm.records.current_terms import Terms
 from calm.records.grids import GridColumn, choose_column, is_regular
 from calm.records.level_depths import find_levels
 from calm.records.profile_tables import turned_by
 from calm.records.record import RULES, Index, Levels, Period, Record, choose_profiles, part
+from calm.records.value_tests import CurrentValues, current_doubts, step_doubts
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -73,7 +75,11 @@ class CurrentDataset:
         if column.place is not None:
             latitude, longitude = (f"{degrees:.6g}" for degrees in column.place)
             self.source |= {"latitude": latitude, "longitude": longitude}
-        self.notices = (*notices, *remarks_in_texts(dataset.attrs))
+        self.notices = tuple(notices)
+        self._texts, self._clock = texts_in(dataset.attrs), ("", "")
+        if clock is not None:
+            self._clock = clock, str(dataset[clock].attrs.get("units", ""))
+        self._good = velocity.good_variables(dataset, current.names[0])
         self.rules = (*current.notes, *(() if self._levels is None else self._levels.notes))
         found = (velocity.flag_variable(dataset, name) for name in current.names)
         self._flags = [*{str(one.name): one for one in found if one is not None}.values()]
@@ -133,33 +139,79 @@ class CurrentDataset:
         every = [self._along(one, index, velocity.flags_of) for one in self._flags]
         return np.asarray(np.maximum.reduce(every), np.int8)
 
-    def remarks(self, index: Index) -> list[str]:
-        """Return what is odd about the currents of some times; of a part where they are many."""
-        said, times = [], self.times
-        if times is not None:
-            sparse = max(len(times[index]) * self.size // LOOKED_AT, 1)
+    def inspected(self, file: str, index: Index) -> tuple[ReadCard, list[str]]:
+        """Return the card of some times, and what is doubtful about their values.
+
+        Where there is much, a part is looked at that is spread over them.
+
+        Parameters
+        ----------
+        file : name of the file
+        index : of the times, rising
+        """
+        every, times = self.times, None
+        said: list[str] = []
+        if every is not None:
+            every = every[index]
+            sparse = max(len(every) * self.size // LOOKED_AT, 1)
             if isinstance(index, slice):
                 index = slice(index.start, index.stop, (index.step or 1) * sparse)
             else:
                 index = index[::sparse]
-            times = times[index]
-        for variable, _ in self._parts[:2]:
-            whole = np.isfinite(self._along(variable, index, lambda one: one.values))
-            outside = whole & np.isnan(self._along(variable, index, cf_files.known_values))
+            times = every[::sparse]
+        summaries = {}
+        for taken, (variable, _) in zip(self._taken, self._parts, strict=False):
+            values = self._along(variable, index, lambda one: one.values.astype(np.float64))
+            low, high = cf_files.valid_range(variable)
+            outside = (values < low) | (values > high)
             if outside.any():
-                low, high = cf_files.valid_range(variable)
                 said.append(
-                    f"{outside.sum()} of {whole.sum()} values of `{variable.name}` are left out, "
-                    f"outside its valid range, {low:g} to {high:g}"
+                    f"{outside.sum()} of {np.isfinite(values).sum()} values of `{variable.name}` "
+                    f"are left out, outside its valid range, {low:g} to {high:g}"
                 )
+                values[outside] = np.nan
+            units = str(variable.attrs.get("units", ""))
+            told = said_of(variable.attrs)
+            summaries[taken] = VariableSummary.of(str(variable.name), units, values, told)
+        depth, u, v, _ = self.read(index)
+        if self._levels is not None:
+            variable = self._levels.variable
+            if not (self._terms.on_the_line or np.isfinite(depth).any()):
+                raise cf_files.UnreadableError(
+                    f"the depths of its levels, `{variable.name}`, have no value"
+                )
+            told = said_of(variable.attrs)
+            summaries["depth"] = VariableSummary.of(str(variable.name), "m", depth, told)
+        removed = {}
         for variable in () if self._terms.on_the_line else self._flags:
             bad = self._along(variable, index, velocity.marked_bad)
+            removed[str(variable.name)] = int(bad.sum())
             if bad.any():
                 said.append(
                     f"{bad.sum()} of {bad.size} currents are left out, as `{variable.name}` marks "
                     "them as bad"
                 )
-        return [*said, *current_notices(self.read(index)[:3], times, self._terms.water_depth)]
+        good = [
+            share_of(self._along(one, index, cf_files.known_values))
+            for one in self._good
+            if set(one.dims) <= set(self._parts[0][0].dims)
+        ]
+        card = ReadCard(
+            file, self._texts, summaries, u.shape[1], np.empty(0, "M8[ns]") if every is None else
+            every, self._clock, removed, self._terms.declination,
+        )  # fmt: skip
+        variable, factor = self._parts[0]
+        values = CurrentValues(
+            depth, u, v, times, self._terms.water_depth, str(variable.attrs.get("units", "m/s")),
+            factor, np.sum(good, axis=0) if good else None,
+        )  # fmt: skip
+        return card, [*said, *current_doubts(values)]
+
+    @property
+    def _taken(self) -> tuple[str, ...]:
+        """What the variables of the current are taken for."""
+        components = self._velocity.turn is None
+        return ("east", "north", "up") if components else ("speed", "direction", "up")
 
     def _along(
         self, variable: xr.DataArray, index: Any, read: Callable[[xr.DataArray], Any]
@@ -175,6 +227,11 @@ class CurrentDataset:
         return values.reshape(len(values), -1)
 
 
+def share_of(good: Floats) -> Floats:
+    """Return shares of good pings as fractions; the greatest of percentages is above 1."""
+    return good / 100.0 if np.nanmax(good, initial=0.0) > 1.0 else good
+
+
 def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str, ...]:
     """Return what is reported of a current that is relative to magnetic north."""
     counted = current.names if current.turn is None else current.names[1:]
@@ -184,14 +241,15 @@ def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str,
             f"{which} are relative to magnetic north; give the `declination` there, positive "
             "to the east (beside `file:`, or `--declination`)"
         )
-    if declination is not None and not current.magnetic:
+    if declination is not None and current.true:
         raise cf_files.UnreadableError(
-            f"{which} are not said to be relative to magnetic north, so no `declination` is "
+            f"{which} are relative to true north by their attributes, so no `declination` is "
             "applied; leave it out"
         )
     if declination is None:
         return ()
-    return (f"{which} were relative to magnetic north, turned by {declination:g}°",)
+    said = "" if current.magnetic else ", as you say: the file does not"
+    return (f"{which} were relative to magnetic north{said}, turned by {declination:g}°",)
 
 
 def _single_levels(
@@ -234,12 +292,15 @@ class ArrayRecord(Record):
                 if found.times is None:
                     raise refused(path, "has no times: it is one profile, for `calm run`")
                 self._index, chosen = choose_profiles(found.times, period, every, path)
-                remarks = found.remarks(self._index)
+                whole, _ = choose_profiles(found.times, period, 1, path)
+                card, doubts = found.inspected(path.name, whole)
             except BaseException:
                 self._dataset.close()
                 raise
+        self.cards = (card,)
         self.time, self.labels = found.times[self._index], found.labels
-        self.notes = (*chosen, *found.notices, *found.turned, *remarks, *found.rules, *RULES)
+        doubts += step_doubts(self.time)
+        self.notes = (*chosen, *found.notices, *found.turned, *doubts, *found.rules, *RULES)
         self.source = {"file": path.name, **found.source}
         self._ahead: tuple[int, int, Levels] | None = None
 

@@ -15,18 +15,20 @@ from itertools import groupby, islice
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError, refused
 from calm.physics.line import Floats, Integers
 from calm.records import current_terms, delimited
-from calm.records.attributes import refused_by_comments, remarks_in_comments
+from calm.records.card import ReadCard, VariableSummary, cut
 from calm.records.cf_files import UnreadableError, holds_arrays, open_current, reading
 from calm.records.current_dataset import ArrayRecord, CurrentDataset
-from calm.records.current_terms import Terms, TimeChoiceError, choose_time, current_notices
+from calm.records.current_terms import Terms, TimeChoiceError, choose_time
 from calm.records.delimited import COMMENT, CellRow, NumberedLine, abridged, read_table
-from calm.records.headings import heading, is_time, magnetic_columns, zone_complaint
+from calm.records.headings import heading, is_time, zone_complaint
 from calm.records.profile_tables import CurrentTable, QuantityTable, read_currents, turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
+from calm.records.value_tests import CurrentValues, current_doubts, step_doubts
 
 _BLOCK = 10_000
 AT_ONCE = 50_000
@@ -102,7 +104,8 @@ def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTab
             raise TimeChoiceError("the file has no times")
         chosen = slice(index, index + 1)
         table = _profile(current.read(chosen), terms, notices)
-        return table, [*notices, *current.remarks(chosen)]
+        card, doubts = current.inspected(path.name, chosen)
+        return replace(table, card=card), [*notices, *doubts]
 
 
 def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
@@ -148,9 +151,12 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
         levels = f"{left_out} level{'s' * (left_out > 1)}"
         notices.append(f"{levels} without a value left out of the current")
     depth, u, v, w = found[known].T
-    notices += [*_comment_notices(header), *turned_notices(header.columns, terms)]
-    notices += current_notices((depth, u[np.newaxis], v[np.newaxis]), None, terms.water_depth)
-    return CurrentTable(*(tuple(each.tolist()) for each in (depth, u, v, w))), notices
+    notices += turned_notices(header.columns, terms)
+    values = CurrentValues(depth, u[np.newaxis], v[np.newaxis], None, terms.water_depth)
+    card = _card_of(header, values, np.empty(0, "M8[ns]"), terms)
+    notices += current_doubts(values)
+    columns = [tuple(each.tolist()) for each in (depth, u, v, w)]
+    return CurrentTable(columns[0], columns[1], columns[2], columns[3], card=card), notices
 
 
 def _rows_of(rows: Sequence[CellRow], time: str | None) -> tuple[list[CellRow], list[str]]:
@@ -185,16 +191,31 @@ class CsvRecord(Record):
         self._kept = tempfile.TemporaryFile()  # noqa: SIM115 (until it is closed)
         try:
             header = self._read(path)
-            told = _comment_notices(header)
             self._index, chosen = choose_profiles(self._times, period, every, path)
         except BaseException:
             self._kept.close()
             raise
         self.time = self._times[self._index]
-        depth, u, v, _ = self.profiles(0, min(self.count, AT_ONCE))
-        odd = current_notices((depth, u, v), self.time[:AT_ONCE], terms.water_depth)
-        self.notes = (*chosen, *told, *self._turned, *odd, *RULES)
+        doubts = self._inspect(header, period, every, path)
+        self.notes = (*chosen, *self._turned, *doubts, *step_doubts(self.time), *RULES)
         self.source = {"file": path.name, "columns": ", ".join(header.columns)}
+
+    def _inspect(
+        self, header: CurrentHeader, period: Period | None, every: int, path: Path
+    ) -> list[str]:
+        """Return what is doubtful about the values of a period, and keep their card."""
+        mine = self._index
+        self._index = choose_profiles(self._times, period, 1, path)[0] if every > 1 else mine
+        times = self._times[self._index]
+        depth, u, v, _ = self.profiles(0, min(len(times), AT_ONCE))
+        self._index = mine
+        # levels of one number where all profiles have the same
+        same = (depth == depth[:1]) | np.isnan(depth)
+        values = CurrentValues(
+            depth[0] if same.all() else depth, u, v, times[:AT_ONCE], self._terms.water_depth
+        )
+        self.cards = (_card_of(header, values, times, self._terms),)
+        return [*current_doubts(values)]
 
     def _read(self, path: Path) -> CurrentHeader:
         """Return every profile of the file into the temporary one."""
@@ -263,18 +284,30 @@ class CsvRecord(Record):
         self._kept.close()
 
 
-def _comment_notices(header: CurrentHeader) -> list[str]:
-    """Return what the comments above a table of currents say that a person should know.
-
-    InputError: they say that it is a part of the current, or in other coordinates than its columns.
-    """
+def _card_of(
+    header: CurrentHeader, values: CurrentValues, times: NDArray[np.datetime64], terms: Terms
+) -> ReadCard:
+    """Return the card of a table: the comments above it, and the current in SI."""
     with header.row.path.open("rb") as file:
         above = (line.decode(errors="replace").strip() for line in islice(file, header.row.number))
-        comments = [line.lstrip("# ") for line in above if line.startswith("#")]
-    magnetic = bool(magnetic_columns(header.columns)[1])
-    if reason := refused_by_comments(comments, magnetic=magnetic):
-        raise refused(header.row.path, f"its current {reason}", line=1)
-    return remarks_in_comments(comments)
+        comment = " ".join(line.lstrip("# ") for line in above if line.startswith("#"))
+    names = {name.lower(): name for name, _ in map(heading, header.columns)}
+    east = north = ", ".join(
+        names[one] for one in ("u", "v", "speed", "toward", "from") if one in names
+    )
+    if "u" in names:
+        east, north = names["u"], names["v"]
+    summaries = {
+        "east": VariableSummary.of(east, "m/s", values.u),
+        "north": VariableSummary.of(north, "m/s", values.v),
+        "depth": VariableSummary.of(names.get("depth", ""), "m", values.depth),
+    }
+    clock = (header.row.cells[0], "") if header.timed else ("", "")
+    texts = {"comment": cut(comment)} if comment else {}
+    return ReadCard(
+        header.row.path.name, texts, summaries, values.u.shape[1], times, clock, {},
+        terms.declination,
+    )  # fmt: skip
 
 
 def _whole_profiles(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[list[CellRow]]:

@@ -1,16 +1,12 @@
 """Terms on which a person wants currents taken, at which time, and what cannot be had."""
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from math import hypot, inf, isinf, pi
+from math import hypot, inf, isinf
 
 import numpy as np
 from numpy.typing import NDArray
-
-from calm.physics.line import Floats
-from calm.quantities import say
 
 Place = tuple[float, float]
 """Latitude and longitude [degrees north, degrees east]."""
@@ -126,128 +122,3 @@ def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int,
         return index, None
     nearest = f"{time_text(times[index])}, nearest to {time_text(moment)}"
     return index, f"the current is that of {nearest}"
-
-
-FAR_APART = np.timedelta64(12, "h")
-"""Between profiles so far apart the tide and its peaks are lost."""
-
-_FEWEST = 4  # values of which it is no chance that they are alike
-_MANY = 50  # currents of which one component is not 0 by chance
-_MOST = 0.5  # share of profiles like the one before that is said
-_ZEROS = 0.25  # share of zeros that is said
-_TURN = 2.0 * pi  # in radians; no current stays within so many degrees of north
-_ALIKE = 0.9  # share of values that are the same in both components
-_BEYOND = 1.5  # times all other values: what recurs there is none
-_VARIED = 20  # other values of which that is said
-_WEAK = 0.01  # m/s that no sea stays below for many profiles
-_UNCOVERED = 0.1  # share of the depth that a profile may leave out at either end
-_FEW = 25.0  # m of that
-
-
-def current_notices(
-    levels: tuple[Floats, Floats, Floats], times: NDArray[np.datetime64] | None, water_depth: float
-) -> Iterator[str]:
-    """Yield what is odd about currents, in sentences.
-
-    Parameters
-    ----------
-    levels : depth, of any shape [m], and u, v (n, k) to the east and to the north, gaps as NaN
-        [m/s]
-    times : (n,) in their order; None of one profile
-    water_depth : [m]; inf where it is not known
-    """
-    depth, u, v = levels
-    there = depth[np.isfinite(depth) & (depth >= 0.0)]
-    if there.size and (missing := left_out(there.min(), there.max(), water_depth)):
-        yield missing
-    known = np.isfinite(u) & np.isfinite(v)
-    count, still = int(known.sum()), known & (u == 0.0) & (v == 0.0)
-    moving = known & ~still
-    if count and still.sum() > _ZEROS * count:
-        yield f"{still.sum()} of {count} currents are exactly 0: was nothing measured there?"
-    if moving.sum() >= _FEWEST:
-        alike = moving & (np.abs(u) == np.abs(v))
-        if alike.sum() > _ALIKE * moving.sum():
-            yield (
-                f"the currents to the east and to the north are the same in {alike.sum()} of "
-                f"{moving.sum()} values: is one a copy of the other?"
-            )
-    if times is None or not len(times):
-        return
-    if len(times) > 1:
-        step = np.median(np.diff(np.sort(times)))
-        if step >= FAR_APART:
-            yield (
-                f"its {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, means "
-                "or samples: tides and peaks between them are missing"
-            )
-    if len(times) >= _FEWEST and moving.any():
-        same = ((u[1:] == u[:-1]) & (v[1:] == v[:-1]) | ~known[1:] & ~known[:-1]).all(axis=1)
-        same &= moving[1:].any(axis=1)
-        if same.sum() > _MOST * (len(times) - 1):
-            yield f"{same.sum()} of {len(times)} profiles are the same as the one before"
-        else:
-            yield from _stuck_levels(u, v)
-        towards = np.degrees(np.arctan2(u[moving], v[moving])) % 360.0
-        if moving.sum() > _MANY and 1.0 < towards.max() <= _TURN:
-            yield (
-                f"all {moving.sum()} currents flow towards {towards.min():.2g} to "
-                f"{towards.max():.2g} degrees: radians read as degrees?"
-            )
-        yield from _recurring(u[moving], "east")
-        yield from _recurring(v[moving], "north")
-        if moving.sum() > _MANY and not (u[moving].any() and v[moving].any()):
-            yield f"all {moving.sum()} currents are along one axis, their other component 0"
-        strongest = float(np.hypot(u[moving], v[moving]).max())
-        if strongest < _WEAK:
-            yield (
-                f"the strongest of {count} currents is {strongest:.2g} m/s: cm/s or another unit "
-                "read as m/s?"
-            )
-
-
-def _recurring(values: Floats, side: str) -> Iterator[str]:
-    """Yield that one value recurs beyond all others, as what fills a gap does [m/s]."""
-    largest = np.abs(values).max()
-    filled = np.abs(values) == largest
-    others = values[~filled]
-    beyond = largest > _BEYOND * np.abs(others).max(initial=0.0)
-    if beyond and filled.sum() >= _FEWEST and np.unique(others).size >= _VARIED:
-        yield (
-            f"{filled.sum()} of {values.size} currents to the {side} are "
-            f"{values[filled][0]:.5g} m/s, far beyond all others: a fill value?"
-        )
-
-
-def _stuck_levels(u: Floats, v: Floats) -> Iterator[str]:
-    """Yield how many levels, of several, have the same current at nearly all times."""
-    known = np.isfinite(u[1:]) & np.isfinite(v[1:])
-    same = (u[1:] == u[:-1]) & (v[1:] == v[:-1])
-    count = known.sum(axis=0)
-    stuck = (count >= _FEWEST) & (same.sum(axis=0) > _ALIKE * count)
-    if 0 < stuck.sum() < stuck.size:
-        yield (
-            f"{stuck.sum()} of {stuck.size} levels have the same current throughout: level "
-            f"{int(np.argmax(stuck)) + 1} from the first on"
-        )
-
-
-def left_out(top: float, bottom: float, water_depth: float, what: str = "current") -> str:
-    """Return which part of the water a profile says nothing of; "" where it covers it.
-
-    Parameters
-    ----------
-    top, bottom : its first and its last level [m]
-    water_depth : [m]; inf where it is not known
-    what : it is a profile of
-    """
-    allowed = max(_UNCOVERED * water_depth, _FEW)
-    gaps = [f"above {say('depth', top)}"] if top > allowed else []
-    if allowed < water_depth - bottom < inf:
-        gaps.append(f"below {say('depth', bottom)}")
-    if not gaps:
-        return ""
-    return (
-        f"the {what} is not given {' and '.join(gaps)}: the value of the nearest level is "
-        f"used there, in {say('depth', water_depth)} of water"
-    )

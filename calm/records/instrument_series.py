@@ -7,7 +7,7 @@ nominal place.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,9 +18,11 @@ from numpy.typing import NDArray
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES_MEASURED, MeasuredQuantity
-from calm.records import cf_files, velocity
+from calm.records import attributes, cf_files, velocity
+from calm.records.card import ReadCard, VariableSummary, joined_cards, said_of, texts_in
 from calm.records.cf_files import UnreadableError, factor_of, first_present, known_values
 from calm.records.level_depths import find_levels
+from calm.records.value_tests import WATER, impossible_values, series_doubts
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,7 +35,7 @@ INTERPOLATED = 8
 
 _SERIALS = (
     "serial", "serial_number", "SERIAL", "instrument_serial", "instrument_serial_number",
-    "sensor_serial_number",
+    "sensor_serial_number", "instrument_id",
 )  # fmt: skip
 _ONE_PLACE = ("instrument_nominal_depth", "nominal_depth", "sensor_depth")
 
@@ -76,6 +78,9 @@ class InstrumentSeries(Identity):
     dropped : readings that were left out for their flag
     below : depth of what is measured below the instrument, a profiler's [m]
     note : what a person should know before trusting it
+    card : what was read from its file
+    pressure : median of those in its file [dbar]; NaN without
+    called : what its own file calls it, whatever label a person gives; empty where it does not
     """
 
     time: NDArray[np.datetime64]
@@ -83,6 +88,38 @@ class InstrumentSeries(Identity):
     dropped: int = 0
     below: float = 0.0
     note: str = ""
+    card: ReadCard | None = None
+    pressure: float = float("nan")
+    called: str = ""
+
+    def judged(self, quantity: str, variable: str, notes: Sequence[str] = ()) -> InstrumentSeries:
+        """Return it without values that cannot be, and with what is doubtful in its note.
+
+        Parameters
+        ----------
+        quantity : name of what was measured
+        variable : that it was read from
+        notes : what is said besides
+
+        Raises
+        ------
+        UnreadableError
+            Most values are those of no sea water: its unit is another.
+        """
+        value, said = self.value, [*notes]
+        if quantity in WATER:
+            wrong, doubt, most = impossible_values(quantity, value)
+            if most:
+                raise UnreadableError(f"`{variable}`: {doubt}")
+            said += [f"`{variable}`: {doubt}"] if doubt else []
+            value = np.where(wrong, np.nan, value)
+            known = value[np.isfinite(value)]
+            if known.size >= _FEWEST and not known.any():
+                said.append(f"`{variable}`: all {known.size} values are 0, and are left out")
+                value = np.full_like(value, np.nan)
+        doubts = series_doubts(value[:, np.newaxis, np.newaxis], self.time)
+        said += [f"`{variable}`: {doubt}" for doubt in doubts]
+        return replace(self, value=value, note="; ".join(filter(None, (self.note, *said))))
 
 
 def read_series(
@@ -155,12 +192,46 @@ def split_label(text: str) -> tuple[str, Path]:
 def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
+    found: dict[str, list[InstrumentSeries]] = {name: [] for name in names}
     with cf_files.opened(path) as dataset:
-        file = _SeriesFile(velocity.with_components(dataset), path.name, flags, seabed)
-        found = {name: series for name in names if (series := file.series(name))}
-        if not found:
+        for part in instruments_apart(velocity.with_components(dataset)):
+            file = _SeriesFile(part, path.name, flags, seabed)
+            for name in names:
+                found[name] += file.series(name)
+        if not any(found.values()):
             raise UnreadableError(f"holds no {' or '.join(names)}")
-    return found
+    cards = [one.card for series in found.values() for one in series if one.card is not None]
+    whole = joined_cards(cards)
+    return {name: [replace(one, card=whole) for one in each] for name, each in found.items()}
+
+
+def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
+    """Return the datasets of instruments whose readings stand one after the other in a file.
+
+    An index says whose a reading is, by its `instance_dimension` (CF's indexed ragged arrays, as in
+    the aggregated and hourly products of IMOS). A dataset without one is returned alone.
+    """
+    for name, index in dataset.variables.items():
+        instances = str(index.attrs.get("instance_dimension", ""))
+        if instances in dataset.dims and index.ndim == 1:
+            whose = np.asarray(index.values)
+            return [
+                dataset.drop_vars([name]).isel({index.dims[0]: whose == i, instances: i})
+                for i in range(dataset.sizes[instances])
+                if (whose == i).any()
+            ]
+    return [dataset]
+
+
+CONDUCTIVITY = ("sea_water_electrical_conductivity",), ("CNDC", "conductivity", "COND", "cond")
+PRESSURE = (
+    ("sea_water_pressure_due_to_sea_water", "sea_water_pressure"),
+    ("PRES_REL", "PRES", "pressure", "pres"),
+)
+"""Standard names and usual names of quantities that others are computed from."""
+PASCALS_PER_DBAR = 1e4
+_LATITUDE = 45.0  # where the file does not say: pressures of depths differ by 0.3 % at most
+_FEWEST = 6  # zeros, of which it is no chance that there is nothing else
 
 
 @dataclass(frozen=True)
@@ -175,34 +246,71 @@ class _SeriesFile:
     def series(self, name: str) -> list[InstrumentSeries]:
         """Return what the instruments measured of a quantity; nothing where they did not."""
         dataset, quantity = self.dataset, QUANTITIES_MEASURED[name]
-        moving = quantity.dimension == "speed"
-        current = self._velocity(quantity) if moving else None
-        variables: Sequence[str] = current.names if current else ()
-        if not moving:
-            variables = named(dataset, quantity.sought, quantity.usual)[:1]
-        if not variables:
-            return []
-        found = readings(dataset, variables, self.flags)
-        first, values = dataset[variables[0]], found.values
+        current = self._velocity(quantity) if quantity.dimension == "speed" else None
         if current is not None:
-            dimensions = ("speed", "speed" if current.turn is None else "angle")
-            pairs = zip(variables, dimensions, strict=True)
-            factors = (factor_of(dataset[one], dimension) for one, dimension in pairs)
-            parts = (each * factor for each, factor in zip(values, factors, strict=True))
-            value = current.components(*parts)[0 if name == "u" else 1]
-        elif name == "temperature":
-            value = values[0] - cf_files.celsius_zero(first)
+            meanings = ("east", "north") if current.turn is None else ("speed", "direction")
+            taken = dict(zip(meanings, current.names, strict=True))
         else:
-            cf_files.refuse_other_salinity(first)
-            value = values[0]
-        value = np.where(found.dropped, np.nan, value)
+            sought = () if quantity.dimension == "speed" else quantity.sought
+            taken = dict(zip([name], named(dataset, sought, quantity.usual), strict=False))
+        if name == "salinity" and not taken:
+            taken = conductivity_in(dataset)
+        if not taken:
+            return []
+        for one in taken.values():
+            if reason := attributes.not_a_value(dataset[one], velocity.layers_of(dataset)):
+                raise UnreadableError(f"`{one}` {reason}")
+        found = readings(dataset, [*taken.values()], self.flags)
         who = who_along(dataset, found.along, self.seabed, self.name)
         below = np.zeros(len(who))
         if found.along is not None and not any(one.known for one in who):
             below = self._bins(found.along, found.axis)
             who = who_along(dataset, None, self.seabed, self.name) * len(who)
-        each = found.series(value, who)
-        return [replace(one, below=float(deep)) for one, deep in zip(each, below, strict=True)]
+        value, notes = self._value(name, taken, found, who, current)
+        value = np.where(found.dropped, np.nan, value)
+        card = card_of(dataset, self.name, taken, found)
+        called = str(dataset.attrs.get("instrument", "")) if found.along is None else ""
+        pressure, variable = self._median_pressure(found), next(iter(taken.values()))
+        return [
+            replace(
+                one, below=float(deep), card=card, pressure=pressure, called=one.label or called
+            ).judged(name, variable, notes)
+            for one, deep in zip(found.series(value, who), below, strict=True)
+        ]
+
+    def _value(
+        self,
+        name: str,
+        taken: Mapping[str, str],
+        found: Readings,
+        who: Sequence[Identity],
+        current: velocity.Velocity | None,
+    ) -> tuple[Floats, list[str]]:
+        """Return (n, k) a quantity in its unit, and what is said of how it was computed."""
+        first = self.dataset[next(iter(taken.values()))]
+        if current is not None:
+            dimensions = ("speed", "speed" if current.turn is None else "angle")
+            names = zip(current.names, dimensions, strict=True)
+            factors = (factor_of(self.dataset[one], dimension) for one, dimension in names)
+            parts = (each * factor for each, factor in zip(found.values, factors, strict=True))
+            return current.components(*parts)[0 if name == "u" else 1], []
+        if "conductivity" in taken:
+            note = "salinity is computed from conductivity, temperature and pressure"
+            nominal = np.array([one.nominal for one in who])
+            return practical_salinity(self.dataset, taken, found.values, nominal), [note]
+        if name == "temperature":
+            return cf_files.converted(first, found.values[0], "degC"), []
+        cf_files.refuse_other_salinity(first)
+        return found.values[0], []
+
+    def _median_pressure(self, found: Readings) -> float:
+        """Return the median pressure of the one instrument of a file [dbar]; NaN without."""
+        names = named(self.dataset, *PRESSURE)[:1]
+        if found.along is not None or not names:
+            return float("nan")
+        known = known_values(self.dataset[names[0]])
+        known = _decibars(self.dataset[names[0]], known[np.isfinite(known)])
+        return float(np.median(known)) if known.size else float("nan")
 
     def _velocity(self, quantity: MeasuredQuantity) -> velocity.Velocity | None:
         """Return the velocity of the file; None where it has none."""
@@ -228,16 +336,71 @@ class _SeriesFile:
         return np.asarray(known_values(levels.variable) * levels.factor)
 
 
+def conductivity_in(dataset: xr.Dataset) -> dict[str, str]:
+    """Return the variables that a salinity is computed from, by what they are.
+
+    Conductivity, temperature and, where there is one, pressure; none without the first two.
+    """
+    temperature = QUANTITIES_MEASURED["temperature"]
+    sought = {
+        "conductivity": CONDUCTIVITY,
+        "temperature": (temperature.sought, temperature.usual),
+        "pressure": PRESSURE,
+    }
+    found = {taken: named(dataset, *names)[:1] for taken, names in sought.items()}
+    taken = {taken: names[0] for taken, names in found.items() if names}
+    return taken if {"conductivity", "temperature"} <= taken.keys() else {}
+
+
+def practical_salinity(
+    dataset: xr.Dataset, taken: Mapping[str, str], values: Sequence[Floats], depth: Floats
+) -> Floats:
+    """Return practical salinities (PSS-78) by TEOS-10.
+
+    Parameters
+    ----------
+    taken : see `conductivity_in`
+    values : of these variables as they stand, all of one shape
+    depth : whose pressure counts where none is measured [m]; 10 m amiss are 0.004 in salinity
+    """
+    import gsw
+
+    convert = {
+        "conductivity": lambda one, found: cf_files.converted(one, found, "mS/cm"),
+        "temperature": lambda one, found: cf_files.converted(one, found, "degC"),
+        "pressure": _decibars,
+    }
+    parts = {
+        each: convert[each](dataset[one], found)
+        for (each, one), found in zip(taken.items(), values, strict=True)
+    }
+    pressure = parts.get("pressure", np.full_like(parts["temperature"], np.nan))
+    known = np.isfinite(pressure)
+    pressure = np.where(known, pressure, gsw.p_from_z(-np.asarray(depth), _LATITUDE))
+    with np.errstate(invalid="ignore"):
+        salinity: Floats = gsw.SP_from_C(parts["conductivity"], parts["temperature"], pressure)
+    return salinity
+
+
+def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
+    return values * (factor_of(variable, "pressure") / PASCALS_PER_DBAR)
+
+
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
     """Return the variables of the first standard name that any has, or else of a usual name.
 
-    UnreadableError: there are several, and none is called as usual.
+    UnreadableError: there are several, and none is called as usual; or one that is called as usual
+    is of another standard name.
     """
     there = _standard(dataset, sought)
     known = [one for one in usual if one in (there or dataset.data_vars)]
     if len(there) > 1 and not known:
         standard = dataset[there[0]].attrs["standard_name"]
         raise UnreadableError(f"several variables are {standard}: {', '.join(there)}")
+    for name in known[:1]:
+        standard = str(dataset[name].attrs.get("standard_name", ""))
+        if standard and standard not in sought:
+            raise UnreadableError(f"`{name}` is {standard}, which is not {sought[0]}")
     return known or there
 
 
@@ -256,6 +419,8 @@ class Readings:
     axis, along : dimension of the times, and of the instruments; None of a single one
     values : (n, k) of each variable, as they stand
     dropped : (n, k) which are left out for the flag of any
+    clock : name and unit of the times
+    flags : readings that are left out, by the variable of flags
     """
 
     time: NDArray[np.datetime64]
@@ -263,6 +428,8 @@ class Readings:
     along: str | None
     values: list[Floats]
     dropped: NDArray[np.bool_]
+    clock: tuple[str, str]
+    flags: dict[str, int]
 
     def series(self, value: Floats, who: Sequence[Identity]) -> list[InstrumentSeries]:
         """Return what each instrument measured, by values (n, k) that were made of these."""
@@ -307,12 +474,36 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
         return moved.reshape(len(moved), -1)[order]
 
     parts = [table(dataset[name], known_values(dataset[name])) for name in names]
-    dropped = np.zeros(parts[0].shape, bool)
+    dropped, removed = np.zeros(parts[0].shape, bool), dict[str, int]()
     for name, values in zip(names, parts, strict=True):
         if (marks := velocity.flag_variable(dataset, name)) is not None:
             given = np.broadcast_to(table(marks, velocity.flags_of(marks)), values.shape)
-            dropped |= ~np.isin(given, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
-    return Readings(times[order], time, along, parts, dropped)
+            bad = ~np.isin(given, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
+            removed[str(marks.name)] = int(bad.sum())
+            dropped |= bad
+    said = clock, str(dataset[clock].attrs.get("units", ""))
+    return Readings(times[order], time, along, parts, dropped, said, removed)
+
+
+def card_of(
+    dataset: xr.Dataset, source: str, taken: Mapping[str, str], found: Readings
+) -> ReadCard:
+    """Return the card of readings.
+
+    Parameters
+    ----------
+    source : name of the file
+    taken : names of the variables, by what each was taken for, in the order of the readings
+    """
+    summaries = {}
+    for (meaning, name), values in zip(taken.items(), found.values, strict=True):
+        told = dataset[name].attrs
+        unit = str(told.get("units", ""))
+        summaries[meaning] = VariableSummary.of(name, unit, values, said_of(told))
+    return ReadCard(
+        source, texts_in(dataset.attrs), summaries, found.dropped.shape[1], found.time,
+        found.clock, found.flags,
+    )  # fmt: skip
 
 
 def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str) -> list[Identity]:
@@ -345,7 +536,9 @@ def _serials(dataset: xr.Dataset, dims: tuple[str, ...]) -> list[str]:
     """Return the serial numbers over some dimensions; none where the file has none."""
     for name in first_present(dataset, _SERIALS):
         if dataset[name].dims == dims:
-            return [text.rstrip("*") for text in cf_files.texts_of(dataset[name])]
+            # IMOS has `deployment; model; serial number` in `instrument_id`
+            texts = (text.rpartition(";")[2].strip() for text in cf_files.texts_of(dataset[name]))
+            return [text.rstrip("*") for text in texts]
     return []
 
 

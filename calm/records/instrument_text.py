@@ -149,6 +149,8 @@ def _rodb(path: Path) -> xr.Dataset:
         nominal, degrees = float(said.get("instrdepth", "nan")), plain_degrees(latitude, "latitude")
     except ValueError:
         raise refused(path, "its `InstrDepth` or `Latitude` is no number") from None
+    if nominal in _MISSING or nominal < 0.0:
+        nominal = math.nan
     serial = said.get("serialnumber", "")
     return _dataset(path, time + seconds.astype("m8[s]"), columns, nominal, degrees, serial)
 

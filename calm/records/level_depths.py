@@ -26,11 +26,6 @@ _FROM_INSTRUMENT = re.compile(
     rf"\b(above|below|from|to) (the )?(\w+ )?{_HEAD}\b|\b(profile|bin) range\b|^range( avg)?\b"
 )
 _OF_THE_WATER = re.compile(r"\b(water|bottom|sea ?(bed|floor)) ?depth\b|\bsea floor\b|\bseabed\b")
-_COUNTED = re.compile(
-    r"\b(bin|cell|layer|level|grid) (number|index|count)\b|"
-    r"\b(number|index) of (the )?(bin|cell|layer|level)s?\b"
-)
-_ALONG_BEAM = re.compile(r"\balong (\w+ ){0,2}beams?\b|\bslant (range|distance)|\bbeam range\b")
 _UPWARDS = re.compile(r"\b(z ?)?up(wards?)?\b")
 _DOWNWARDS = re.compile(r"\b(z ?)?down(wards?)?\b")
 _MODEL_COORDINATE = re.compile(r"ocean_\w*(sigma|s)_\w*coordinate\w*|ocean_sigma\w*")
@@ -142,16 +137,6 @@ class _Levels:
             )
         words = f"{name} " + words_of(levels, "standard_name", "long_name", "reference_datum")
         words = re.sub(r"[\W_]+", " ", words.lower())
-        if _COUNTED.search(words):
-            said = levels.attrs.get("long_name", name)
-            raise UnreadableError(
-                f"`{name}` counts its levels (`{said}`) and does not say how deep they are"
-            )
-        if _ALONG_BEAM.search(f"{words} {words_of(levels, 'comment')}"):
-            raise UnreadableError(
-                f"`{name}` is the distance along the beam, which is longer than the height: "
-                "multiply it by the cosine of the beam's angle, 20° or 25° for most instruments"
-            )
         if _ABOVE_SEABED.search(words):
             return self._above_seabed()
         positive = str(levels.attrs.get("positive", "")).lower()

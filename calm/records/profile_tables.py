@@ -13,9 +13,11 @@ import numpy as np
 from calm.errors import Problem, about_quantity, shown, unknown
 from calm.physics.line import Booleans, Floats, Integers
 from calm.quantities import bearing_of
+from calm.records.card import ReadCard
 from calm.records.current_terms import DEEPEST, Terms, too_deep, too_fast
 from calm.records.delimited import is_gap, plain_numbers
 from calm.records.headings import column_unit, heading, magnetic_columns
+from calm.records.profile_doubts import direction_doubts
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 Report = Callable[[Sequence[str | int], str], Problem]
@@ -208,7 +210,9 @@ _WATER = {"depth": _DEPTH, "density": DENSITY, "temperature": TEMPERATURE, "sali
 class CurrentTable:
     """Hold a current: east, north and upward speeds [m/s] at increasing depths [m].
 
-    `record` is the file of many times that it is one of, and how that is read.
+    `record` is the file of many times that this profile is from, with the terms for reading it.
+    `doubts` are unusual features of its directions as written, and `card` describes what was read
+    from its file.
     """
 
     depth: tuple[float, ...]
@@ -216,6 +220,8 @@ class CurrentTable:
     v: tuple[float, ...]
     w: tuple[float, ...]
     record: tuple[Path, Terms] | None = field(default=None, compare=False, repr=False)
+    doubts: tuple[str, ...] = field(default=(), compare=False, repr=False)
+    card: ReadCard | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -247,7 +253,19 @@ def read_current(table: QuantityTable, terms: Terms = _AS_THEY_STAND) -> Current
     if found is None:
         return None
     depth, u, v, w = (tuple(values.tolist()) for values in found.T)
-    return CurrentTable(depth, u, v, w)
+    return CurrentTable(depth, u, v, w, doubts=_direction_doubts(table))
+
+
+def _direction_doubts(table: QuantityTable) -> tuple[str, ...]:
+    """Return remarks on the column of directions of a valid table."""
+    plain, _ = magnetic_columns(table.columns)
+    quiet = replace(table, columns=plain, problems=[])
+    values = read_columns(quiet, _CURRENT)
+    name = next((name for name in ("toward", "from") if name in values), None)
+    if name is None:
+        return ()
+    flowing = values[name][values["speed"] != 0.0].tolist()
+    return tuple(direction_doubts(flowing, name))
 
 
 def read_currents(

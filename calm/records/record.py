@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from calm.errors import UsageError, refused
 from calm.physics.line import Floats
 from calm.positions import plain_degrees
+from calm.records.card import ReadCard
 from calm.records.current_terms import Place, TimeChoiceError, parse_time, time_text
 
 Times = NDArray[np.datetime64]
@@ -52,12 +53,14 @@ class Record(ABC):
     time : (n,) to the nanosecond, rising
     notes : the rules by which it was read, and what to know before trusting it
     source : its file, its variables and its place, by name
+    cards : what was read from each file, for a person to look at
     labels : of the parts of a line that its levels hang at, which have no depth then; else empty
     """
 
     time: NDArray[np.datetime64]
     notes: tuple[str, ...]
     source: dict[str, str]
+    cards: tuple[ReadCard, ...] = ()
     labels: tuple[str, ...] = ()
 
     @property

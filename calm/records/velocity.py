@@ -23,25 +23,21 @@ class _Sought:
 
     standard: tuple[str, ...]
     usual: tuple[str, ...]
-    way: str = ""
 
 
 _EAST = _Sought(
     ("eastward_sea_water_velocity",),
     ("uo", "UCUR", "EWCT", "water_u", "u", "U", "u_eastward", "u_1205", "U_320", "LCEWAP01",
      "LCEWZZ01", "vozocrtx", "ucur", "u_vel", "east_vel", "UCUR_MAG"),
-    "east",
 )  # fmt: skip
 _NORTH = _Sought(
     ("northward_sea_water_velocity",),
     ("vo", "VCUR", "NSCT", "water_v", "v", "V", "v_northward", "v_1206", "V_321", "LCNSAP01",
      "LCNSZZ01", "vomecrty", "vcur", "v_vel", "north_vel", "VCUR_MAG"),
-    "north",
 )  # fmt: skip
 _UP = _Sought(
     ("upward_sea_water_velocity",),
     ("wo", "WCUR", "water_w", "w", "W", "w_1204", "LRZAAP01", "LRZAZZ01", "WCUR_MAG"),
-    "up",
 )
 _SPEED = _Sought(("sea_water_speed",), ("HCSP", "speed", "CSPD", "CS_300", "LCSAAP01"))
 _TOWARD = _Sought(
@@ -77,7 +73,7 @@ class Velocity:
     names : eastward and northward velocity, or speed and direction
     up : upward velocity, None where there is none
     turn : what is added to a direction to have it flow toward [degrees]; None for components
-    magnetic : whether it is relative to magnetic north
+    magnetic, true : whether it is said to be relative to magnetic north, to true north
     notes : what had to be assumed
     """
 
@@ -85,6 +81,7 @@ class Velocity:
     up: str | None
     turn: float | None
     magnetic: bool
+    true: bool
     notes: tuple[str, ...]
 
     def components(self, first: Floats, second: Floats) -> tuple[Floats, Floats]:
@@ -106,9 +103,8 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     UnreadableError: there is none, there are several, or what is there is not a current to the east
     and north.
     """
-    if (
-        reason := attributes.other_frame(dataset.attrs) or attributes.part_in_texts(dataset.attrs)
-    ) is not None:
+    reason = attributes.other_frame(dataset.attrs) or attributes.moving_platform(dataset)
+    if reason is not None:
         raise UnreadableError(f"its current {reason}")
     notes: list[str] = []
     east, north, up = (_find(dataset, one, regular, notes) for one in (_EAST, _NORTH, _UP))
@@ -123,14 +119,16 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
         if len(units) > 1:
             said = " and ".join(f"`{dataset[name].attrs['units']}`" for name in (east, north))
             notes.append(f"its components have different units, {said}")
-        return Velocity((east, north), up, None, bool(magnetic), tuple(notes))
+        true = attributes.is_true(dataset[east], dataset.attrs)
+        return Velocity((east, north), up, None, bool(magnetic), true, tuple(notes))
     speed = _find(dataset, _SPEED, regular, notes)
     direction, way = _direction(dataset, regular, notes)
     if speed is not None and direction is not None and way is not None:
         notes.append(f"`{direction}` is the direction the current {_FLOWS[way]}")
         turn = 0.0 if way == "to" else 180.0
         magnetic_north = attributes.is_magnetic(dataset[direction], dataset.attrs)
-        return Velocity((speed, direction), up, turn, magnetic_north, tuple(notes))
+        true = attributes.is_true(dataset[direction], dataset.attrs)
+        return Velocity((speed, direction), up, turn, magnetic_north, true, tuple(notes))
     if speed is not None and direction is not None:
         raise UnreadableError(
             f"`{direction}` does not say whether it is where the current flows to or where it "
@@ -150,18 +148,11 @@ def _direction(
     for sought, way in ((_TOWARD, "to"), (_FROM, "from")):
         name = _find(dataset, sought, regular, notes)
         if name is not None:
-            stated = attributes.way_of(dataset[name], "long_name", "comment")
-            if stated not in (way, None):
-                said = dataset[name].attrs.get("long_name") or dataset[name].attrs.get("comment")
-                raise UnreadableError(
-                    f"`{name}` contradicts itself: by its name it is the direction the current "
-                    f"{_FLOWS[way]}, and it says `{said}`"
-                )
             return name, way
     unclear = next((name for name in _AMBIGUOUS if name in dataset.data_vars), None)
     if unclear is None:
         return None, None
-    return _believed(dataset, unclear, _TOWARD), attributes.way_of(dataset[unclear])
+    return _believed(dataset, unclear), attributes.way_of(dataset[unclear])
 
 
 def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]) -> str | None:
@@ -176,7 +167,7 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
             listed = ", ".join(true or found)
             raise UnreadableError(f"several variables are {standard_name}: {listed}")
         if found:
-            return _believed(dataset, (true or found)[0], sought)
+            return _believed(dataset, (true or found)[0])
     name = next((name for name in sought.usual if name in dataset.data_vars), None)
     if name is None:
         return None
@@ -190,7 +181,7 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
         notes.append(f"`{name}`, {own}, is {way}ward: the grid runs along latitudes")
     elif own and own not in sought.standard and not _only_marked(own, sought):
         raise UnreadableError(f"`{name}` is {own}, which is not {sought.standard[0]}")
-    return _believed(dataset, name, sought)
+    return _believed(dataset, name)
 
 
 def _only_marked(own: str, sought: _Sought) -> bool:
@@ -199,14 +190,20 @@ def _only_marked(own: str, sought: _Sought) -> bool:
     return plain != own and plain in sought.standard
 
 
-def _believed(dataset: xr.Dataset, name: str, sought: _Sought) -> str:
-    """Return the name of a variable whose own words do not speak against it."""
-    reason = attributes.not_a_current(dataset[name])
-    if reason is None and sought.way:
-        reason = attributes.another_way(dataset[name], sought.way)
+def _believed(dataset: xr.Dataset, name: str) -> str:
+    """Return the name of a variable whose own attributes do not speak against it."""
+    layers = layers_of(dataset)
+    variable = dataset[name]
+    reason = attributes.not_a_value(variable, layers) or attributes.other_frame(variable.attrs)
     if reason is not None:
         raise UnreadableError(f"`{name}` {reason}")
     return name
+
+
+def layers_of(dataset: xr.Dataset) -> set[str]:
+    """Return the coordinates with bounds and their dimensions: a mean over a layer is a value."""
+    bounded = [name for name, one in dataset.variables.items() if "bounds" in one.attrs]
+    return {str(each) for name in bounded for each in (name, *dataset[name].dims)}
 
 
 _WHOSE = re.compile(r"(?:sensor|instrument|platform|station|mooring|serial)", re.IGNORECASE)
@@ -249,11 +246,9 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
     if name is None:
         return dataset
     vector = dataset[name]
-    for said in (dataset.attrs, vector.attrs):
-        if (reason := attributes.other_frame(said)) is not None:
-            raise UnreadableError(f"`{name}` {reason}")
-    if (reason := attributes.not_a_current(vector)) is not None:
+    if (reason := attributes.other_frame(dataset.attrs)) is not None:
         raise UnreadableError(f"`{name}` {reason}")
+    _believed(dataset, name)
     labels = [str(label).strip().upper() for label in vector[_DIRECTIONS].values.tolist()]
     places = {
         way: next((labels.index(label) for label in wanted if label in labels), None)
@@ -329,3 +324,29 @@ def _flag(value: Any) -> str:
     text = value.decode() if isinstance(value, bytes) else str(value)
     text = text.removeprefix("b'").removesuffix("'").removesuffix(".0")
     return chr(int(text)) if re.fullmatch(r"4[89]|5[0-7]|6[56]|81", text) else text
+
+
+_GOOD_STANDARD = "proportion_of_acceptable_signal_returns_from_acoustic_instrument_in_sea_water"
+_GOOD_NAMES = re.compile(r"(?i)(perg|pg|pgd|percent_?good|prcnt_gd|pct_good)_?[14]?")
+
+
+def good_variables(dataset: xr.Dataset, name: str) -> list[xr.DataArray]:
+    """Return the variables whose sum is the share of good pings of a velocity; none without.
+
+    Where there is one for each beam, the first and the fourth count: the solutions of three and of
+    four beams, in the earth's coordinates.
+    """
+    dims = set(dataset[name].dims)
+    there = [
+        str(other) for other, variable in dataset.data_vars.items()
+        if variable.attrs.get("standard_name") == _GOOD_STANDARD
+        or _GOOD_NAMES.fullmatch(str(other))
+    ]  # fmt: skip
+    found = []
+    for variable in (dataset[other] for other in there):
+        beams = [dim for dim in variable.dims if dim not in dims]
+        if len(beams) == 1 and variable.sizes[beams[0]] == 4:
+            found += [variable.isel({beams[0]: beam}, drop=True) for beam in (0, 3)]
+        elif not beams:
+            found.append(variable)
+    return found

@@ -25,6 +25,7 @@ from calm.report.blocks import Cell, Figure, Prose, ReportPart, Table, number, t
 from calm.report.folder import write_file
 from calm.report.html import page
 from calm.report.provenance import NOT_JUDGED, made_by, report_of
+from calm.report.read_card import card_blocks
 from calm.report.result_files import to_json
 
 
@@ -64,6 +65,7 @@ def summary_report(summary: Summary) -> blocks.Report:
         "Distributions": (*left_out, *statistics_tables(summary)),
         NOT_JUDGED.title: NOT_JUDGED.blocks,
         "Inputs": (
+            *card_blocks(summary.read),
             *(
                 blocks.Listing(name.replace("_", " ").capitalize(), text)
                 for name, text in summary.source.items()

@@ -13,7 +13,7 @@ from calm.batch.statistics.limits import Exceedance, RuleShare
 from calm.batch.statistics.summary import PERCENTILES, Distribution, Response, Summary, WorstProfile
 from calm.checks.finding import State
 from calm.report.blocks import Cell, Field, Table, number, quantity, table_of, words
-from calm.report.check_report import limit_document
+from calm.report.check_files import limit_document
 from calm.report.result_files import members
 from calm.version import __version__
 
@@ -42,6 +42,7 @@ def summary_document(summary: Summary) -> dict[str, Any]:
         "calm": __version__,
         "name": summary.name,
         **summary.source,
+        "read": list(summary.read),
         "profiles": {
             "count": summary.count,
             **{ending.name.lower(): count for ending, count in summary.endings.items()},

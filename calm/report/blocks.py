@@ -19,8 +19,9 @@ class Column:
     """Head of a column: title, unit below it, and whether its cells are numbers.
 
     `share` is that of the width which numbers and short words leave: 0 of a column of short words,
-    1 of names, more of sentences. `short` is the title, in lines, where there is little room; a
-    column that is not `narrow` is left out there. In one that is `marked` cells may carry a mark.
+    1 of names, more of sentences; a column of numbers has one if it is not 1. `short` is the title,
+    in lines, where there is little room; a column that is not `narrow` is left out there. In one
+    that is `marked` cells may carry a mark.
     """
 
     heading: str
@@ -38,7 +39,9 @@ class Cell:
 
     `mark` is the sign after a figure that is near a limit or beyond it. A cell may be indented
     below the row above it, and `strong` where the reader looks for it. On paper the detail of
-    one that `goes_on` follows in the same line.
+    one that `goes_on` follows in the same line, and `then` is what is to be done about it. A `bar`
+    is a share of a limit, drawn with its mark at 1, `picture` a drawing as SVG; `tone` is how a
+    share stands out in a matrix: `fail`, `over` or `near`.
     """
 
     text: str = ""
@@ -48,6 +51,10 @@ class Cell:
     indented: bool = False
     strong: bool = False
     goes_on: bool = False
+    then: str = ""
+    bar: float | None = None
+    picture: str = ""
+    tone: str = ""
 
 
 @dataclass(frozen=True)
@@ -56,7 +63,8 @@ class Table:
 
     A row of a single cell heads those below it. The rows of a table that is `sortable` may be put
     in another order and chosen from; a `dense` one has more columns than fit with room to spare.
-    One that is to be filled in `by_hand` has rules and room to write.
+    One that is to be filled in `by_hand` has rules and room to write. `aside` stands beside the
+    title, in smaller letters. One that is `ruled` has a hair line below each row.
     """
 
     title: str
@@ -67,6 +75,8 @@ class Table:
     sortable: bool = False
     dense: bool = False
     by_hand: bool = False
+    aside: str = ""
+    ruled: bool = True
 
     def without_empty_columns(self) -> Table:
         """Return the table without the columns in which no row has a word, unless `by_hand`."""
@@ -98,11 +108,16 @@ class Pairs:
 
 @dataclass(frozen=True)
 class Figure:
-    """A drawing as SVG, and what it shows in words; a `tall` one may fill a page."""
+    """A drawing as SVG, and what it shows in words; a `tall` one may fill a page.
+
+    `aside` stands beside the title, `note` below the drawing.
+    """
 
     title: str
     svg: str
     tall: bool = False
+    aside: str = ""
+    note: str = ""
 
 
 @dataclass(frozen=True)
@@ -142,17 +157,74 @@ class Heading:
 
 @dataclass(frozen=True)
 class Listing:
-    """Text as it stands in a file."""
+    """Text as it stands in a file; on paper that is attached by its `name`, where it has one.
+
+    One that takes more than `most` lines there is in the attachment alone.
+    """
 
     title: str
+    text: str
+    name: str = ""
+    most: int = 0
+
+
+@dataclass(frozen=True)
+class TitleBlock:
+    """What a drawing is: above and below its title in small letters, and its fields."""
+
+    above: str
+    title: str
+    below: str
+    fields: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class SignOff:
+    """Revisions, and boxes to sign in, each with the name that is known; at the foot of a page.
+
+    Attributes
+    ----------
+    revisions : revision, date, by whom and what for
+    roles : who signs, and the name
+    note : beside the boxes
+    """
+
+    revisions: tuple[tuple[str, str, str, str], ...]
+    roles: tuple[tuple[str, str], ...]
+    note: str
+
+
+@dataclass(frozen=True)
+class OpenItem:
+    """What is open: its state and number, what it is, and what was found and is to be done."""
+
+    state: State
+    number: int
+    head: str
     text: str
 
 
 @dataclass(frozen=True)
-class Signatures:
-    """Rows to be signed by hand: who, name, date, signature."""
+class OpenItems:
+    """The gravest items first; where not all have room, `more` says where the others stand."""
 
-    roles: tuple[str, ...]
+    title: str
+    items: tuple[OpenItem, ...]
+    note: str = ""
+    more: str = ""
+
+
+@dataclass(frozen=True)
+class Beside:
+    """Blocks beside each other on paper, the left ones with a share of the width.
+
+    With a `height` [pt] they have that on paper, and no more.
+    """
+
+    left: tuple[Block, ...]
+    right: tuple[Block, ...]
+    share: float = 0.5
+    height: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -160,30 +232,53 @@ class PageBreak:
     """Begin a page with what follows, where there are pages."""
 
 
-Block = Table | Pairs | Figure | Prose | Note | Heading | Listing | Signatures | PageBreak
+Block = (
+    Table | Pairs | Figure | Prose | Note | Heading | Listing | PageBreak | TitleBlock | SignOff
+    | OpenItems | Beside
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
 class ReportPart:
     """Blocks under a heading; what a command shows of one thing is a part of its own.
 
-    On paper no text of it is smaller than `least` [pt].
+    Its tables have letters of a size [pt] on paper; nothing but a listing has smaller ones.
     """
 
     title: str
     blocks: tuple[Block, ...]
-    least: float = 8.0
+    size: float = 8.0
+
+
+@dataclass(frozen=True)
+class Running:
+    """Hold what stands at the head and the foot of every page.
+
+    Attributes
+    ----------
+    document, title : on the left of the head
+    verdict, date : on its right
+    foot : on the left of the foot; the number of the page is on its right
+    """
+
+    document: str = ""
+    title: str = ""
+    verdict: str = ""
+    date: str = ""
+    foot: str = ""
 
 
 @dataclass(frozen=True)
 class Section:
     """All that a report says of one mooring or tow: its name, and the parts that are printed.
 
-    A section may be made in a process of its own.
+    A section may be made in a process of its own. One with `running` texts of its own begins a
+    page, and has no other title.
     """
 
     name: str
     parts: tuple[ReportPart, ...]
+    running: Running | None = None
 
 
 @dataclass(frozen=True)
@@ -199,6 +294,7 @@ class Report:
     plates : drawings before all else
     verdict : at the head of every page, with its state
     foot : at the foot of every page
+    running : in place of title, verdict, date and foot, where the first page has a block of its own
     """
 
     title: str
@@ -209,6 +305,7 @@ class Report:
     plates: tuple[Figure, ...] = ()
     verdict: Span | None = None
     foot: str = ""
+    running: Running | None = None
 
 
 Field = tuple[Column, Callable[[Any], Any]]
@@ -303,7 +400,7 @@ def table_of(
     *fields: Field,
     note: str = "",
     sums: Iterable[Any] = (),
-    **more: bool,
+    **more: Any,
 ) -> Table:
     """Return a table with a row for each item and a column for each field.
 
@@ -315,7 +412,7 @@ def table_of(
     fields : as `words`, `number` and `quantity` make them
     note : below the table
     sums : items whose rows close the table as its totals
-    more : sortable, dense or by_hand, as in `Table`
+    more : what else a `Table` says
     """
     totals = list(sums)
     rows = (

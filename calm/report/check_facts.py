@@ -1,44 +1,15 @@
-"""Conclusions of a design check: the worst in each environment, and what an engineer signs.
+"""Key figures of a design check: what decides of a mooring, in its JSON."""
 
-The figures that decide are on page one of the report and in its JSON.
-"""
-
-import hashlib
-from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
-from itertools import accumulate, product
-from math import ceil, hypot
-from operator import attrgetter
-from pathlib import Path
+from dataclasses import dataclass
+from math import hypot
 from typing import Any
 
 import numpy as np
 
-from calm.checks.assess import RULES
-from calm.checks.assessment import Assessment, MooringInEnvironment
-from calm.checks.finding import AS_GIVEN, ON_THE_WAY, OWN, Finding, State, by_rule, worst_of
-from calm.files.check_limits import LimitKey
-from calm.quantities import say
-from calm.report import blocks, check_tables
-from calm.report.blocks import Cell, Column, Pairs, ReportPart, Table, number, table_of, words
-from calm.report.check_tables import figure_of, named_components, place_of
-from calm.report.provenance import title_pairs
+from calm.checks.assessment import Assessment
+from calm.checks.finding import State, governing
+from calm.report import check_tables, provenance
 from calm.report.result_files import members
-from calm.units import KILOGRAM_FORCE, KNOT
-from calm.version import __version__
-
-_ABREAST = 5
-"""Environments beside each other in a table; more of them take another table."""
-
-PAGE_ONE = 9.0
-"""Size of the smallest text of page one [pt]."""
-
-_TITLES = ("document", "revision", "date", "author")
-
-_MENDING = "What fails, is unknown or warns"
-_LINES, _SIGNS = 44.0, 76.0  # lines of page one, and letters of a line of a table's words
 
 
 @dataclass(frozen=True)
@@ -65,104 +36,31 @@ class LeastFactor:
     unknown: int
 
 
-Columns = Mapping[str, Mapping[str, Sequence[Finding]]]
-"""Findings by the columns of a summary, and by their rules."""
-
-
-@dataclass(frozen=True)
-class CheckFacts:
-    """Hold what is concluded and signed of one mooring.
-
-    Attributes
-    ----------
-    mooring : its name
-    environments : their names
-    columns : what each rule finds in each environment, and `ON_THE_WAY`
-    titles : name and value of what the title block says
-    sha256 : of the mooring file, byte for byte; None where it can no longer be read
-    current, anchor, factor : what decides; None where it is not known
-    findings, accepted : of which the worst stand on page one
-    departures : limits of the design's own
-    """
-
-    mooring: str
-    environments: frozenset[str]
-    columns: Columns
-    titles: tuple[tuple[str, str], ...]
-    sha256: str | None
-    current: StrongestCurrent
-    anchor: Finding | None
-    factor: LeastFactor | None
-    findings: tuple[Finding, ...]
-    accepted: tuple[Finding, ...]
-    departures: tuple[LimitKey, ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the JSON object, in SI units."""
-        anchor = None
-        if self.anchor is not None:
-            anchor = members(self.anchor, "component", "environment", "situation", "margin")
-            anchor |= {"weight": self.anchor.value, "required_weight": self.anchor.limit}
-        counts = check_tables.counted_states(self.findings)
-        return {
-            "sha256": self.sha256,
-            "strongest_current": vars(self.current),
-            "anchor": anchor,
-            "least_safety_factor": self.factor and vars(self.factor),
-            "counts": {state.value: counts[state] for state in State},
-            "departures": [key.name for key in self.departures],
-        }
-
-
-def facts_of(assessment: Assessment) -> CheckFacts:
-    """Return what is signed of a mooring that is judged."""
-    file = replace(assessment.file, name=assessment.name)
-    every = (*assessment.all_findings(), *assessment.tighter_findings())
+def key_figures(assessment: Assessment) -> dict[str, Any]:
+    """The JSON object, in SI units; null stands for what is not known."""
+    every = [*assessment.every_finding()]
     anchors = [one for one in every if one.rule == "anchor-weight" and one.value is not None]
-    columns = {
-        stand.environment: by_rule((*stand.findings, *stand.tighter, *_missing_in(stand, every)))
-        for stand in assessment.stands
+    anchor = None
+    if anchors:
+        worst = governing(anchors)
+        names = "component", "environment", "situation", "case", "margin", "utilisation"
+        anchor = members(worst, *names)
+        anchor |= {"weight": worst.value, "required_weight": worst.limit}
+    counts, factor = check_tables.counted_states(every), least_factor(assessment)
+    return {
+        "verdict": assessment.verdict,
+        "draft": assessment.draft,
+        "sha256": provenance.input_hash([one.leg.file for one in assessment.stands]),
+        "strongest_current": vars(strongest_current(assessment)),
+        "anchor": anchor,
+        "least_safety_factor": factor and vars(factor),
+        "counts": {state.value: counts[state] for state in State},
+        "departures": [key.name for key in assessment.limits if key.departs],
     }
-    on_the_way = [one for one in assessment.findings if _is_of_the_way(one)]
-    return CheckFacts(
-        assessment.name,
-        frozenset(one.leg.file.environment.name or OWN for one in assessment.stands),
-        columns | {ON_THE_WAY: by_rule(on_the_way)},
-        tuple(title_pairs(file)),
-        _file_hash(Path(file.path)),
-        _strongest_current(assessment),
-        worst_of(anchors) if anchors else None,
-        _least_factor(assessment),
-        every,
-        tuple(assessment.accepted_findings()),
-        tuple(key for key in assessment.limits if key.departs),
-    )
 
 
-def _missing_in(stand: MooringInEnvironment, findings: Iterable[Finding]) -> Iterator[Finding]:
-    """Missing figures without which a rule cannot judge the mooring in an environment."""
-    lacked = {(one.rule, one.place) for one in stand.lacking}
-    for one in findings:
-        if one.missing is not None:
-            wanted = product(one.missing.needed_by, one.missing.places)
-            if not lacked.isdisjoint(wanted):
-                yield one
-
-
-def _is_of_the_way(finding: Finding) -> bool:
-    """Whether a finding concerns launch, recovery or breaks; a missing figure may not."""
-    figure = finding.missing
-    return figure is None or any(RULES[name].once for name in figure.needed_by)
-
-
-def _file_hash(path: Path) -> str | None:
-    try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError:
-        return None
-
-
-def _strongest_current(assessment: Assessment) -> StrongestCurrent:
+def strongest_current(assessment: Assessment) -> StrongestCurrent:
+    """The strongest current of all environments."""
     found = []
     for stand in assessment.stands:
         water = stand.leg.water
@@ -174,8 +72,8 @@ def _strongest_current(assessment: Assessment) -> StrongestCurrent:
     return StrongestCurrent(*max(found, key=lambda each: each[0]), " ".join(weak))
 
 
-def _least_factor(assessment: Assessment) -> LeastFactor | None:
-    """Return the least factor in every situation; None where no piece gives a breaking load."""
+def least_factor(assessment: Assessment) -> LeastFactor | None:
+    """The least factor in every situation; None where no piece gives a breaking load."""
     found = []
     for stand, situation in ((one, each) for one in assessment.stands for each in one.situations):
         if situation.result is None:
@@ -187,222 +85,3 @@ def _least_factor(assessment: Assessment) -> LeastFactor | None:
             at = pieces.label[row], stand.environment, situation.name
             found.append(LeastFactor(float(factors[row]), *at, unknown))
     return min(found, key=lambda each: each.factor, default=None)
-
-
-def key_pairs(facts: CheckFacts) -> Pairs:
-    """Return what decides, a line or two each: on page one, and on a terminal."""
-    current, anchor = facts.current, facts.anchor
-    depth = f" at a depth of {say('depth', current.depth)}" if current.speed else ""
-    speed = _both("speed", current.speed, KNOT, "kn", 2)
-    strongest = f"{speed}{depth}, environment {current.environment}\n{current.weak}".strip()
-    held = "unknown"
-    if anchor is not None:
-        figures = [each for each in (anchor.margin, anchor.value, anchor.limit) if each is not None]
-        if len(figures) == 3:
-            margin, weight, needed = (
-                _both("tension", each, KILOGRAM_FORCE, "kgf", 0) for each in figures
-            )
-            place = place_of(anchor)
-            held = f"{margin}: {weight} held, {needed} needed, environment {place}"
-    counts = check_tables.counted_states(facts.findings)
-    named = (State.FAIL, State.WARN, State.UNKNOWN, State.ESTIMATED, State.ACCEPTED)
-    return Pairs((
-        ("strongest current", strongest),
-        ("anchor margin", held),
-        ("least factor of safety", _factor_text(facts.factor)),
-        ("findings", ", ".join(f"{counts[state]} {state.value}" for state in named)),
-    ))  # fmt: skip
-
-
-def _factor_text(factor: LeastFactor | None) -> str:
-    if factor is None:
-        return "unknown: no piece gives its breaking load"
-    changed = "" if factor.situation == AS_GIVEN else f", {factor.situation}"
-    text = f"{factor.factor:.2f}, {factor.component}, environment {factor.environment}{changed}"
-    if not factor.unknown:
-        return text
-    pieces = "1 piece gives" if factor.unknown == 1 else f"{factor.unknown} pieces give"
-    return f"{text}\n{pieces} no breaking load."
-
-
-def _both(quantity: str, value: float, scale: float, unit: str, decimals: int) -> str:
-    """A value in the unit that people read, and in another that it is asked for."""
-    said = say(quantity, value)
-    return said if said.endswith(unit) else f"{said} ({value / scale:.{decimals}f} {unit})"
-
-
-def facts_part(facts: CheckFacts, title: str = "") -> ReportPart:
-    """Return page one of a mooring, but for the verdict above it and the signatures below."""
-    lacking = [name for name in _TITLES if name not in dict(facts.titles)]
-    origin = [("not given", ", ".join(lacking))] if lacking else []
-    origin += [("computed with", f"CALM {__version__}")]
-    origin.append(("SHA-256 of the file", facts.sha256 or "the file could not be read again"))
-    pairs = (Pairs((*facts.titles, *origin)), key_pairs(facts))
-    said = [text for each in pairs for _, value in each.pairs for text in value.split("\n")]
-    room = _LINES - sum(ceil(len(text) / 75) for text in said)
-    shown: list[Table] = []
-    for table in (*reversed(list(settled_tables(facts))), *_mending(facts.findings)):
-        room -= 4.0  # the title, the heads and the note
-        shown.insert(0, _cut(table, room if table.title == _MENDING else room / 2))
-        room -= sum(_lines_of(row, table.columns, _SIGNS / 4) for row in shown[0].rows)
-    return ReportPart(title, (*pairs, *shown), least=PAGE_ONE)
-
-
-def left_out(facts: CheckFacts) -> Iterator[Table]:
-    """Return what is accepted and what departs, where page one has not room for all of it."""
-    shown = facts_part(facts).blocks
-    return (table for table in settled_tables(facts) if table not in shown)
-
-
-def _cut(table: Table, lines: float) -> Table:
-    """The first rows of a table, as many as fit in some lines but one at least."""
-    signs = _SIGNS / sum(column.share for column in table.columns)
-    total = accumulate(_lines_of(row, table.columns, signs) for row in table.rows)
-    kept = max(sum(each <= lines for each in total), 1)
-    left = len(table.rows) - kept
-    if not left:
-        return table
-    shown = replace(table, rows=table.rows[:kept], note=f"{left} more under Checks.")
-    return shown.without_empty_columns()
-
-
-def _lines_of(row: Sequence[Cell], columns: Sequence[Column], signs: float) -> float:
-    """About how many lines a row takes on page one; its rule and room count as a half.
-
-    A line of a column has so many signs for each of its shares of the width.
-    """
-    pairs = [pair for pair in zip(row, columns, strict=True) if pair[1].share]
-    return 0.5 + max(ceil(len(f"{cell.text} {cell.detail}") / (signs * column.share))
-                     for cell, column in pairs)  # fmt: skip
-
-
-def settled_tables(facts: CheckFacts) -> Iterator[Table]:
-    """Return what the designer has decided: what is accepted, and limits of the design's own."""
-    terms = attrgetter("accept.reason", "accept.by", "accept.date", "accept.until")
-    groups = check_tables.grouped(facts.accepted, terms)
-    rows = [(accept, found) for found in groups if (accept := found[0].accept) is not None]
-    if rows:
-        yield table_of(
-            "Accepted",
-            rows,
-            words("rule", lambda row: ", ".join(RULES[name].title for name in by_rule(row[1]))),
-            words("component", lambda row: named_components(row[1])),
-            *blocks.of_first(
-                words("reason", share=1.8),
-                words("by, on", lambda one: Cell(one.by or "nobody", one.date or ""), 0.8),
-                words("until", lambda one: one.until or "for good", 0.0),
-            ),
-        )
-    if facts.departures:
-        title = "Limits that depart from their defaults"
-        yield check_tables.limits_table(facts.departures, title)
-
-
-def _mending(findings: Sequence[Finding]) -> Iterator[Table]:
-    """The gravest of what fails, is unknown or warns; like findings are one row."""
-    groups = check_tables.to_mend(findings)
-    if groups:
-        yield table_of(
-            _MENDING,
-            groups,
-            *blocks.of_first(
-                check_tables.FIGURES[0], words("rule", lambda one: RULES[one.rule].title, 0.8)
-            ),
-            words("component", named_components),
-            words("finding", lambda found: check_tables.said_of(found[0]).text, 2.2),
-        )
-
-
-def rules_tables(facts: CheckFacts) -> Iterator[Table]:
-    """Rules by environments: state, margin and component of the worst finding of each."""
-    rows = [
-        (
-            rule.title,
-            {column: {name: of[name]} for column, of in facts.columns.items() if name in of},
-        )
-        for name, rule in RULES.items()
-    ]
-    note = "Under each state: the least margin, its component, and what is unknown."
-    return _states("Rules by environment", [*facts.columns], rows, note,
-                   lambda one: f"{figure_of(one, 'margin')} {one.component or ''}")  # fmt: skip
-
-
-def matrix_tables(moorings: Sequence[CheckFacts]) -> Iterator[Table]:
-    """Moorings by environments: the worst state in each, the rule that makes it, and its margin."""
-    every = dict.fromkeys(column for each in moorings for column in each.columns)
-    del every[ON_THE_WAY]
-    rows = [(each.mooring, each.columns) for each in moorings]
-    note = "Under each state: the rule that makes it, its least margin, and how many unknown."
-    return _states("Moorings by environment", [*every, ON_THE_WAY], rows, note,
-                   lambda one: f"{RULES[one.rule].title} {figure_of(one, 'margin')}")  # fmt: skip
-
-
-def _states(
-    title: str,
-    columns: Sequence[str],
-    rows: Iterable[tuple[str, Columns]],
-    note: str,
-    detail: Callable[[Finding], str],
-) -> Iterator[Table]:
-    """Tables of the worst state of each row, a name and what was found of it, in each column.
-
-    The detail of a state stands under it.
-    """
-
-    def cell(row: tuple[str, Columns], column: str) -> Cell:
-        found = row[1].get(column)
-        if not found:
-            return Cell("–")
-        worst = worst_of(map(worst_of, found.values()))
-        missing = sum(one.state is State.UNKNOWN for each in found.values() for one in each)
-        texts = (detail(worst).strip(), f"{missing} unknown" if missing else "")
-        return Cell(worst.state.value, "; ".join(filter(None, texts)), worst.state)
-
-    size = ceil(len(columns) / ceil(len(columns) / _ABREAST))  # of groups much the same
-    for start in range(0, len(columns), size):
-        beside = columns[start : start + size]
-        yield table_of(
-            title,
-            [row for row in rows if any(map(row[1].get, beside))],
-            words(title.split()[0].lower().removesuffix("s"), 0),
-            *(words(name, partial(cell, column=name)) for name in beside),
-            note=note,
-        )
-
-
-def worst_table(moorings: Sequence[CheckFacts]) -> Table:
-    """Each rule with the worst of all its findings, and in how many moorings it fails or warns."""
-    several, rows = len(moorings) > 1, []
-    for name in RULES:
-        found = [
-            (one.mooring, of[name]) for one in moorings for of in one.columns.values() if name in of
-        ]
-        if found:
-            worst = [worst_of(each) for _, each in found]
-            states = {(mooring, one.state) for (mooring, _), one in zip(found, worst, strict=True)}
-            counts = Counter(state for _, state in states) if several else Counter[State]()
-            every = (one for _, each in found for one in each)
-            unknown = {id(one) for one in every if one.state is State.UNKNOWN}
-            rows.append((worst_of(worst), len(unknown), counts))
-
-    def in_so_many(heading: str, state: State) -> blocks.Field:
-        return number(heading, lambda row: row[2][state] or None, narrow=False)
-
-    return table_of(
-        "Worst finding of each rule",
-        rows,
-        *blocks.of_first(words("rule", share=0.0), *check_tables.FIGURES),
-        number("unknown", lambda row: row[1] or None, short="?"),
-        in_so_many("moorings that fail", State.FAIL),
-        in_so_many("that warn", State.WARN),
-        words("where", lambda row: _where(row[0], several)),
-        sortable=True,
-    )
-
-
-def _where(finding: Finding, several: bool) -> str:
-    """The component, with mooring, environment and situation where they are not plain."""
-    places = [finding.component, finding.mooring if several else None]
-    if several or finding.environment != OWN or finding.situation != AS_GIVEN:
-        places.append(place_of(finding))
-    return ", ".join(filter(None, places))

@@ -5,24 +5,20 @@ from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import groupby
-from math import hypot, isnan
+from math import hypot
 from operator import attrgetter
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from calm.case.leg_result import LegResult
 from calm.checks.assess import RULES
-from calm.checks.assessment import Assessment, MooringInEnvironment
 from calm.checks.criterion import said
-from calm.checks.finding import AS_GIVEN, Finding, State, worst_of, worst_state
+from calm.checks.finding import AS_GIVEN, Finding, State, worst_of
 from calm.checks.inventory import InventoryItem
-from calm.checks.recovery import Break
-from calm.drawing.schematic.shown_parts import place_text
 from calm.files.check_limits import LimitKey
 from calm.files.components import FLEXIBLE_KINDS
-from calm.physics.line import Floats
-from calm.quantities import QUANTITIES, say
+from calm.quantities import QUANTITIES
 from calm.report import blocks
-from calm.report.blocks import Cell, Field, Prose, Span, Table, number, quantity, table_of, words
+from calm.report.blocks import Cell, Field, Table, number, quantity, table_of, words
 
 Item = TypeVar("Item")
 
@@ -68,12 +64,6 @@ def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
     return grouped(findings, lambda one: (one.rule, one.state, _wording(one)))
 
 
-def to_mend(findings: Iterable[Finding]) -> list[list[Finding]]:
-    """Return what fails, is unknown or warns, the gravest first, what says the same together."""
-    states = (State.FAIL, State.UNKNOWN, State.WARN)
-    return joined(one for one in worst_by_part(findings) if one.state in states)
-
-
 def _wording(finding: Finding) -> str:
     """Return what a finding says and advises, without its component and figures."""
     text = f"{finding.message} {finding.remedy or ''}"
@@ -111,16 +101,6 @@ def named_components(findings: Iterable[Finding]) -> str:
     return named(one.component or "whole line" for one in findings)
 
 
-def said_of(finding: Finding) -> Cell:
-    """Return what was found and what to do; the figures of a pass say it all, and so does a remedy
-    that names the figure missing."""
-    if finding.state is State.PASS:
-        return Cell()
-    if finding.state is State.UNKNOWN and finding.remedy:
-        return Cell(finding.remedy)
-    return Cell(finding.message, finding.remedy or "")
-
-
 def counted_states(findings: Iterable[Finding]) -> Counter[State]:
     """Return how many parts of one or several moorings each state is the worst of, rule by rule.
 
@@ -128,55 +108,23 @@ def counted_states(findings: Iterable[Finding]) -> Counter[State]:
     or warns.
     """
     by_mooring = grouped(findings, attrgetter("mooring"))
-    found = [one for each in by_mooring for one in grouped(worst_by_part(each), _counted_as)]
+    found = [one for each in by_mooring for one in grouped(worst_by_part(each), counted_as)]
     return Counter(one[0].state for one in found)
 
 
-def _counted_as(finding: Finding) -> Hashable:
-    """Return what findings are counted as one: of equal pieces in one row of the file, what is to
-    be mended.
+GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
+"""States of what is to be mended."""
+
+
+def counted_as(finding: Finding) -> tuple[Hashable, ...]:
+    """What findings have in common that count as one: of equal pieces in one row of the file, such
+    as a cluster of floats, what is to be mended.
     """
     place = finding.place
-    if place is None or finding.state not in (State.FAIL, State.WARN):
-        return id(finding)
+    if finding.missing is not None or place is None or finding.state not in GRAVE:
+        return (id(finding),)
     called = re.sub(r" \d+$", "", finding.component or "")
-    return finding.rule, finding.state, place.row, called, finding.missing
-
-
-def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
-    """The worst state of one or several moorings, and the verdict in words."""
-    findings = list(findings)
-    counts = counted_states(findings)
-    unsigned = [one for one in findings if one.accept is not None and one.accept.by is None]
-    nobody = len(worst_by_part(unsigned))
-    # what is accepted may be a failure, and not only unknown
-    failing = any(one.accept is not None and (one.margin or 0.0) < 0.0 for one in findings)
-    other = "else " if failing else ""
-    state = worst_state(counts)
-    told = [
-        _counted(counts[State.FAIL], "failure") if counts[State.FAIL] else f"nothing {other}fails",
-        _counted(counts[State.UNKNOWN], "figure") + " unknown" if counts[State.UNKNOWN] else "",
-        _counted(counts[State.WARN], "warning") if counts[State.WARN] else "",
-        f"{counts[State.ESTIMATED]} estimated" if counts[State.ESTIMATED] else "",
-        f"{counts[State.ACCEPTED]} accepted" if counts[State.ACCEPTED] else "",
-        f"{nobody} of them by nobody" if nobody else "",
-    ]
-    return state, ", ".join(filter(None, told))
-
-
-def verdict_prose(findings: Iterable[Finding]) -> Prose:
-    """The verdict with its sign, such as ``? nothing fails, 34 figures unknown``."""
-    state, told = verdict_of(findings)
-    return Prose(((Span(f"{state.sign} {told}", state),),), state)
-
-
-def short_verdict(findings: Iterable[Finding]) -> Span:
-    """The verdict for the head of a page, such as ``? 0 fail, 34 unknown, 1 warn``."""
-    given = [*findings]
-    counts = Counter(finding.state for finding in given)
-    states = (State.FAIL, State.UNKNOWN, State.WARN)
-    state, _ = verdict_of(given)
-    return Span(f"{state.sign} {', '.join(f'{counts[one]} {one}' for one in states)}", state)
+    return finding.rule, finding.state, place.row, called
 
 
 def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:
@@ -205,145 +153,10 @@ _RESULTS: dict[str, Callable[[LegResult], float | None]] = {
     "offset": lambda result: hypot(result.top.x, result.top.y),
     "tilt": lambda result: float(result.components.tilt.max()),
     "tension": lambda result: float(result.components.tension.max()),
-    "vertical": lambda result: result.anchor.vertical,
-    "horizontal": lambda result: result.anchor.horizontal,
-    "required_weight": lambda result: result.anchor.required_weight,
+    "vertical": lambda result: result.anchor_load.vertical,
+    "horizontal": lambda result: result.anchor_load.horizontal,
+    "required_weight": lambda result: result.anchor_load.required_weight,
 }
-
-
-def results_table(stands: Sequence[MooringInEnvironment]) -> Table:
-    """The mooring as given in each environment: its top, and the pull on its anchor."""
-
-    def figure(stand: MooringInEnvironment, name: str) -> float | None:
-        return None if stand.result is None else _RESULTS[name](stand.result)
-
-    def status(stand: MooringInEnvironment) -> Cell:
-        failure, state = stand.situations[0].failure, None if stand.result else State.FAIL
-        return Cell(stand.environment, failure.status if failure else "", state)
-
-    return table_of(
-        "Results by environment",
-        stands,
-        words("environment", status),
-        *(quantity(name, partial(figure, name=name)) for name in _RESULTS),
-        note="Depth, knockdown and offset are of the top; tilt and tension are the greatest "
-        "in the line.",
-    )
-
-
-def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
-    """The worst finding of each rule on each component, and the sources of the rules."""
-    kept = worst_by_part(findings)
-    sources = list(dict.fromkeys(finding.source for finding in kept))
-
-    def rule(found: Sequence[Finding]) -> Cell:
-        return Cell(RULES[found[0].rule].title, f"[{sources.index(found[0].source) + 1}]")
-
-    def component(found: Sequence[Finding]) -> Cell:
-        """The components, and where the first, the worst, has its figures."""
-        place = place_of(found[0])
-        where = f"{found[0].component}, {place}" if len(found) > 1 else place
-        return Cell(named_components(found), where)
-
-    state, *figures = FIGURES
-    yield table_of(
-        "Worst finding of each rule on each component",
-        joined(kept),
-        *blocks.of_first(state),
-        words("rule", rule),
-        words("component", component, 1.8),
-        *blocks.of_first(*figures),
-        *blocks.of_first(words("finding and remedy", said_of, 2.5)),
-        note="Components with the same finding share a row, which shows the worst of them; "
-        "every finding is in checks.csv and report.json. [1] is the first source below "
-        "the table.",
-        sortable=True,
-    )
-    yield Prose(tuple(f"[{number}] {source}" for number, source in enumerate(sources, 1)))
-
-
-def breaks_table(backup: Sequence[Break]) -> Table:
-    """Return what would float the release up again after each break."""
-    return table_of(
-        "Back-up buoyancy",
-        backup,
-        number("no.", "break_after"),
-        words("break below", "label"),
-        quantity("wet_weight", "weight_lifted", "weight lifted"),
-        quantity("net_buoyancy", "margin", "buoyancy left over"),
-        quantity("net_buoyancy", "required", "required"),
-        quantity("net_buoyancy", "loose", "comes loose"),
-        words("judged", lambda one: "yes" if one.judged else "no"),
-        note="Breaks inside the lowest cluster of floats, or between it and the release, "
-        "leave the release on the seabed in any design and are not judged. Comes loose: "
-        "the net buoyancy of the part that drifts off, before a release opens.",
-    )
-
-
-def handling_summary(assessment: Assessment) -> blocks.Pairs:
-    """The launch and the recovery in a few figures."""
-    pairs, launch, recovery = [], assessment.launch, assessment.recovery
-    if launch is not None:
-        low, high = (say("speed", speed) for speed in launch.fall_speed_band)
-        speed = f"{say('speed', launch.fall_speed)}; {low} to {high} with twice and half the drag"
-        pairs = [
-            ("Launch, anchor last: speed at touchdown", f"{speed} of line and anchor"),
-            ("Pull of the falling anchor", say("tension", launch.anchor_tension)),
-        ]
-        if not launch.anchor_drag_known:
-            pairs.append(("Drag of the anchor", "unknown; taken as that of a cube of its volume"))
-    if recovery is not None:
-        time, still = recovery.time_to_surface, " in still water" * recovery.in_still_water
-        pairs += [
-            ("Recovery: net buoyancy above the release", say("vertical", recovery.net_buoyancy)),
-            ("Speed of the rise", say("speed", recovery.rise_speed) + still),
-            ("Time to the surface", "-" if time is None else f"{time / 60:.1f} min"),
-        ]
-    return blocks.Pairs(tuple(pairs))
-
-
-def handling_table(assessment: Assessment) -> Table:
-    """Tensions of each piece on its way down and up, and when and where it ends."""
-
-    def figures(name: str, heading: str, values: Floats) -> Field:
-        return quantity(name, lambda piece: float(values[piece.index]), heading)
-
-    fields: list[Field] = []
-    if (launch := assessment.launch) is not None:
-        fields += [
-            figures("tension", "launch, upper end", launch.tension_top),
-            figures("tension", "launch, lower end", launch.tension_bottom),
-        ]
-    if (recovery := assessment.recovery) is not None:
-
-        def minutes(piece: Any) -> str:
-            arrival = recovery.arrival[piece.index] / 60.0
-            return "" if isnan(arrival) else f"{arrival:.1f}"
-
-        fields += [
-            figures("tension", "recovery, upper end", recovery.tension_top),
-            figures("tension", "recovery, lower end", recovery.tension_bottom),
-            number("at the surface after", minutes, "min"),
-            figures("depth", "hangs at depth", recovery.hangs_at),
-        ]
-    pieces = assessment.file.pieces[:-1]
-    heads = number("no.", "index"), words("piece", "label")
-    return table_of("Tensions in the launch and the rise", pieces, *heads, *fields)
-
-
-def deck_table(items: Sequence[InventoryItem]) -> Table:
-    """Pieces in the order in which they come to the deck, with their weights and lifts."""
-    return table_of(
-        "Pieces for the deck",
-        items,
-        number("no.", lambda one: None if one.clamped_on else one.index),
-        words("piece", lambda one: Cell(one.label, indented=one.clamped_on is not None)),
-        words("component", lambda one: one.name or one.use),
-        number("on its piece", lambda one: None if one.at is None else place_text(one.at), "m"),
-        *map(quantity, ("cut_length", "dry_mass", "wet_weight", "lift_mass")),
-        note="On its piece: distance of a clamp from the upper end. Weight in water is "
-        "positive down. Mass of the lift: of the piece with its clamps.",
-    )
 
 
 def inventory_table(items: Sequence[InventoryItem]) -> Table:

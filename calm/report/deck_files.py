@@ -14,8 +14,8 @@ from calm.records.delimited import table_csv
 from calm.report import deck_lists, deck_logs, provenance
 from calm.report.anchor_sheets import drop_part
 from calm.report.blocks import Figure, PageBreak, Report, ReportPart, warned
-from calm.report.check_tables import short_verdict
 from calm.report.diagram import Paper, diagram_pages
+from calm.report.open_items import assessment_verdict
 from calm.report.sheet import net_part
 
 Rows = Iterable[Sequence[object]]
@@ -181,7 +181,7 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     return replace(
         report,
         plates=plates(deck, paper),
-        verdict=short_verdict(deck.assessment.all_findings()),
+        verdict=assessment_verdict(deck.assessment),
         foot=f"{made_by}, inputs SHA-256 {provenance.input_hash([deck.file])}",
     )
 

@@ -11,12 +11,12 @@ from calm.case.leg_result import LegResult
 from calm.deck import Deck
 from calm.drawing import schematic
 from calm.drawing.schematic import FONT, HEAD, LEADING, PlacedPart, placed
-from calm.drawing.schematic.deck_parts import has_plans, parts_of
+from calm.drawing.schematic.deck_parts import has_plans, parts_of_deck
 from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrapped
 from calm.drawing.schematic.shown_parts import TextRow, one_line
 from calm.drawing.schematic.symbols import LINES, Sign, draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
-from calm.report.check_tables import short_verdict
+from calm.report.open_items import assessment_verdict
 from calm.report.provenance import title_pairs
 from calm.report.sheet import ends_told, leg_title
 
@@ -96,7 +96,7 @@ class _Diagram:
         lines = deck.result.legs
         listed = [items for _, items in deck.by_leg(deck.parts, lambda one: one.index)]
         legs = [
-            parts_of(deck, items, surface=line.type == "surface")
+            parts_of_deck(deck, items, surface=line.type == "surface")
             for line, items in zip(lines, listed, strict=True)
         ]
         parts = [part for leg in legs for part in leg]
@@ -338,7 +338,7 @@ def _known(deck: Deck) -> dict[str, str]:
     return {
         "anchor in air, in water": "; ".join(dict.fromkeys(texts)),
         "least backup": say("tension", min(breaks)) if breaks else "none",
-        "design check": short_verdict(deck.assessment.all_findings()).text,
+        "design check": assessment_verdict(deck.assessment).text,
     }
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from math import floor, hypot, log10
+from math import floor, log10
 from typing import TYPE_CHECKING, NamedTuple
 
 from calm.case import Result
@@ -39,41 +39,35 @@ _SHARES = (
 _CHANGES = "Buoyancy is changed for everything buoyant, drag for everything; lengths are not."
 
 
-def line_facts(result: Result) -> tuple[str, ...]:
-    """The weights of a mooring, its length and watch circle, and how it rises when freed."""
+def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
+    """How a mooring rises when freed, and its mass, each under its name."""
     if result.several or result.towed:
         return ()
     items = inventory_of(result.leg.leg)
     masses = [one.dry_mass for one in items if one.role != "anchor"]
-    weights = [one.wet_weight or 0.0 for one in items if one.role != "anchor"]
     unknown = masses.count(None)
-    mass = f"{say('dry_mass', sum(filter(None, masses)))} in air"
+    mass = f"{say('dry_mass', sum(filter(None, masses)))} in air without the anchor"
     if unknown:
-        mass = f"at least {mass} ({unknown} not known)"
+        parts = "1 part gives" if unknown == 1 else f"{unknown} parts give"
+        mass = f"at least {mass} ({parts} no mass)"
     if unknown == len(masses):
-        mass = "no mass in air is known"
-    floats = -sum(weight for weight in weights if weight < 0.0)
-    length = float(result.components.cut_length.sum())
-    depth = result.water.depth
-    return (
-        f"Without the anchor {mass}; what floats lifts {say('wet_weight', floats)}, net "
-        f"{say('wet_weight', -sum(weights))}",
-        f"Line of {say('length', length)}, scope {length / depth:.3f}; watch circle of "
-        f"{say('offset', hypot(result.top.x, result.top.y))} in this current",
-        *_rise(result.leg),
-    )
+        mass = "no part gives its mass in air"
+    rise = (("Recovery", text),) if (text := _rise(result.leg)) else ()
+    return (*rise, ("Mass", mass))
 
 
-def _rise(result: LegResult) -> Iterator[str]:
+def _rise(result: LegResult) -> str:
+    """How a line rises; nothing of one at the surface, or without a solution."""
     with suppress(NoEquilibrium):
-        rise = recovery_of(result.leg, result, first_only=True)
+        rise = recovery_of(result.leg, result)
         if rise.time_to_surface is None:
-            yield "Once released, it does not rise by itself"
-        elif rise.time_to_surface > 0.0:
-            yield (
-                f"Once released, it rises at {say('speed', rise.rise_speed)}: the top surfaces in "
+            return "does not rise by itself"
+        if rise.time_to_surface > 0.0:
+            return (
+                f"rises at {say('speed', rise.rise_speed)}, top at the surface after "
                 f"{duration(rise.time_to_surface)}"
             )
+    return ""
 
 
 class _Shown(NamedTuple):
@@ -299,7 +293,7 @@ def _blocks(comparison: Comparison) -> Iterator[Block]:
     yield _figures("Pieces and instruments", comparison.names, parts)
     margins = [one for one in comparison.figures if one.states is not None]
     if margins:
-        yield _figures("Margins of the design check", comparison.names, margins, all_rows=True)
+        yield _figures("Design check: what governs", comparison.names, margins, all_rows=True)
 
 
 def _figures(

@@ -126,9 +126,7 @@ def write_file(path: Path, content: bytes) -> None:
         raise UsageError(f"cannot write {path}: {error.strerror}") from None
 
 
-def printed(
-    report: Report, paper: str = "a4", least: float = 0.0, leaves: Sequence[str] | None = None
-) -> bytes:
+def printed(report: Report, paper: str = "a4", leaves: Sequence[str] | None = None) -> bytes:
     """Any report on pages; its texts reach the template as data, never as markup.
 
     The same report gives the same bytes: the fonts are those of the package, and the only date is
@@ -137,7 +135,6 @@ def printed(
     Parameters
     ----------
     paper : a4, a3 (lying) or letter
-    least : size of the smallest text of its tables and notes [pt]
     leaves : its sections as `pdf_leaf` has them, where they are made already
     """
     leaves = leaves or [pdf_leaf(section) for section in report.sections]
@@ -148,7 +145,6 @@ def printed(
             "report": pdf_leaf(replace(report, sections=())),
             "sections": f"[{','.join(leaves)}]",
             "paper": "us-letter" if paper == "letter" else paper,
-            "least": f"{least:g}",
         },
         "pdf",
         None if when is None else int(when.timestamp()),
@@ -170,5 +166,5 @@ def _members(part: Any) -> dict[str, Any] | str:
         text, *more = vars(part).values()
         return text if not any(more) else vars(part)
     if isinstance(part, Section):
-        return {"name": part.name, "parts": part.parts}
+        return {"name": part.name, "parts": part.parts, "running": part.running}
     return {"kind": type(part).__name__, **vars(part)}

@@ -1,6 +1,6 @@
 """Report of what was put onto fixed levels: the scales found, sections over time, words."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +11,11 @@ from calm.drawing.plot import empty_figure, figure_svg
 from calm.grid.field import DOUBTFUL, GriddedQuantity
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES_MEASURED
+from calm.records.card import ReadCard
 from calm.report import blocks
 from calm.report.blocks import Figure, Note, Prose, Report, ReportPart, Table, number, table_of
 from calm.report.provenance import report_of
+from calm.report.read_card import card_blocks
 from calm.version import __version__
 
 MOST_DRAWN = 600
@@ -27,7 +29,11 @@ _READ = (
 
 
 def grid_report(
-    output: Path, fields: Mapping[str, GriddedQuantity], names: Mapping[str, str], levels: Floats
+    output: Path,
+    fields: Mapping[str, GriddedQuantity],
+    names: Mapping[str, str],
+    levels: Floats,
+    cards: Sequence[ReadCard] = (),
 ) -> Report:
     """Return the report: a section of each quantity, its scales, words for the methods.
 
@@ -35,6 +41,7 @@ def grid_report(
     ----------
     output : the gridded file
     names : of each quantity in the file
+    cards : what was read from each of the files
     """
     figures: list[Figure] = []
     with open_result(output) as result:
@@ -50,8 +57,27 @@ def grid_report(
         ReportPart("Sections", (*figures, Note((_READ,)))),
         ReportPart("Scales", (scales_table(fields),)),
         ReportPart("For the methods of a cruise report", (Prose(methods_text(fields, levels)),)),
+        ReportPart("Inputs", card_blocks(card.to_dict() for card in cards)),
         name=output.name,
     )
+
+
+def grid_document(
+    fields: Mapping[str, GriddedQuantity], cards: Sequence[ReadCard]
+) -> dict[str, Any]:
+    """Return the JSON object: scales of each quantity [m, s], and what was read from each file."""
+    return {
+        "quantities": {
+            name: {
+                "instruments": list(field.samples.label),
+                "depth_scale": float(field.scales.depth),
+                "time_scale": float(field.scales.time) if field.in_time else None,
+                "rest": float(field.scales.share),
+            }
+            for name, field in fields.items()
+        },
+        "read": [card.to_dict() for card in cards],
+    }
 
 
 def grid_part(fields: Mapping[str, GriddedQuantity]) -> ReportPart:

@@ -13,9 +13,11 @@ from calm.drawing.graph import Axes, Graph, Scale, Stroke, Tick, covering, momen
 from calm.drawing.schematic.pen import shortened, text_width
 from calm.motion.remarks import Agreement, Fault, no_drag
 from calm.motion.study import HeldOut, MotionEstimate, SensorSeries, knockdown
+from calm.records.card import ReadCard
 from calm.report import blocks
 from calm.report.blocks import Figure, Note, Prose, ReportPart, Table, number, table_of, words
 from calm.report.provenance import report_of
+from calm.report.read_card import card_blocks
 from calm.report.result_files import members
 from calm.version import __version__
 
@@ -40,6 +42,7 @@ def motion_report(
     time: NDArray[np.datetime64],
     name: str,
     notes: Sequence[str],
+    cards: Sequence[ReadCard] = (),
 ) -> blocks.Report:
     """Return the report: one page of the whole deployment, and the details.
 
@@ -48,6 +51,7 @@ def motion_report(
     series : of the sensors
     time : (n,)
     notes : what was said of the input
+    cards : what was read from each file
     """
     bare = [one for one in series if not np.isfinite(one.measured).any()]
     sensors = [one for one in series if np.isfinite(one.measured).any()]
@@ -65,6 +69,7 @@ def motion_report(
         *([held_out_table(study.held_out.values())] if study.held_out else []),
     ]
     how = Note((PLAIN if study.plain else UNKNOWN,))
+    said = (Prose(tuple(notes) or ("Nothing was left out.",)),)
     marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
     return report_of(
         f"{name}: where it was",
@@ -73,7 +78,7 @@ def motion_report(
         ReportPart("For the methods of a cruise report", (Prose(methods_text(study, series)),)),
         ReportPart("Factors", (factors, Note((_ASSUMED,)))),
         ReportPart("Measured against computed", (*found, how, *marks)),
-        ReportPart("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
+        ReportPart("Inputs", (*card_blocks(one.to_dict() for one in cards), *said)),
         ReportPart("Depths", tuple(depths)),
         name=name,
     )
@@ -241,11 +246,14 @@ def _said(value: float, decimals: int = 2) -> str:
     return f"{value:.{decimals}f}" if isfinite(value) else "-"
 
 
-def motion_document(study: MotionEstimate, name: str) -> dict[str, Any]:
+def motion_document(
+    study: MotionEstimate, name: str, cards: Sequence[ReadCard] = ()
+) -> dict[str, Any]:
     """The JSON object: factors with their intervals of 95 %, and how well depths agree [m].
 
     `sensors` has for each sensor that was used the agreement of what is estimated, and as `plain`
-    that of the currents alone; `held_out` those that were hidden.
+    that of the currents alone; `held_out` those that were hidden; `read` what was read from each
+    file.
     """
     sensors = [
         {"label": label, **_agreement(fit), "offset": float(offset)}
@@ -264,6 +272,7 @@ def motion_document(study: MotionEstimate, name: str) -> dict[str, Any]:
         "diagnosis": diagnosis_document(study.faults(of_line=False)),
         "line": {"fits": study.fits, "causes": diagnosis_document(study.faults(of_line=True))},
         "doubts": list(study.remarks),
+        "read": [card.to_dict() for card in cards],
     }
 
 

@@ -7,6 +7,7 @@ import platform
 from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
+from importlib.util import find_spec
 from math import hypot
 from pathlib import Path
 from typing import Any
@@ -29,7 +30,8 @@ _LIBRARIES = ("numpy", "pydantic", "jinja2", "typst")
 
 def made_by() -> str:
     """Name and version of CALM, of Python, and of the libraries that compute and draw."""
-    libraries = (f"{name} {version(name)}" for name in _LIBRARIES)
+    there = (name for name in _LIBRARIES if find_spec(name))  # a web page has no typst
+    libraries = (f"{name} {version(name)}" for name in there)
     return ", ".join((f"calm {__version__}", f"python {platform.python_version()}", *libraries))
 
 
@@ -68,6 +70,11 @@ def source_text(file: MooringFile) -> str | None:
         return None
 
 
+def file_name(file: MooringFile) -> str:
+    """The name of the mooring file without its folder."""
+    return Path(file.path).name
+
+
 def input_hash(files: Sequence[MooringFile]) -> str:
     """SHA-256 of the inputs, in hexadecimal digits, as read in each of the environments.
 
@@ -97,7 +104,7 @@ def canonical(value: Any) -> str:
 _BESIDE = (
     "obstacles in the beams of a current profiler, such as its own line or float",
     "growth where no `fouling` is given", "the soil below the anchor", "trawls, ice and ships",
-    "terminations and splices", "batteries and memory",
+    "terminations and splices", "batteries and memory", "magnetic steel beside a compass",
 )  # fmt: skip
 
 UNSEEN = (

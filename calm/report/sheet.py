@@ -14,7 +14,7 @@ from calm.case.leg_result import LegResult
 from calm.case.profilers import ProfilerTravel
 from calm.case.result_tables import ClampRow, ComponentRow, rows_down, table_columns
 from calm.case.strumming import StrummingBand
-from calm.checks.finding import State
+from calm.checks.finding import State, percent_used
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import safety_factor
 from calm.files import Component
@@ -26,21 +26,23 @@ from calm.report.blocks import (
     Cell,
     Column,
     Field,
-    Line,
     Note,
+    Pairs,
     Prose,
     ReportPart,
-    Span,
     Table,
     words,
 )
 from calm.solve import Status
 
-_NOTE = "of the upper end. Tension: the greatest in the piece. ~ near a limit, ! beyond it."
+_NOTE = "at the upper end of a part. Tension: the largest in it."
+_MARKS = {State.WARN: "~ near a limit.", State.FAIL: "! beyond a limit."}
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 
 
-def result_part(result: Result, facts: Sequence[Line] = (), *, verbose: bool = False) -> ReportPart:
+def result_part(
+    result: Result, facts: Sequence[tuple[str, str]] = (), *, verbose: bool = False
+) -> ReportPart:
     """A result in short: it fits 80 columns, where long labels wrap.
 
     A figure beyond its limit carries ``!`` and one near it ``~``, so that nothing hangs on colour.
@@ -48,14 +50,15 @@ def result_part(result: Result, facts: Sequence[Line] = (), *, verbose: bool = F
     Parameters
     ----------
     facts : more about the line, after its summary
-    verbose : say how the solution was reached
+    verbose : say how good the solution is, and how it was reached
     """
     if result.several:
-        return net_part(result)
-    table, (summary, *warnings) = table_of_line(result), summary_of(result.leg)
-    quality = quality_of(result.leg).lines[: None if verbose else 1]
-    ends = replace(summary, lines=(*summary.lines, *facts))
-    shown: tuple[blocks.Block, ...] = (ends, *warnings, Note((table.note, *map(str, quality))))
+        return net_part(result, verbose=verbose)
+    table = table_of_line(result)
+    quality = quality_of(result.leg).lines if verbose else ()
+    summary = Pairs((*summary_pairs(result.leg), *facts))
+    warnings = blocks.warned(result.warnings)
+    shown: tuple[blocks.Block, ...] = (summary, *warnings, Note((table.note, *map(str, quality))))
     return ReportPart(title_of(result.leg), (replace(table, note=""), *shown))
 
 
@@ -67,10 +70,14 @@ def title_of(result: LegResult) -> str:
     return f"{result.name}: {_TYPES[result.type]}, {depth} of water"
 
 
-def summary_of(result: LegResult) -> tuple[Prose, ...]:
-    """The two ends of the line in words, the warnings below them."""
-    ends = _tow_summary(result) if result.towed else _mooring_summary(result)
-    return (Prose((*ends, *_strumming(result))), *blocks.warned(result.warnings))
+def summary_of(result: LegResult) -> tuple[Pairs | Prose, ...]:
+    """The line and its ends in words, the warnings below them."""
+    return (Pairs(summary_pairs(result)), *blocks.warned(result.warnings))
+
+
+def summary_pairs(result: LegResult) -> tuple[tuple[str, str], ...]:
+    """The line and its ends in words, each under its name."""
+    return tuple(_tow_summary(result) if result.towed else _mooring_summary(result))
 
 
 def quality_of(result: LegResult) -> Prose:
@@ -103,36 +110,60 @@ def _travel(profiler: ProfilerTravel) -> str:
     return said
 
 
-def _mooring_summary(result: LegResult) -> tuple[Line, ...]:
-    """The top, and the loads on the anchor, which most legs of a net have not."""
-    top, anchor = result.top, result.anchor
-    off = f", {say('offset', math.hypot(top.x, top.y))} off the anchor"
-    off *= result.leg.anchored
+def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
+    """The top, the line, and the loads on the anchor, which most legs of a net have not."""
+    top = result.top
+    off = f"{say('offset', math.hypot(top.x, top.y))} off the anchor" * result.leg.anchored
     if result.type == "surface":
-        used = f"{top.used_buoyancy:.1%} of its buoyancy used"
-        at = f"at the surface{off}; {used}, {say('reserve', top.reserve)} in reserve"
+        told = [", ".join(filter(None, ("at the surface", off)))]
+        told.append(f"{top.used_buoyancy:.1%} of its buoyancy used, {say('reserve', top.reserve)} "
+                    "in reserve")  # fmt: skip
     else:
-        at = f"{say('depth', top.depth)} deep{off}; "
-        at += f"knockdown {say('knockdown', top.knockdown)}"
-    pull = (
-        f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} from the vertical: "
-        f"{say('vertical', anchor.vertical)} up, {say('horizontal', anchor.horizontal)} sideways"
+        deep, down = say("depth", top.depth), say("knockdown", top.knockdown)
+        told = [", ".join(filter(None, (f"{deep} deep", f"knockdown {down}", off)))]
+    if top.draft is not None:
+        told.append(f"draft {say('draft', top.draft)}, freeboard {say('freeboard', top.freeboard)}")
+    yield "Top", "\n".join((*told, *_strumming(result)))
+    if result.profilers:
+        yield "Profilers", "\n".join(map(_travel, result.profilers))
+    yield "Line", _line_text(result)
+    if result.leg.anchored:
+        yield "Anchor", _anchor_text(result)
+
+
+def _line_text(result: LegResult) -> str:
+    """How long the line is, and where it is loaded most."""
+    rows = result.components
+    told = f"{say('depth', sum(row.length for row in rows))} under load"
+    if result.leg.anchored:
+        told += f", scope {sum(row.cut_length for row in rows) / result.leg.water.depth:.3f}"
+    if result.anchor_load.grounded_length > 0.0:
+        told += f", {say('grounded_length', result.anchor_load.grounded_length)} on the seabed"
+    most = max(rows, key=lambda row: row.tension)
+    told += f"; largest tension {say('tension', most.tension)} in {most.label}"
+    known = [row for row in rows if not math.isnan(row.safety_factor)]
+    if known:
+        least = min(known, key=lambda row: row.safety_factor)
+        told += f"; least safety factor {least.safety_factor:.1f} in {least.label}"
+    return told
+
+
+def _anchor_text(result: LegResult) -> str:
+    """What the anchor weighs and is to weigh, and how it is pulled."""
+    anchor, share = result.anchor_load, ""
+    if anchor.weight > 0.0:
+        share = f" ({percent_used(anchor.required_weight / anchor.weight):.0f} %)"
+    beyond = f" {State.FAIL.sign}" * (anchor.weight < anchor.required_weight)
+    return (
+        f"{say('required_weight', anchor.weight)} in water, "
+        f"{say('required_weight', anchor.required_weight)} required{share}{beyond}\n"
+        f"pulled {say('vertical', anchor.vertical)} up and "
+        f"{say('horizontal', anchor.horizontal)} sideways, {say('angle', anchor.angle)} from the "
+        "vertical"
     )
-    if anchor.grounded_length > 0.0:
-        pull += f"; {say('grounded_length', anchor.grounded_length)} of line on the seabed"
-    needed = say("required_weight", anchor.required_weight)
-    weighs = f"{say('required_weight', anchor.weight)} in water, {needed} needed"
-    if lifts := anchor.weight < anchor.required_weight:
-        weighs += " !"
-    hull = f"Hull: draft {say('draft', top.draft)}, freeboard {say('freeboard', top.freeboard)}"
-    above = f"Top {at}", *([hull] if top.draft is not None else []), *map(_travel, result.profilers)
-    if not result.leg.anchored:
-        return above
-    weight = (Span(f"Anchor weighs {weighs}", State.FAIL if lifts else None),)
-    return *above, f"Anchor pulled by {pull}", weight
 
 
-def _tow_summary(result: LegResult) -> tuple[Line, ...]:
+def _tow_summary(result: LegResult) -> Iterator[tuple[str, str]]:
     """The loads at the ship, and where the body is."""
     point, body = result.tow_point, result.body
     assert point is not None and body is not None
@@ -141,11 +172,12 @@ def _tow_summary(result: LegResult) -> tuple[Line, ...]:
         for end in (point, body)
     )
     vertical = f"{say('vertical', abs(point.vertical))} {'down' if point.vertical >= 0.0 else 'up'}"
-    there = f"Body {_level(result, body.depth)}, layback {say('layback', body.layback)}"
-    return (
-        f"Tow point pulled by {at_ship}: {vertical}, {say('horizontal', point.horizontal)} back",
-        f"{there}; pulled by {at_body}",
+    yield (
+        "Tow point",
+        f"pulled by {at_ship}: {vertical}, {say('horizontal', point.horizontal)} back",
     )
+    told = f"{_level(result, body.depth)}, layback {say('layback', body.layback)}"
+    yield "Body", "\n".join((f"{told}; pulled by {at_body}", *_strumming(result)))
 
 
 def _strumming(result: LegResult) -> tuple[str, ...]:
@@ -155,9 +187,10 @@ def _strumming(result: LegResult) -> tuple[str, ...]:
         together = isinstance(result.file.solver.strumming, BourgetMarichalKeys)
         frequency = f"{'' if together else 'up to '}{say('frequency', strumming.frequency)}"
         least, greatest = say("cn", strumming.cn_min), say("cn", strumming.cn_max)
-        return (f"Strumming at {frequency}, Cn from {least} to {greatest}",)
+        return (f"strumming at {frequency}, Cn from {least} to {greatest}",)
     if band is not None:
-        return (f"If the cables strum, Cn × {band.factor:g}: {_with(result, band)}",)
+        drag = f"normal drag of the cables × {band.factor:g}"
+        return (f"with strumming ({drag}): {_with(result, band)}",)
     return ()
 
 
@@ -174,7 +207,7 @@ def _with(result: LegResult, band: StrummingBand) -> str:
         top = f"top {say('depth', band.depth)} deep"
     else:
         top = f"knockdown {say('knockdown', band.knockdown)}"
-    return f"{top}, anchor {say('tension', band.tension)}"
+    return top
 
 
 def _level(result: LegResult, depth: float) -> str:
@@ -191,11 +224,11 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
     The legs of a net have heads. With `places` a clamp says where on its piece it sits, in place of
     a length.
     """
-    output, of_an_end, heads = Output.MOORING_TABLE, "Depth, height and offset", {}
+    output, of_an_end, heads = Output.MOORING_TABLE, "Depth, height, offset", {}
     if result.towed:
-        output, of_an_end = Output.TOW_TABLE, "Depth and layback"
+        output, of_an_end = Output.TOW_TABLE, "Depth, layback"
     elif result.several:
-        output, of_an_end = Output.NET_TABLE, "Depth, east and north"
+        output, of_an_end = Output.NET_TABLE, "Depth, east, north"
         heads = {leg.leg.keys.first: leg_title(leg) for leg in result.legs}
     plans = (*result.components.planned_depth, *result.clamps.planned_depth)
     planned = not all(map(math.isnan, plans))
@@ -221,7 +254,10 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
             label = Cell(clamp.label, indented=True, strong=strong)
             rows.append((Cell(), label, *cells))
     columns += (blocks.quantity_column(one.quantity) for one in figures if one.quantity)
-    table = Table(title, tuple(columns), tuple(rows), f"{of_an_end}: {_NOTE}", dense=True)
+    marked = {cell.state for row in rows for cell in row if cell.mark}
+    legend = " ".join(text for state, text in _MARKS.items() if state in marked)
+    note = "\n".join(filter(None, (f"{of_an_end}: {_NOTE}", legend)))
+    table = Table(title, tuple(columns), tuple(rows), note, dense=True)
     return table.without_empty_columns()
 
 
@@ -264,13 +300,18 @@ def _cells(
             yield blocks.figure_cell(one.quantity, value, states.get(one.name))
 
 
-def net_part(result: Result) -> ReportPart:
-    """A net in short: a table of the pieces leg by leg, its nodes, its anchors and held ends."""
+def net_part(result: Result, *, verbose: bool = True) -> ReportPart:
+    """A net in short: a table of the pieces leg by leg, its nodes, its anchors and held ends.
+
+    Parameters
+    ----------
+    verbose : say how good the solution is, and how it was reached
+    """
     depth = say("depth", result.file.environment.depth)
     count = len(result.legs)
     title = f"{result.name}: net of {count} leg{'s' * (count != 1)}, {depth} of water"
     table = table_of_line(result)
-    note = Note((table.note, _convergence(result)))
+    note = Note((table.note, *((_convergence(result),) if verbose else ())))
     shown = (replace(table, note=""), *_ends(result), *blocks.warned(result.warnings), note)
     return ReportPart(title, shown)
 

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from math import ceil
 from typing import Any
 
 from rich import table
@@ -67,6 +68,8 @@ class _Printer:
             return [self._text(line, _QUIET) for line in block.lines]
         if isinstance(block, Heading):
             return [self._text(block.text, "bold")]
+        if isinstance(block, blocks.OpenItems):
+            return self._items(block)
         raise TypeError(f"a terminal shows no {type(block).__name__}")
 
     def _table(self, block: Table) -> Iterator[RenderableType]:
@@ -108,6 +111,8 @@ class _Printer:
 
     def _cell(self, cell: Cell, column: Column) -> Text:
         text = f"{cell.text}{cell.mark or ' '}" if column.marked else cell.text + cell.mark
+        if cell.bar is not None:
+            text = bar_text(cell.bar, cell.state)
         style = _STYLES[cell.state] if cell.state else "bold" if cell.strong else ""
         said = self._text(f"  {text}" if cell.indented else text, style)
         if cell.detail:
@@ -119,6 +124,20 @@ class _Printer:
         for name, value in block.pairs:
             rows.add_row(self._text(name), self._text(value))
         return rows
+
+    def _items(self, block: blocks.OpenItems) -> Iterator[RenderableType]:
+        """Each with its sign, the gravest in the colour of its state."""
+        yield self._text(block.title, "bold")
+        rows = table.Table.grid(padding=(0, 1, 0, 0))
+        rows.add_column(no_wrap=True)
+        rows.add_column(overflow="fold")
+        for item in block.items:
+            style = _STYLES[item.state]
+            said = self._text(item.head, style).append_text(self._text(f" {item.text}"))
+            rows.add_row(self._text(item.state.sign, style), said)
+        yield rows
+        if block.note:
+            yield self._text(block.note, _QUIET)
 
     def _line(self, line: Line, state: State | None) -> Text:
         if isinstance(line, str):
@@ -134,6 +153,19 @@ class _Printer:
     def _text(self, text: str, style: str = "") -> Text:
         """A text as it is: never markup, and nothing in it that steers a terminal."""
         return _Words(self._sign(printable(text)), style=style)
+
+
+_BAR, _BEYOND = 10, 3  # cells of a bar up to its mark, and beyond it
+
+
+def bar_text(share: float, state: State | None) -> str:
+    """A share of a limit as a bar with a mark at the limit; hatched beyond it unless that fails.
+
+    A cell stands for a tenth, rounded up.
+    """
+    tenths = min(ceil(_BAR * share - 1e-9), _BAR + _BEYOND)
+    sign = "▒" if tenths > _BAR and state is not State.FAIL else "█"
+    return f"{sign * min(tenths, _BAR):{_BAR}}|{sign * max(tenths - _BAR, 0)}"
 
 
 class _Words(Text):

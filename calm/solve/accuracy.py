@@ -1,11 +1,12 @@
-"""Error of a shape closed on coarse and on halved segments, and the extrapolation from both.
+"""Error estimate from shapes on coarse and on halved segments, and Richardson extrapolation.
 
-The march is of second order: a third of the change from the coarse to the fine shape is the error
-of the fine one, and is added to it (Richardson's extrapolation). Nodes inside the segments of the
-coarse shape, and those at levels that split a segment, take the change of their neighbours.
+The march is of second order: one third of the change from the coarse to the fine shape is the error
+of the fine shape, and is added to the fine shape (Richardson's extrapolation). Nodes inside the
+segments of the coarse shape, and nodes at levels that split a segment, take the change of their
+neighbours.
 
-Nothing that jumps or bends is inside a segment: the march splits segments at levels of the profile
-and where a law of drag switches.
+Segments contain no jumps or kinks, since the march splits them at levels of the profile and
+wherever a drag law switches.
 """
 
 from math import sqrt
@@ -16,8 +17,11 @@ from calm.physics.line import BETTER, HALVES, NO_SEGMENT, SEGMENT, Record
 
 
 class Errors(NamedTuple):
-    """Own estimates of the errors of a shape: of depths and offsets [m], of tensions [N] and
-    relative, and of the upward and the horizontal force at its end [N]."""
+    """Estimated errors of a shape.
+
+    `depth` covers depths and offsets [m]; `tension` [N] and `relative` [-] cover tensions; `lift`
+    and `pull` cover the upward and the horizontal force at its end [N].
+    """
 
     depth: float
     tension: float
@@ -27,7 +31,9 @@ class Errors(NamedTuple):
 
 
 class Extent(NamedTuple):
-    """Size of a recorded shape: its nodes, its elements that hang, and whether it lands."""
+    """Size of a recorded shape: number of nodes, number of hanging elements, and whether it has a
+    touchdown.
+    """
 
     nodes: int
     hanging: int
@@ -45,7 +51,9 @@ def tension_at(record: Record, node: int) -> float:
 
 
 def next_node(record: Record, node: int, last: int) -> int:
-    """The next node that ends a segment, or an element that is none; at most the last."""
+    """Return the next node at the end of a segment, or at an element without segments, up to
+    `last`.
+    """
     node += 1
     while node < last and record[SEGMENT][node] >= HALVES:
         node += 1
@@ -53,17 +61,18 @@ def next_node(record: Record, node: int, last: int) -> int:
 
 
 def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, near: float) -> Errors:
-    """Extrapolate a shape into the columns from `BETTER` on of the fine record; return its errors.
+    """Extrapolate a shape into the columns from `BETTER` on of the fine record, and return its
+    errors.
 
-    Nodes that both shapes have correspond: the ends of segments that hang, the touchdowns, and
-    what lies below them.
+    Only nodes that both shapes have are compared: the ends of hanging segments, the touchdowns, and
+    the nodes below the touchdowns.
 
     Parameters
     ----------
     before, coarse : record of the shape on coarse segments, and its extent
-    after, fine : the same on halved ones
-    near : see `calm.physics.passing.How`; of one of many only the ends of pieces and the clamps are
-        extrapolated
+    after, fine : record of the shape on halved segments, and its extent
+    near : see `calm.physics.passing.How`. For a profile of a batch, only the ends of pieces and the
+        clamps are extrapolated
     """
     end = fine.nodes - 1
     greatest = 0.0
@@ -90,7 +99,7 @@ def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, nea
         before_m = m
         n, m = next_pair(before, coarse, n, after, fine, m)
     last = coarse.nodes - 1
-    # a little more is stated for the end: these are two figures and no worst of many
+    # divided by 2.5 instead of 3, to be cautious: these are two values, not the maximum of many
     east, north = before[3][last] - after[3][end], before[4][last] - after[4][end]
     return Errors(
         place, worst, relative, abs(before[5][last] - after[5][end]) / 2.5,
@@ -101,7 +110,7 @@ def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, nea
 def next_pair(
     before: Record, coarse: Extent, n: int, after: Record, fine: Extent, m: int
 ) -> tuple[int, int]:
-    """The next nodes of a coarse and of a fine shape that correspond."""
+    """Return the next pair of corresponding nodes in the coarse and in the fine shape."""
     last, end = coarse.nodes - 1, fine.nodes - 1
     if not coarse.landed or not fine.landed:
         following = next_node(before, n, last)
@@ -133,8 +142,11 @@ def within_piece(record: Record, node: int) -> bool:
 def thirds_at(
     before: Record, last: int, n: int, after: Record, end: int, m: int
 ) -> tuple[float, float, float]:
-    """A third of the change of a node from the coarse shape to the fine one, in its place relative
-    to the line's end [m] and in its tension [N]; and its tension in the fine shape [N]."""
+    """Return one third of a node's change from the coarse to the fine shape.
+
+    The values are the change of position relative to the line's end [m], the change of tension [N],
+    and the tension in the fine shape [N].
+    """
     x = after[0][m] - after[0][end] - (before[0][n] - before[0][last])
     y = after[1][m] - after[1][end] - (before[1][n] - before[1][last])
     place = max(sqrt(x * x + y * y), abs(after[2][m] - before[2][n])) / 3.0
@@ -143,7 +155,7 @@ def thirds_at(
 
 
 def add_third(before: Record, last: int, n: int, after: Record, end: int, m: int) -> None:
-    """Extrapolate a node that both shapes have, its place relative to the line's end."""
+    """Extrapolate a node that both shapes have, with positions relative to the line's end."""
     for column in range(6):
         third = (after[column][m] - before[column][n]) / 3.0
         if column < 2:
@@ -166,7 +178,7 @@ def fill_between(record: Record, first: int, last: int) -> None:
 
 
 def take_as_marched(record: Record, nodes: int) -> None:
-    """Report the places and forces of a shape as they were marched, not extrapolated."""
+    """Copy the marched positions and forces to the reported columns, without extrapolation."""
     for column in range(6):
         for m in range(nodes):
             record[BETTER + column][m] = record[column][m]

@@ -1,9 +1,8 @@
 """Audit that every solution must pass, recomputed from its coordinates without the march.
 
-Closure: buoyancy and drag of every element from the final positions and axes sum to the force at
-the line's end. Moments: every axis lies along the mean of the forces at its two ends, and a cable
-is stretched as that force has it. Neither uses a number that the march left behind, but for the
-positions.
+Closure: buoyancy and drag of every element, computed from the final positions and axes, sum to the
+force at the line's end. Moments: every axis lies along the mean of the forces at its two ends, and
+the stretch of every cable matches that force. Both use only the positions from the march.
 """
 
 from copy import copy
@@ -12,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from calm.physics.compiled import record_type
-from calm.physics.line import Floats, Line, Water
+from calm.physics.line import Floats, Line, Water, once_per_input
 from calm.physics.referee import Moored, RefereeBody, RefereeShape, element_loads, strumming
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
@@ -22,7 +21,7 @@ from calm.solve.solution import Solution, sizes
 
 
 def loads_of(solution: Solution) -> Floats:
-    """Buoyancy and drag (k, 3) of every element [N]; a rigid piece's at its own middle."""
+    """Return buoyancy and drag (k, 3) of every element [N], for a rigid piece at its midpoint."""
     moored = moored_of(solution.carried, solution.water, solution.frequency, False)
     written: list[list[float]] = [[0.0] * len(solution.cut) for _ in range(3)]
     element_loads(moored, shape_of(solution), written)
@@ -30,7 +29,7 @@ def loads_of(solution: Solution) -> Floats:
 
 
 def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moored:
-    """A line and its water as the referee takes them."""
+    """Convert a line and its water to the array form of the audit."""
     bodies, knots = bodies_of(line)
     law = line.strumming
 
@@ -39,7 +38,7 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
 
     records: Any = np.array(knots, record_type(Knot))
     return Moored(
-        bodies if compiled else list(map(RefereeBody._make, bodies.tolist())),
+        bodies.copy() if compiled else list(map(RefereeBody._make, bodies.tolist())),
         records if compiled else knots,
         len(line.length),
         head_count(line),
@@ -58,13 +57,14 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
 
 
 def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Referee:
-    """A line and its water as the audit takes them, with room to work in."""
+    """Prepare the audit of a line in its water, with work arrays."""
     moored = moored_of(line, water, frequency, compiled)
-    nodes: Any = np.zeros((2, len(line.length)), np.int64)
+    nodes: Any = np.zeros((2, len(line.length)), np.intp)
     first, last = nodes if compiled else nodes.tolist()
     return Referee(moored, copy(moored.bodies), first, last)
 
 
+@once_per_input
 def bodies_of(line: Line) -> tuple[Any, list[Knot]]:
     """The pieces of a line and, after them, its clamps, and the knots of its elongation curves.
 
@@ -103,7 +103,7 @@ _OF_CLAMP = {
 
 
 def shape_of(solution: Solution) -> RefereeShape:
-    """The shape of a solution as the referee takes it: as it was marched."""
+    """Convert the shape of a solution, before extrapolation, to the array form of the audit."""
     nodes = len(solution.position)
     none = np.zeros(1)
     of_elements = solution.element_piece, solution.element_clamp, solution.cut, solution.strain
@@ -116,7 +116,7 @@ def shape_of(solution: Solution) -> RefereeShape:
 
 
 def amplification(solution: Solution) -> Floats:
-    """(k,) how much strumming raises the normal drag of every element above that at rest."""
+    """Return (k,) the factor by which strumming increases the normal drag of every element."""
     line, factor = solution.line, np.ones(len(solution.cut))
     diameter = line.diameter[solution.element_piece]
     if line.strumming is None or solution.frequency == 0.0:
@@ -132,7 +132,9 @@ def amplification(solution: Solution) -> Floats:
 
 
 def flow_across(solution: Solution) -> Floats:
-    """(k,) speed of the current across the axis of every element [m/s]; 0 without length."""
+    """Return (k,) speed of the current normal to the axis of every element [m/s], 0 for no
+    length.
+    """
     chord = np.diff(solution.position, axis=0)
     size = sizes(chord)
     across = np.linalg.norm(np.cross(_flow(solution), chord), axis=1)
@@ -141,6 +143,6 @@ def flow_across(solution: Solution) -> Floats:
 
 
 def _flow(solution: Solution) -> Floats:
-    """Current (k, 3) at the middle of every element [m/s]."""
+    """Current (k, 3) at the midpoint of every element [m/s]."""
     heights = solution.position[:, 2]
     return solution.water.current_at(-0.5 * (heights[:-1] + heights[1:]))

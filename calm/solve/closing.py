@@ -1,7 +1,7 @@
 """Closing a line: the miss that follows from its unknown, and its root on fixed segments.
 
-The *miss* is the height of the line's last end above where it is to be [m]: the top of its anchor,
-or the ship that tows it. It falls as the free end goes deeper and as more buoyancy is used.
+The *miss* is the height [m] of the line's last end above its target: the top of its anchor, or the
+ship that tows it. The miss decreases as the free end goes deeper and as more buoyancy is used.
 """
 
 from math import isnan, nan
@@ -32,23 +32,25 @@ from calm.solve.problem import (
 from calm.solve.solution import FOUND, MARCH_STOPPED, MISSES, NO_SHAPE_NEAR, SLACK_ON_DIGITS
 
 OF_A_PART = 0.01
-"""Miss of a part of a line, which is light and slack, as a share of that of the whole."""
+"""Allowed miss of a light, slack part of a line, as a share of the allowed miss of the line."""
 NEARLY_LINEAR = 5e-3
 """Miss, as a share of the span, below which a secant through a far larger one finds the root."""
 ABOUT, WELL_KNOWN = 2e-3, 1e-6
-"""Miss, as a share of the span, at which segments are kept: of one of many, and of a single line.
-One that is slack turns in other places where it is a thousandth off."""
+"""Miss, as a share of the span, at which segments are kept: in a batch, and for a single line.
+
+A slack line chooses other segments if its miss is a thousandth of the span.
+"""
 COARSEST_BRACKET = 1e-7
 NARROWEST_BRACKET = 1e-15
-"""Width of the last bracket, as a share of the whole range: of a march that chooses its cuts, and
-on fixed ones."""
+"""Width of the last bracket, as a share of the whole range: for a march that chooses its segments,
+and for fixed segments.
+"""
 
 
 class Root(NamedTuple):
-    """Hold where a line closes: its unknown, the value of it, the miss and its slope there.
+    """Root of the miss: the unknown, its value, and the miss and its slope at this value.
 
-    `found` is false where the miss does not change its sign; a miss of NaN shows a march that
-    stopped.
+    `found` is false if the miss does not change sign; a miss of NaN marks a march that stopped.
     """
 
     found: bool
@@ -59,16 +61,17 @@ class Root(NamedTuple):
 
 
 class Closed(NamedTuple):
-    """A closed line, or how it ended: see `calm.solve.solution`.
+    """A closed line, or the reason why it is not closed (see `calm.solve.solution`).
 
     Attributes
     ----------
-    ending, value, piece : FOUND, or why there is none
-    root : the unknown and what is left of the miss [m]
-    nodes, hanging : of the shape, and its elements above the touchdown, all where there is none
+    ending, value, piece : FOUND, or the code of the reason why there is none, with its value and
+        piece
+    root : the unknown and the remaining miss [m]
+    nodes, hanging : number of nodes, and of elements above the touchdown (if any)
     landed : whether there is a touchdown
-    grounded : unstretched length that lies below it [m]
-    segments : how many it has
+    grounded : unstretched length on the seabed below the touchdown [m]
+    segments : number of segments
     """
 
     ending: int
@@ -83,9 +86,9 @@ class Closed(NamedTuple):
 
 
 def whole_line(problem: LineProblem, lands: bool) -> Unknown:
-    """The whole line with its free end below the surface; `lands`: as in `Unknown`.
+    """The unknown of the whole line with its free end below the surface; `lands` as in `Unknown`.
 
-    A line on the seabed ends there, not at the top of its anchor.
+    A line that may lie on the seabed ends there instead of at the top of its anchor.
     """
     limits = problem.limits
     height = 0.0 if lands else limits.anchor_height
@@ -93,20 +96,20 @@ def whole_line(problem: LineProblem, lands: bool) -> Unknown:
 
 
 def down_to(problem: LineProblem, unknown: Unknown, lower: int) -> Unknown:
-    """The question for the part of the line above a float: to bring its top to the surface."""
+    """The unknown of the part of a line above a float: its top must reach the surface."""
     stages = int(problem.surfacing[lower].stage)
     return Unknown(0.0, unknown.sought, unknown.rides, False, stages)
 
 
 def with_sought(unknown: Unknown, sought: int, rides: bool) -> Unknown:
-    """Return the same question for another float."""
+    """Return a copy of an unknown for another float."""
     return Unknown(unknown.goal, sought, rides, unknown.lands, unknown.stages)
 
 
 def miss_at(about: About, x: float) -> float:
-    """The miss at a value of the unknown [m]; NaN where the march stops.
+    """Return the miss at a value of the unknown [m], NaN if the march stops.
 
-    What else the march leaves is in the work of the problem.
+    The other results of the march are left in the work arrays of the problem.
     """
     problem, unknown, work = about.problem, about.unknown, about.problem.work
     depth, out = place(problem, unknown, x)
@@ -133,12 +136,12 @@ def miss_at(about: About, x: float) -> float:
 
 
 def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, float]:
-    """Load what is at the surface for a value of the unknown.
+    """Set the loads of the pieces at the surface for a value of the unknown.
 
     Returns
     -------
-    Depth of the free end, and length of the head above the surface from which it follows [m], 0
-    without.
+    Depth of the free end [m], and length of the pieces above the surface that determines this
+    depth [m], 0 without such pieces.
     """
     work, loads, given = problem.work, problem.course.loads, problem.loads
     if work.left[CHANGED] > 0.0:
@@ -168,7 +171,7 @@ def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, floa
 
 
 def with_share(load: Load, share: float) -> Load:
-    """A float with a share of its buoyancy."""
+    """Return the load of a float with a share of its buoyancy."""
     return changed(
         load, share * load.buoyancy, share * load.volume, 1.0, load.lift, load.push_east,
         load.push_north,
@@ -176,7 +179,7 @@ def with_share(load: Load, share: float) -> Load:
 
 
 def as_riding(load: Load, riding: Riding) -> Load:
-    """A float with the wind on it and its drag at the surface."""
+    """Return the load of a float with the wind on it and its drag at the surface."""
     return changed(
         load, load.buoyancy, load.volume, riding.drag, load.lift, riding.push_east,
         riding.push_north,
@@ -184,7 +187,7 @@ def as_riding(load: Load, riding: Riding) -> Load:
 
 
 def lifted_out(load: Load, share: float, gravity: float) -> Load:
-    """A load with a share of it out of the water: there it is not dragged, nor does it displace."""
+    """Return a load with a share of it out of the water, without drag and displacement there."""
     wet = 1.0 - share
     buoyancy = load.buoyancy - share * REFERENCE_DENSITY * gravity * load.volume
     return changed(
@@ -201,7 +204,7 @@ def changed(
     push_east: float,
     push_north: float,
 ) -> Load:
-    """A load with other forces, its drags multiplied."""
+    """Return a load with other forces and its drag coefficients multiplied by `drag`."""
     return Load(
         load.piece, load.clamp, load.at, load.lever, load.length, buoyancy, volume,
         drag * load.normal_drag, drag * load.tangential_drag, load.directional, lift, push_east,
@@ -210,13 +213,13 @@ def changed(
 
 
 def coarse_about(search: Search, unknown: Unknown) -> About:
-    """Return what the marches are about that only look for the neighbourhood of a root."""
+    """Settings of the marches that search for the neighbourhood of a root."""
     step = search.problem.limits.coarse_step
     return About(search.problem, unknown, step, CHOSEN, False, NOT_RECORDED)
 
 
 def coarse_miss(search: Search, unknown: Unknown, x: float) -> float:
-    """The miss as the march sees it at the coarse step."""
+    """Return the miss of a march with the coarse step [m]."""
     return search.miss(coarse_about(search, unknown), x)
 
 
@@ -226,7 +229,7 @@ def coarse_root(
     """Root of the coarse miss between a and b, to about 1e-4 of the span."""
     span = search.problem.limits.span
     small, linear = 1e-4 * span, unknown.sought == BELOW
-    if linear:  # below the surface the miss all but is, so that the last step needs no march
+    if linear:  # below the surface the miss is almost linear, so the last step needs no march
         small = max(small, 0.2 * max(abs(miss_a), abs(miss_b)))
     x, miss, slope = bracketed_root(
         search.miss, coarse_about(search, unknown), a, miss_a, b, miss_b,
@@ -238,10 +241,12 @@ def coarse_root(
 
 
 def planned(search: Search, root: Root, step: float) -> Root:
-    """The root as the march sees it at a step, near a coarser one; the cuts it takes are chosen.
+    """Find the root of the miss for marches of a given step, near a coarser root, and choose the
+    segments.
 
-    With its free choice of cuts the march is not quite continuous, so this is no solution yet. On
-    the cuts it took last it is: the root is a last step away, which the caller marches.
+    A march that chooses its segments freely is not quite continuous, so this root is not final. On
+    the segments that it chose last it is continuous: that root is one step away, which the caller
+    marches.
     """
     limits = search.problem.limits
     small, record = (ABOUT, OTHER) if limits.near > 0.0 else (WELL_KNOWN, NOT_RECORDED)
@@ -256,7 +261,7 @@ def planned(search: Search, root: Root, step: float) -> Root:
 
 
 def segments_of(problem: LineProblem, cuts: int) -> int:
-    """Number of the segments that were chosen, or of their halves."""
+    """Number of chosen segments, or twice this number if each is halved."""
     chosen = 0
     for k in range(len(problem.course.cables)):
         chosen += problem.work.counts[k]
@@ -264,9 +269,9 @@ def segments_of(problem: LineProblem, cuts: int) -> int:
 
 
 def polish(search: Search, root: Root, cuts: int, record: int) -> Closed:
-    """Close the line on fixed segments, from a root found on others.
+    """Close the line on fixed segments, starting from a root found on other segments.
 
-    Floats at the surface above the one in question are first brought back to the surface.
+    Floats at the surface above the sought one are first brought back to the surface.
     """
     unknown, shares = root.unknown, search.problem.work.shares
     if isnan(root.miss):
@@ -282,7 +287,7 @@ def polish(search: Search, root: Root, cuts: int, record: int) -> Closed:
 
 
 def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
-    """Close a line, or a part of it, on fixed segments."""
+    """Close a line, or a part of a line, on fixed segments near a known root."""
     problem, limits = search.problem, search.problem.limits
     small = 0.1 * limits.allowed
     if limits.near > 0.0:
@@ -308,7 +313,7 @@ def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
 
 
 def not_closed(ending: int, value: float, root: Root) -> Closed:
-    """Return how a line ended that does not close."""
+    """Return the outcome of a line that does not close."""
     return Closed(ending, value, -1, root, 0, 0, False, 0.0, 0)
 
 
@@ -322,7 +327,9 @@ def near_root(
     small: float,
     narrow: float,
 ) -> Root:
-    """Root near another one, across the surface if need be; its march is the last one.
+    """Find the root near a known one, on the other side of the surface if necessary.
+
+    The last march is the march at this root.
 
     Parameters
     ----------

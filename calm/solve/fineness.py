@@ -1,4 +1,4 @@
-"""How finely a line or a net is cut, from the difference between its coarse and its fine shape.
+"""Number of segments of a line or a net, from the difference between its coarse and fine shapes.
 
 Segments are chosen at twice the angle step. The line or net is closed on these, and again with
 every segment halved. The march is of second order, so a third of the change is the error of the
@@ -12,23 +12,24 @@ from calm.solve.accuracy import Errors
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
-"""Largest error estimates at an angle step of 1°, relative to the span and to the tension. They
-grow with the square of the angle step; beyond them a smaller one is taken."""
+"""Largest error estimates at an angle step of 1°, relative to the span and to the tension. Errors
+grow with the square of the angle step; above these limits a smaller angle step is used.
+"""
 MOST_ROUNDS = 6
 """Most rounds of a coarse and a fine shape."""
 MOST_SEGMENTS = 20_000
 
 
-def finer(errors: Errors, span: float, asked: float, step: float, segments: int) -> float:
+def finer(errors: Errors, span: float, requested: float, step: float, segments: int) -> float:
     """Angle step of the next round [rad]; 0 if the shape is fine enough.
 
     Parameters
     ----------
     span : length to which errors of depth are relative [m]
-    asked, step : the angle step of the settings, and that of this round [rad]
+    requested, step : the angle step of the settings, and that of this round [rad]
     segments : number of segments in the fine shape
     """
-    target = degrees(asked)
+    target = degrees(requested)
     target *= target
     place, tension = DEPTH_TARGET * target, TENSION_TARGET * target
     excess = max(errors.depth / (place * span), errors.relative / tension)

@@ -1,4 +1,4 @@
-"""From a closed line to a solution, or to the reason why there is none."""
+"""Turn a closed line into a solution, or into the reason why there is no equilibrium."""
 
 from dataclasses import replace
 
@@ -32,7 +32,7 @@ STATUS_OF = {
     solution.OUT_OF_BALANCE: Status.NOT_CONVERGED,
     solution.FOLDED: Status.SLACK,
 }
-"""What an ending comes to."""
+"""Status for each outcome of a search."""
 
 _OF_CLAMP = {
     "clamp_buoyancy": "buoyancy",
@@ -52,7 +52,7 @@ _OF_PIECE = {
         "push_north",
     )
 }
-"""Columns of a line and what of a load of the march stands there."""
+"""Columns of a line, and the field of a march's load that each corresponds to."""
 
 
 def solution_of(
@@ -63,12 +63,12 @@ def solution_of(
     found: FoundShape,
     frequency: float = 0.0,
 ) -> Solution:
-    """The solution in the record `FINE`.
+    """Build the solution from the record `FINE`.
 
     Parameters
     ----------
-    problem : of the line, as it was left by the search
-    frequency : of the cables that strum [Hz]
+    problem : problem of the line, in its state after the search
+    frequency : strumming frequency of the cables [Hz]
     """
     closed, errors = found.closed, found.errors
     trace = Trace.of(problem.work.records[FINE], closed.nodes)
@@ -115,7 +115,7 @@ def solution_of(
 
 
 def _buoyancy_in_use(problem: LineProblem, found: FoundShape) -> tuple[float, float]:
-    """Share in use of the buoyancy of the floats at the surface, and the rest of it [N]."""
+    """Share in use of the buoyancy of the floats at the surface, and the unused buoyancy [N]."""
     sought = found.closed.root.unknown.sought
     if sought == BELOW:
         return 1.0, 0.0
@@ -126,7 +126,9 @@ def _buoyancy_in_use(problem: LineProblem, found: FoundShape) -> tuple[float, fl
 
 
 def carried_by(line: Line, problem: LineProblem) -> Line:
-    """The line as it is loaded: what is at the surface by what is in the water and in use of it."""
+    """Return the line with its loads in use: pieces at the surface with their submerged part
+    only.
+    """
     if not problem.work.left[CHANGED]:
         return line
     columns = {name: getattr(line, name).copy() for name in (*_OF_PIECE, *_OF_CLAMP)}
@@ -141,12 +143,12 @@ def carried_by(line: Line, problem: LineProblem) -> Line:
 def solution_found(
     found: FoundShape, problem: LineProblem, line: Line, water: Water, settings: Settings
 ) -> Solution:
-    """The solution of an audited shape in the record `FINE`.
+    """Build the solution of an audited shape from the record `FINE`.
 
     Raises
     ------
     NoEquilibrium
-        There is none.
+        The search ended without a shape.
     """
     if found.closed.ending != solution.FOUND:
         raise refusal_of(found, line, water)
@@ -154,7 +156,7 @@ def solution_found(
 
 
 def refuse_unbalanced(closure: float, moment: float) -> None:
-    """Refuse a shape that the audit does not pass.
+    """Raise an exception if the force closure or the balance of moments is too poor.
 
     Raises
     ------
@@ -166,20 +168,20 @@ def refuse_unbalanced(closure: float, moment: float) -> None:
 
 
 def audit_refusal(ending: int, value: float) -> NoEquilibrium:
-    """Return what the audit says against a shape."""
+    """Return the exception for a shape that failed the audit."""
     if ending == solution.NOT_CLOSED:
         return Status.NOT_CONVERGED.because(
-            f"The loads do not sum to the force at the line's end: they are {value:.1e} off."
+            f"The loads do not balance the force at the line's end (relative error {value:.1e})."
         )
     return Status.NOT_CONVERGED.because(f"A piece is {value:.1e} rad out of balance.")
 
 
 def closing_refusal(closed: Closed) -> NoEquilibrium:
-    """Return why a line does not close."""
+    """Return the exception for a line that does not close."""
     if closed.ending == solution.MARCH_STOPPED:
         return march_stopped(closed.value)
     if closed.ending == solution.NO_SHAPE_NEAR:
-        return Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
+        return Status.NOT_CONVERGED.because("No closed shape was found near the approximate shape.")
     if closed.ending == solution.SLACK_ON_DIGITS:
         return Status.SLACK.because(
             "The line is slack: its shape depends on the last digits of the buoyancy in use."
@@ -190,12 +192,12 @@ def closing_refusal(closed: Closed) -> NoEquilibrium:
 
 
 def march_stopped(failure: float, piece: int | None = None) -> NoEquilibrium:
-    """Return why a march stopped, by its number."""
+    """Return the exception for a march that stopped, from its failure number."""
     return Status.NOT_CONVERGED.because(f"The march stopped: {FAILURES[int(failure)]}.", piece)
 
 
 def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
-    """Return why a moored line has no shape."""
+    """Return the exception for a moored line without a shape."""
     ending, value, piece = found.closed.ending, found.closed.value, found.closed.piece
     if ending in (
         solution.MARCH_STOPPED,
@@ -235,7 +237,7 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
 
 
 def _longer_than_deep(line: Line, water: Water) -> str:
-    """Return that a line is longer than its water is deep; empty where it is not."""
+    """Return a sentence if the line is longer than the water depth, else an empty string."""
     depth, length = water.depth, float(line.length.sum())
     if length <= depth:
         return ""
@@ -244,33 +246,33 @@ def _longer_than_deep(line: Line, water: Water) -> str:
 
 
 def watch_circle_radius(length: float, height: float) -> float:
-    """Return how far a surface float can be from its anchor, √(length² − height²) [m].
+    """Largest distance of a surface float from its anchor, √(length² − height²) [m].
 
     Parameters
     ----------
-    length : of the line from the float to the anchor [m]
-    height : of the surface above the top of the anchor [m]
+    length : length of the line from the float to the anchor [m]
+    height : height of the surface above the top of the anchor [m]
     """
     return float(np.sqrt(max(length**2 - height**2, 0.0)))
 
 
 def doubted_depth(depth: float) -> str:
-    """Return what is likely where a line is far too long for its water."""
+    """Return the advice to check the depth, for a line far too long for its water."""
     return f" The water is {depth:.1f} m deep: check `depth` and its unit (m, ft)."
 
 
 def risen(piece: int, above: float, likely: str = "") -> NoEquilibrium:
-    """A line that would rise out of the water."""
+    """Return the exception for a line that would rise out of the water."""
     return Status.ABOVE_SURFACE.because(
-        f"The line would rise out of the water: {{piece}} comes {above:.2f} m above the surface."
+        f"The line would rise out of the water: {{piece}} is {above:.2f} m above the surface."
         + likely,
         piece,
     )
 
 
 def touching(piece: int, below: float, likely: str = "") -> NoEquilibrium:
-    """A line that would touch the seabed."""
+    """Return the exception for a line that would touch the seabed."""
     return Status.GROUNDED.because(
-        f"The line would touch the seabed: {{piece}} comes {below:.2f} m below it." + likely,
+        f"The line would touch the seabed: {{piece}} is {below:.2f} m below it." + likely,
         piece,
     )

@@ -1,4 +1,6 @@
-"""Cutting a piece to length: a mooring's top in still water, or a tow at its speed, to a depth."""
+"""Fit the length of a piece: to the depth of a mooring's top in still water, or of a tow at
+speed.
+"""
 
 from dataclasses import replace
 from math import inf
@@ -16,11 +18,11 @@ from calm.solve.solution import (
     Settings,
     Status,
     refuse_unsupported,
-    runs_compiled,
     standing_lift,
     too_heavy,
 )
 from calm.solve.tow import Towing, solve_tow
+from calm.solve.two_speeds import runs_compiled
 
 
 def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings: Settings) -> float:
@@ -28,25 +30,24 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
 
     Parameters
     ----------
-    line : its `piece`, a cable or chain, has any length
+    line : the line; its `piece`, a cable or chain, may have any length
     top_depth : wanted depth of the free end [m]
 
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` where no length does it: the other pieces alone are too long, what is
-        clamped on the piece sits too low, or too little holds the line up; ``slack`` where the
-        line would fold.
+        ``no-equilibrium`` if no length fits: the other pieces alone are too long, the items clamped
+        on the piece sit too low, or there is too little buoyancy; ``slack`` if the line would fold.
     """
     still_water = water.still()
     refuse_unsupported(line, still_water, standing_lift(line, still_water))
     upright = _upright_length(line, still_water, piece, top_depth, settings)
     shortest = float(line.clamp_at[line.clamp_piece == piece].max(initial=0.0))
-    # a plumb line is exact with long segments
+    # long segments are exact for a plumb line
     coarse = replace(settings, angle_step=max(settings.angle_step, COARSE_STEP))
 
     def excess(_: None, length: float) -> float:
-        """Depth of the free end of the line as it is solved, below what is asked."""
+        """Depth of the free end of the solved line, minus the wanted depth [m]."""
         try:
             solution = solve_mooring(line.with_length(piece, length), still_water, coarse)
         except NoEquilibrium as refusal:
@@ -58,7 +59,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     near = settings.tolerance * water.depth
     if upright is not None and abs(excess(None, upright)) <= near:
         return upright
-    # part of the line lies on the seabed, which lengthens what stands by nothing
+    # part of the line lies on the seabed, so a longer piece does not lengthen the suspended part
     room = water.depth - line.anchor_height - top_depth
     others = float(line.length.sum()) - float(line.length[piece])
     start = max(room - others, shortest) if upright is None else upright
@@ -73,7 +74,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     clamped = f" and its own {shortest:.2f} m down to the lowest clamp" if shortest else ""
     raise Status.NO_EQUILIBRIUM.because(
         f"No length of {{piece}} puts the top of the line at {top_depth:g} m: the other pieces, "
-        f"{others:.2f} m unstretched{clamped}, have {room:.2f} m of water to stand in."
+        f"{others:.2f} m unstretched{clamped}, are longer than the {room:.2f} m available."
         + (doubted_depth(water.depth) if others > 2.0 * room else ""),
         piece,
     )
@@ -82,9 +83,10 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
 def _upright_length(
     line: Line, water: Water, piece: int, top_depth: float, settings: Settings
 ) -> float | None:
-    """Return the length of a piece with which the line stands upright from its anchor [m].
+    """Length of a piece that makes the line upright between its anchor and the wanted top depth
+    [m], or None.
 
-    None where there is none; `water` is still.
+    `water` is still.
     """
     still, goal = Profile(water), line.anchor_height - water.depth
     room = water.depth - line.anchor_height - top_depth
@@ -125,14 +127,14 @@ def fit_tow_length(
 
     Parameters
     ----------
-    line : from the ship to the towed body; its `piece`, a cable or chain, has any length
-    depth : wanted of that piece's lower end at the speed of the tow [m]
+    line : line from the ship to the towed body; its `piece`, a cable or chain, may have any length
+    depth : wanted depth of that piece's lower end at the speed of the tow [m]
 
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` where no length up to a thousand times the depth does it, and what
-        `solve_tow` raises but for the surface and the seabed.
+        ``no-equilibrium`` if no length up to a thousand times the depth fits, and the exceptions of
+        `solve_tow` except for the surface and the seabed.
     """
     bottomless = replace(water, depth=inf)
     node = len(line.length) - 1 - piece
@@ -150,7 +152,7 @@ def fit_tow_length(
     shortest = float(line.clamp_at[line.clamp_piece == piece].max(initial=1e-3 * depth))
     longest = 1000.0 * depth
     start = max(depth + towing.height, shortest)
-    # where a solution's cuts change their number its depth makes a step, within its accuracy
+    # the depth jumps, within the accuracy, where the number of segments changes
     found, fitting, left, _ = root_near(
         lacking, None, start, -1.0, shortest, longest, 1e-7 * depth, 1e-9 * depth
     )
@@ -159,8 +161,8 @@ def fit_tow_length(
         out, lack = (shortest, short) if short < 0.0 else (longest, lacking(None, longest))
         raise Status.NO_EQUILIBRIUM.because(
             f"No length of {{piece}} brings its lower end to {depth:g} m at this speed: "
-            f"with {out:g} m out it runs at {depth - lack:.2f} m.",
+            f"with {out:g} m out it is at {depth - lack:.2f} m.",
             piece,
-            "Choose another depth or speed, or change what the cable or its body weighs.",
+            "Choose another depth or speed, or change the weight of the cable or towed body.",
         )
     return fitting

@@ -1,15 +1,15 @@
 """Terminal motion of a line that rises without its anchor.
 
-All of the line moves alike, at the velocity at which weight, buoyancy and drag cancel. It is taken
-to have reached that velocity in the water where the rise begins.
+The line moves as a whole, at the velocity at which weight, buoyancy and drag balance. It is assumed
+to move at the terminal velocity of the water where the rise begins.
 
-In still water, and in a current that is the same at all depths, the line drifts with the water and
-is plumb; only its vertical speed is unknown. Where the horizontal current changes with depth the
-drift is unknown too, and the line leans. It is then sought from the plumb line's motion, if need be
-by way of weaker shear.
+In still water, and in a current that is uniform over depth, the line drifts with the water and is
+plumb; only its vertical speed is unknown. If the horizontal current varies with depth, the drift is
+unknown too, and the line is inclined. The drift is then found by iteration from the motion of the
+plumb line, if necessary through steps of weaker shear.
 
-Where the force above a part points downward, that part overtakes what is above it and the line
-doubles back: the balance holds there as elsewhere, but the line may tangle.
+If the force above a part points downward, that part overtakes the part above it and the line
+doubles back. The balance of forces still holds, but the line may tangle.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -19,26 +19,27 @@ from typing import Any
 
 import numpy as np
 
-from calm.physics.line import Floats, Line, MarchError, Water
+from calm.physics.line import Booleans, Floats, Integers, Line, MarchError, Water
 from calm.physics.march import Cuts
 from calm.physics.track import head_count
 from calm.solve.audit import loads_of
 from calm.solve.free_march import Rising
 from calm.solve.free_search import FreePlace, terminal
 from calm.solve.search import LARGEST_CLOSURE
-from calm.solve.solution import Settings, Solution, Status, nodes_of, runs_compiled
+from calm.solve.solution import Settings, Solution, Status, nodes_of
+from calm.solve.two_speeds import runs_compiled
 
 
 @dataclass(frozen=True)
 class FreeMotion:
-    """A line that moves steadily.
+    """Steady motion of a free line.
 
     Attributes
     ----------
-    velocity : (3,) over the ground, to the east, to the north, upward [m/s]
-    solution : its shape and forces in the water as it flows past the line; x and y from the lower
-        end. Its errors are not estimated, nan, and its marches not counted, 0.
-    tangles : the pieces that have, or part of which has, overtaken what was above
+    velocity : (3,) velocity over the ground: east, north, up [m/s]
+    solution : shape and forces in the flow relative to the line; x and y from the lower
+        end. The error estimates are nan and the number of marches is 0.
+    tangles : pieces that have overtaken, wholly or in part, the line above them
     """
 
     velocity: Floats
@@ -49,13 +50,13 @@ class FreeMotion:
 def solve_rise(
     line: Line, water: Water, depth: float, settings: Settings | None = None
 ) -> FreeMotion:
-    """The motion of a line that nothing holds; one that is too heavy sinks.
+    """Find the steady motion of a free line, which rises, or sinks if it is too heavy.
 
     Parameters
     ----------
-    line, water : see `calm.physics.line`; the seabed stops nothing. Parts above the surface are
+    line, water : see `calm.physics.line`; the seabed is ignored. Parts above the surface are
         treated as submerged
-    depth : of the line's upper end [m]
+    depth : depth of the line's upper end [m]
     settings : angle step; 1° by default
 
     Returns
@@ -65,8 +66,8 @@ def solve_rise(
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` where no drag limits the speed, ``not-converged`` where no motion passes
-        the checks.
+        ``no-equilibrium`` if no drag limits the speed, ``not-converged`` if no motion passes the
+        checks.
     """
     settings = settings or Settings()
     rising = Rising(line, water, runs_compiled(settings, line), depth)
@@ -78,7 +79,7 @@ def solve_rise(
 
 
 def _recorded(rising: Rising, place: FreePlace, cuts: Cuts, settings: Settings) -> FreeMotion:
-    """The motion at a place, marched once more, audited."""
+    """March once more at the motion found, audit the shape and return the motion."""
     flow = rising.flow(place.velocity)
     meeting = rising.meet(flow, place.depth, settings.angle_step, cuts, record=True)
     trace = meeting.trace
@@ -118,18 +119,41 @@ def _recorded(rising: Rising, place: FreePlace, cuts: Cuts, settings: Settings) 
 
 
 def _tangles(solution: Solution) -> tuple[int, ...]:
-    """The pieces with a part whose lower end is up; without length, on which the line pushes."""
+    """Pieces with a part that is upside down, and pieces without length that are under
+    compression.
+    """
     line, piece = solution.line, solution.element_piece
     first, last = solution.piece_nodes.T
     pushed = (solution.force[first] + solution.force[last])[:, 2] < 0.0
-    back = pushed & (line.length == 0.0)
-    back[piece[np.diff(solution.position[:, 2]) > 0.0]] = True
+    rise = np.diff(solution.position[:, 2])
+    return looped(line, piece, rise, pushed & (line.length == 0.0))
+
+
+SHORTEST_LOOP = 2.0
+"""Shortest loop of a line that may tangle [m]; a shorter one is a shackle that leans on the float
+below it."""
+
+
+def looped(
+    line: Line, piece: Integers, rise: Floats, pushed: Booleans | None = None
+) -> tuple[int, ...]:
+    """Find the pieces in loops of a line, or none if all loops are shorter than `SHORTEST_LOOP`.
+
+    Parameters
+    ----------
+    piece, rise : (k,) piece of every element, and height of its lower end above its upper end [m]
+    pushed : (n,) pieces without length that are under compression; they belong to a loop
+    """
+    up = np.zeros(len(line.length))
+    np.add.at(up, piece, np.maximum(rise, 0.0))
+    back = up > 0.0 if pushed is None else (up > 0.0) | pushed
     back[: head_count(line)] = False  # nothing is ahead of the free end
-    return tuple(np.flatnonzero(back).tolist())
+    loops = up[back].sum() >= SHORTEST_LOOP
+    return tuple(np.flatnonzero(back).tolist()) if loops else ()
 
 
 def part_of(line: Line, first: int, stop: int) -> Line:
-    """The pieces from `first` up to, not including, `stop`, with their clamps."""
+    """Return the line from piece `first` up to, but without, piece `stop`, with their clamps."""
     index = np.arange(len(line.length))
     pieces = (first <= index) & (index < stop)
     clamps = pieces[line.clamp_piece]

@@ -1,7 +1,8 @@
-"""The marches of a rising line that nothing holds, in the water as it flows past the line.
+"""Marches of a freely rising line, in the flow relative to the line.
 
-It is marched from both its ends to where its tension should be greatest: a march that comes to a
-free end with the last of its tension swings wildly there, one that starts from it does not.
+The line is marched from both ends to the node where its tension should be largest. A march that
+arrives at a free end with little tension left is unstable there; a march that starts at the free
+end is stable.
 """
 
 from dataclasses import dataclass, replace
@@ -19,14 +20,14 @@ from calm.solve.problem import REACH
 
 @dataclass(frozen=True)
 class Meeting:
-    """Imbalance where the marches from the two ends meet.
+    """Imbalance at the meeting point of the marches from the two ends.
 
     Attributes
     ----------
     force : (3,) sum of all forces [N]
-    gap : by which the lower end should start deeper [m]
+    gap : distance by which the lower end should start deeper [m]
     cuts : the segments used
-    trace : the shape, where it was to be recorded
+    trace : the shape, if it was recorded
     """
 
     force: Floats
@@ -37,7 +38,7 @@ class Meeting:
 
 @dataclass(frozen=True)
 class Rising:
-    """A line that rises steadily as a whole, in a current relative to the ground.
+    """A line that rises steadily as a whole, in a current given relative to the ground.
 
     Attributes
     ----------
@@ -53,26 +54,28 @@ class Rising:
 
     @property
     def lifts(self) -> Floats:
-        """Net forces of the parts in reference water, + up [N]."""
+        """Net buoyancy of each part in reference water, positive up [N]."""
         return self.line.total_buoyancy
 
     @cached_property
     def weight(self) -> float:
-        """Return what forces are measured by [N]: all net forces together.
+        """Scale of forces [N]: the total net buoyancy.
 
-        Or a thousandth of what they are without regard to sign, where that is more.
+        At least a thousandth of the sum of the absolute net buoyancies, so that it is never zero.
         """
         return max(abs(float(self.lifts.sum())), 1e-3 * float(np.abs(self.lifts).sum()), 1e-300)
 
     @property
     def plumb(self) -> bool:
-        """Return whether the horizontal current is the same at all depths: the line drifts with
-        it.
+        """Whether the horizontal current is the same at all depths, so that the line stays
+        plumb.
         """
         return not (np.ptp(self.water.u) or np.ptp(self.water.v))
 
     def flow(self, velocity: Floats) -> Water:
-        """The water as it flows past a line of a velocity (3,) over the ground [m/s]."""
+        """Return the water relative to a line that moves at a velocity (3,) over the ground
+        [m/s].
+        """
         east, north, up = velocity
         water = self.water
         return replace(water, u=water.u - east, v=water.v - north, w=water.w - up)
@@ -100,27 +103,24 @@ class Rising:
 
     @property
     def guessed_depth(self) -> float:
-        """About where the lower end is [m]."""
+        """Approximate depth of the lower end [m]."""
         return self.top + float(self.line.length.sum())
 
     @cached_property
     def _split(self) -> int:
-        """The first piece to be marched from below: the tension above it should be the greatest.
+        """First piece marched from below; the tension above it should be the largest in the line.
 
-        That of the line at rest, less the drag of every piece by its share.
+        The tension is estimated for the line at rest, minus the share of each piece in the drag.
         """
-        line = self.line
-        along = np.where(line.directional, line.tangential_drag, line.normal_drag)
-        drag = along * np.where(line.flexible, line.length, 1.0)
-        np.add.at(drag, line.clamp_piece, line.clamp_drag)
+        drag = self.line.plumb_drag
         pace = float(self.lifts.sum()) / max(float(drag.sum()), 1e-300)
         carried = np.cumsum(self.lifts - pace * drag)
-        first = max(head_count(line), 1)
+        first = max(head_count(self.line), 1)
         return first + int(np.argmax(carried[first - 1 :]))
 
     @cached_property
     def _tracks(self) -> tuple[Track, Track]:
-        """Return those from the upper and from the lower end."""
+        """Tracks from the upper and from the lower end."""
         below = replace(self.line.reversed(), towed=True)
         return (
             Track.of(self.line).first_pieces(self._split),
@@ -135,9 +135,9 @@ class Rising:
         cuts: Cuts | None = None,
         record: bool = False,
     ) -> Meeting:
-        """March in the water as it flows past the line, with the lower end at a depth [m].
+        """March both parts in the flow relative to the line, with the lower end at a depth [m].
 
-        `angle_step` [rad], `cuts` and `record` are those of `calm.physics.march`.
+        `angle_step` [rad], `cuts` and `record` are as in `calm.physics.march`.
         """
         above, below = self._tracks
         cables = len(above.cables)
@@ -151,7 +151,7 @@ class Rising:
 
 
 def _joined(upper: Trace, lower: Trace, pieces: int) -> Trace:
-    """A march from the upper end of a line and that from its lower end, to where they meet."""
+    """Join the marches from the upper and from the lower end at their common node."""
     position = lower.position + (upper.position[-1] - lower.position[-1])
     return Trace(
         position=np.concatenate([upper.position, position[-2::-1]]),

@@ -1,4 +1,4 @@
-"""Search of the velocity of a line that rises freely: Newton's method, Broyden's updates."""
+"""Search for the velocity of a freely rising line, by Newton's method with Broyden's updates."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -7,43 +7,46 @@ from math import copysign, sqrt
 
 import numpy as np
 
-from calm.physics.line import Floats, MarchError
+from calm.physics.line import Floats, Line, MarchError, Water
 from calm.physics.march import NO_CUTS, Cuts
+from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve.free_march import Rising
 from calm.solve.least_change import root_near
 from calm.solve.solution import Status
 
 FASTEST = 100.0
-"""Speed that nothing with a drag reaches [m/s]."""
+"""Speed that no line with drag can reach [m/s]."""
 SLOWEST = 0.01
-"""Speed by which velocities are measured where the line hardly moves [m/s]."""
+"""Smallest scale of velocities [m/s], used for a line that hardly moves."""
 COARSE = 4.0
-"""Segments of the marches that look for the neighbourhood of a root, in those of the final ones."""
+"""Segment length of the first marches, in units of the final segment length."""
 NEAR, CLOSE = 1e-3, 1e-9
-"""Force without balance, as a share of the net weight, before and after the last choice of cuts."""
+"""Allowed imbalance of forces, as a share of the net weight: before and after the last choice of
+segments.
+"""
 SHEARS = ((1.0,), (0.1, 0.25, 0.5, 0.75, 1.0))
-"""By way of which shares of a sheared current the motion in it is sought: at once, or in steps."""
+"""Shares of the shear through which the motion is found: at once, or if this fails in steps."""
 
 
 @dataclass(frozen=True)
 class FreePlace:
-    """Velocity over the ground (3,) [m/s], and the depth that a `Rising` leaves open [m]."""
+    """Velocity over the ground (3,) [m/s], and depth of the lower end of a `Rising` [m]."""
 
     velocity: Floats
     depth: float
 
 
 def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
-    """Return how fast and where a line moves, and the segments on which it does so exactly.
+    """Find the terminal velocity and position of a free line, and the segments used.
 
     Parameters
     ----------
-    angle_step : of a segment [rad]
+    angle_step : angle step of a segment [rad]
 
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` where nothing limits the speed, ``not-converged`` where no root is found.
+        ``no-equilibrium`` if nothing limits the speed, ``not-converged`` if no root is found.
     MarchError
     """
     plumb = _plumb(rising, angle_step)
@@ -58,48 +61,80 @@ def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
 
 
 def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
-    """Return the same line in a current that departs from a velocity (3,) [m/s] by a share only."""
+    """Return the line in a current that differs from `velocity` (3,) [m/s] by a share of the
+    shear.
+    """
     (east, north, _), water = velocity, rising.water
     u, v = east + share * (water.u - east), north + share * (water.v - north)
     return replace(rising, water=replace(water, u=u, v=v))
 
 
-def _plumb(rising: Rising, angle_step: float) -> FreePlace:
-    """The motion of the line if it were plumb, drifting with the mean current.
+def plumb_speed(line: Line, water: Water, top: float) -> float:
+    """Terminal speed of a line that hangs plumb in still water [m/s], + up.
 
-    The drag goes with the square of the speed or nearly so: secants in that find it at once. Where
-    smooth pieces in the drag crisis allow several speeds, it is one of them.
+    The sum of weight, buoyancy and drag is zero, whether or not the parts pull at one another. Drag
+    is almost proportional to the square of the speed, so secants in the squared speed converge at
+    once. Smooth pieces in the drag crisis may allow several speeds; the search finds one.
+
+    Parameters
+    ----------
+    line, water : see `calm.physics.line`; the current and the stretch are neglected
+    top : depth of the line's upper end [m]
+
+    Raises
+    ------
+    NoEquilibrium
+        ``no-equilibrium`` if no piece has drag.
     """
-    none = np.zeros_like(rising.water.u)
-    upright = replace(rising, water=replace(rising.water, u=none, v=none))
-    depth = rising.guessed_depth
-
-    def meeting(squared: float) -> tuple[FreePlace, float]:
-        """Return where the line is at the signed square of a speed, and what lifts it there [N]."""
-        velocity = np.array([0.0, 0.0, copysign(sqrt(abs(squared)), squared)])
-        met = upright.meet(upright.flow(velocity), depth, COARSE * angle_step)
-        return FreePlace(velocity, depth + met.gap), float(met.force[2])
+    whole = np.where(line.flexible, line.length, 1.0)
+    middle = top + np.cumsum(line.length) - 0.5 * line.length
+    density, on = water.density_at(middle), line.clamp_piece
+    lift = float(line.net_force((density - REFERENCE_DENSITY) * water.gravity).sum())
+    across = np.concatenate([np.where(line.directional, 0.0, line.normal_drag), line.clamp_drag])
+    along = np.append(np.where(line.directional, line.tangential_drag, 0.0), 0.0 * line.clamp_drag)
+    upward = np.append(line.lift, line.clamp_lift)
+    share = np.append(whole * density, density[on]) / REFERENCE_DENSITY
+    viscosity = water.viscosity_at(middle)
+    curves = (line.drag_curve or (None,) * len(whole)) + line.clamp_drag_curve
+    viscosity = np.append(viscosity, viscosity[on])
+    smooth = [
+        (place, curve, curve.diameter / viscosity[place])
+        for place, curve in enumerate(curves)
+        if curve is not None
+    ]
 
     def lifted(_: None, squared: float) -> float:
-        return meeting(squared)[1]
+        """Vertical imbalance at a signed squared speed [N]."""
+        drag = across.copy()
+        for place, curve, reynolds in smooth:
+            drag[place] *= curve.factor(reynolds * sqrt(abs(squared)))
+        return lift + float(share @ (upward * abs(squared) - (drag + along) * squared))
 
-    resting = lifted(None, 0.0)
-    slope = lifted(None, copysign(1.0, resting)) - resting
+    slope = lifted(None, copysign(1.0, lift)) - lift
     limit = FASTEST**2
     found, squared, _, _ = root_near(
-        lifted, None, 0.0, -abs(slope), -limit, limit, NEAR * abs(resting), 1e-9
+        lifted, None, 0.0, -abs(slope), -limit, limit, CLOSE * abs(lift), 1e-12
     )
     if not found:
         raise Status.NO_EQUILIBRIUM.because(
-            "Nothing limits the rise speed of the line: none of its pieces has any drag.",
+            "The rise speed of the line is unlimited, since its pieces have no drag.",
             advice="Set the drag of its pieces.",
         )
-    place, _ = meeting(squared)
-    return replace(place, velocity=place.velocity + _mean_current(rising, place, angle_step))
+    return copysign(sqrt(abs(squared)), squared)
+
+
+def _plumb(rising: Rising, angle_step: float) -> FreePlace:
+    """Find the motion of the line as if it were plumb and drifted with the mean current."""
+    still, depth = rising.water.still(), rising.guessed_depth
+    velocity = np.array([0.0, 0.0, plumb_speed(rising.line, still, rising.top)])
+    upright = replace(rising, water=still)
+    met = upright.meet(upright.flow(velocity), depth, COARSE * angle_step)
+    place = FreePlace(velocity, depth + met.gap)
+    return replace(place, velocity=velocity + _mean_current(rising, place, angle_step))
 
 
 def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats:
-    """(3,) horizontal current where the line is, the mean by normal drag or nearly so [m/s]."""
+    """(3,) horizontal current averaged over the line, weighted by normal drag [m/s]."""
     water, line = rising.water, rising.line
     if rising.plumb:
         return np.array([water.u[0], water.v[0], 0.0])
@@ -115,13 +150,21 @@ def _mean_current(rising: Rising, place: FreePlace, angle_step: float) -> Floats
     return mean * [1.0, 1.0, 0.0]
 
 
-def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
-    """The motion near a place, on the segments that the march chooses there; None if there is none.
+_FOLLOWED = 8
+"""Largest number of updates of the depth of a plumb line's lower end; two or three suffice."""
 
-    With its free choice of segments the march is not quite continuous, so it is closed on given
-    ones: first on coarse ones, then on those that it chooses at that answer.
+
+def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
+    """Find the motion near a known one, on the segments that the march chooses there, or None.
+
+    A march that chooses its segments freely is not quite continuous, so the line is closed on given
+    segments: first on coarse ones, then on those that the march chooses at that solution.
+
+    For a plumb line only the forces are closed, and the depth of the lower end follows: if the line
+    doubles back within a cable, that depth is not continuous.
     """
-    unknown = np.array([not rising.plumb, not rising.plumb, True, True])
+    sheared = not rising.plumb
+    unknown = np.array([sheared, sheared, True, sheared])
     speed, span = max(float(np.linalg.norm(place.velocity)), SLOWEST), rising.water.depth
     units = np.array([speed, speed, speed, span])[unknown]
     values = np.append(place.velocity, place.depth)
@@ -143,17 +186,24 @@ def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePl
             cuts = rising.meet(rising.flow(here.velocity), here.depth, step).cuts
         except MarchError:
             return None
-        root = system_root(partial(left, step, cuts), x, small, slopes)
-        if root is None:
-            return None
-        x, slopes = root
+        for _ in range(1 if sheared else _FOLLOWED):
+            root = system_root(partial(left, step, cuts), x, small, slopes)
+            if root is None:
+                return None
+            x, slopes = root
+            here = at(x)
+            if not sheared:
+                gap = rising.meet(rising.flow(here.velocity), here.depth, step, cuts).gap
+                values[3] += gap
+                if abs(gap) <= CLOSE * span:
+                    break
     return at(x), cuts
 
 
 _ROUNDS = 40
 _HALVINGS = 6
 _DIFFERENCE = 1e-5
-"""Step of the differences that the derivatives are taken from, in units of the unknowns."""
+"""Step of the finite differences for the derivatives, in units of the unknowns."""
 
 System = Callable[[Floats], Floats]
 
@@ -161,16 +211,17 @@ System = Callable[[Floats], Floats]
 def system_root(
     system: System, start: Floats, small: float, slopes: Floats | None = None
 ) -> tuple[Floats, Floats | None] | None:
-    """Root of a system near a start, with the derivatives there; None where none is found.
+    """Find the root of a system near a start, and the derivatives there; None if no root is found.
 
     Parameters
     ----------
-    system : from k unknowns to k values, both scaled so that 1 is much; it may raise `MarchError`
-    small : stop when no value is greater than this
+    system : from k unknowns to k values, both scaled so that 1 is large; may raise `MarchError`
+    small : stop when no absolute value exceeds this
     slopes : (k, k) derivatives of nearly the same system
 
-    The derivatives are taken by differences once, then kept up by Broyden's rule, and taken anew
-    where a step by updated ones does not halve the values. A step is halved until they fall.
+    The derivatives are computed once by finite differences, then updated by Broyden's rule. They
+    are computed anew if a step with updated derivatives does not halve the residual. A step is
+    halved until the residual decreases.
 
     Source: C. G. Broyden (1965), Mathematics of Computation 19, 577-593.
     """
@@ -193,14 +244,16 @@ def system_root(
         halved = np.linalg.norm(values) <= 0.5 * np.linalg.norm(value)
         step = following - x
         missed = values - value - slopes @ step
-        # across a bend, slopes of one side lead too far; with the update they are those of both
+        # across a kink, the slopes of one side overshoot; the update averages both sides
         slopes = slopes + np.outer(missed, step) / (step @ step) if halved or fresh else None
         x, value, fresh = following, values, False
     return None
 
 
 def _step(system: System, x: Floats, value: Floats, slopes: Floats) -> tuple[Floats, Floats] | None:
-    """The next place, where the values are less, and these; None where there is none."""
+    """Return the next unknowns with a smaller residual, and their values; None if there are
+    none.
+    """
     try:
         step = -np.linalg.solve(slopes, value)
     except np.linalg.LinAlgError:

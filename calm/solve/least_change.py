@@ -1,6 +1,4 @@
-"""Roots of misses in a bracket, and the number nearest to where one stands at which a condition
-begins to hold.
-"""
+"""Roots in a bracket, and the smallest change of a number that meets a condition."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -9,9 +7,11 @@ from math import ceil, floor, inf, isfinite, isnan, log10
 from typing import Any
 
 DOUBLINGS = 10
-"""The range is searched outward from the start, from 1/2¹⁰ of it in doubling steps."""
+"""Number of doubling steps of the search, which starts with 1/2¹⁰ of the range."""
 SIGNIFICANT = 6
-"""Digits of an answer that need not be exact: it is rounded away from the start."""
+"""Significant digits to which an answer is rounded, away from the start, unless it must be
+exact.
+"""
 
 _NARROW = 1e-10
 _DEEPENINGS = 60
@@ -19,23 +19,24 @@ _DEEPENINGS = 60
 
 @dataclass
 class LeastChange:
-    """A search for the smallest change of a number that brings an excess down to nothing.
+    """Search for the smallest change of a number that reduces an excess to zero.
 
-    Outward from the start in both directions by doubling steps until the excess is gone; where it
-    never is, further around the least excess found; then Brent's method, or bisection for whole
-    numbers. Between two steps the excess is taken to change sign once.
+    The search goes outward from the start in both directions, in doubling steps, until the excess
+    is gone. If the excess stays positive, the search continues around its minimum. Brent's method
+    then refines the answer (bisection for whole numbers). The excess is assumed to change sign at
+    most once between two steps.
 
     Parameters
     ----------
-    excess : of a number; at most 0 where the condition holds, None where there is no answer
-    low, high : the range of the number
-    whole : whether only whole numbers count
-    exact : whether the excess is to be 0 rather than at most 0
-    small : the excess that counts as none where it is to be 0
+    excess : excess at a number: at most 0 if the condition holds, None if it cannot be computed
+    low, high : range of the number
+    whole : whether only whole numbers are allowed
+    exact : whether the excess must be 0 instead of at most 0
+    small : absolute excess that counts as 0 if `exact`
 
     Attributes
     ----------
-    tried : the excess of every number tried; inf where there is no answer
+    tried : excess of every number tried; inf if it cannot be computed
     """
 
     excess: Callable[[float], float | None]
@@ -47,14 +48,14 @@ class LeastChange:
     tried: dict[float, float] = field(default_factory=dict)
 
     def at(self, x: float) -> float:
-        """The excess, found once."""
+        """Return the excess at a number, computed only once."""
         if x not in self.tried:
             excess = self.excess(x)
             self.tried[x] = inf if excess is None else excess
         return self.tried[x]
 
     def find(self, start: float) -> float | None:
-        """The number nearest to the start where the condition holds; None where none is found."""
+        """Return the number nearest to the start that meets the condition, or None."""
         start = min(max(start, self.low), self.high)
         first = self.at(start)
         if first <= 0.0 or (self.exact and abs(first) <= self.small):
@@ -65,7 +66,7 @@ class LeastChange:
         if held is None:
             return None
         found = self._nearest(start, held)
-        # as far on the other side, where the steps were others
+        # try the same distance on the other side, where the steps differed
         mirrored = 2.0 * start - found
         if self.low <= mirrored <= self.high and self.at(mirrored) <= 0.0:
             return self._nearest(start, mirrored)
@@ -73,26 +74,26 @@ class LeastChange:
 
     @property
     def least(self) -> float | None:
-        """The number of the least excess tried; None where there was no answer at all."""
+        """The number with the smallest excess tried, or None if no excess could be computed."""
         best = min(self.tried, key=self.at)
         return best if isfinite(self.at(best)) else None
 
     @property
     def steady(self) -> bool:
-        """Return whether the excess only rises or only falls over the numbers tried."""
+        """Whether the excess is monotonic over the numbers tried."""
         excesses = [self.tried[x] for x in sorted(self.tried) if isfinite(self.tried[x])]
         noise = 1e-6 * max(map(abs, excesses), default=0.0)
         steps = [b - a for a, b in pairwise(excesses)]
         return not (any(step > noise for step in steps) and any(step < -noise for step in steps))
 
     def neighbours(self, x: float) -> tuple[float, float]:
-        """The numbers tried next to x, x itself where it is the first or last."""
+        """Return the numbers tried next below and above x; x itself if it is the first or last."""
         below = max((t for t in self.tried if t < x), default=x)
         above = min((t for t in self.tried if t > x), default=x)
         return below, above
 
     def _outward(self, start: float) -> float | None:
-        """The first of ever larger steps to either side at which the condition holds."""
+        """Return the first number that meets the condition, in ever larger steps to both sides."""
         upward = [start + step for step in self._steps(self.high - start)]
         downward = [start - step for step in self._steps(start - self.low)]
         for x in sorted(upward + downward, key=lambda x: abs(x - start)):
@@ -109,10 +110,10 @@ class LeastChange:
         return [room * 2.0 ** (k - DOUBLINGS) for k in range(DOUBLINGS + 1)]
 
     def _around_the_least(self) -> float | None:
-        """Return the same by halving the wider of the two gaps beside the least excess, as often
-        as pays.
+        """Search next to the smallest excess, by repeatedly halving the wider of the two adjacent
+        gaps.
 
-        That finds a dip between two steps, and the last numbers before those without answer.
+        This finds a dip between two steps, and numbers close to those without an answer.
         """
         for _ in range(_DEEPENINGS):
             best = self.least
@@ -129,9 +130,7 @@ class LeastChange:
         return None
 
     def _nearest(self, start: float, good: float) -> float:
-        """Return where the condition begins to hold between the start and a number at which it
-        does.
-        """
+        """Return the number nearest to the start that meets the condition, given a `good` one."""
         between = [x for x in self.tried if min(start, good) <= x <= max(start, good)]
         bad = min((x for x in between if self.tried[x] > 0.0), key=lambda x: abs(x - good))
         return self._whole(bad, good) if self.whole else self._root(bad, good)
@@ -150,7 +149,7 @@ class LeastChange:
         while not isfinite(self.at(bad)):
             middle = 0.5 * (bad + good)
             if abs(good - bad) <= 1e-7 * width:
-                return good  # the condition holds wherever there is an answer
+                return good  # the condition holds wherever the excess can be computed
             if self.at(middle) <= 0.0:
                 good = middle
             else:
@@ -163,7 +162,7 @@ class LeastChange:
         return root if self.exact else self._rounded(root, good)
 
     def _rounded(self, root: float, good: float) -> float:
-        """The root in few digits, on the side where the condition holds."""
+        """Round the root to few digits, such that the condition holds."""
         towards = ceil if good > root else floor
         for digits in range(SIGNIFICANT, 1, -1):
             unit = 10.0 ** (floor(log10(abs(root))) + 1 - digits) if root else 1e-6
@@ -183,22 +182,22 @@ def bracketed_root(
     small: float,
     narrow: float,
 ) -> tuple[float, float, float]:
-    """Root of a continuous function between a and b, where its signs differ.
+    """Find the root of a continuous function between a and b, which have opposite signs.
 
-    Chandrupatla's method: inverse quadratic steps where three values lie on a curve that these can
-    follow, else bisection; the first step is a secant.
+    Chandrupatla's method: inverse quadratic steps if three values lie on a suitable curve, else
+    bisection; the first step is a secant.
 
     Parameters
     ----------
-    function, about : of a number, `function(about, number)`; NaN, where it cannot be had, ends it
-    a, fa, b, fb : two numbers and the function there
+    function, about : called as `function(about, number)`; NaN ends the search
+    a, fa, b, fb : two numbers and the values of the function there
     small : stop when |function| is at most this
     narrow : stop when the bracket is at most this wide
 
     Returns
     -------
-    root, value there, and the slope of the secant across the last bracket. That is where the
-    function was last had, but where another is good enough.
+    Root, value of the function there, and slope of the secant across the last bracket. The function
+    was last evaluated at this root, unless an end of the bracket was good enough.
 
     Source: Chandrupatla, Advances in Engineering Software 28 (1997), 145-149.
     """
@@ -238,20 +237,20 @@ def root_near(
     small: float,
     narrow: float,
 ) -> tuple[bool, float, float, float]:
-    """Root near x of a falling function, between two limits.
+    """Find the root near x of a falling function, between two limits.
 
-    Secants from x and its slope while they halve the value, then ever longer steps until the sign
-    changes, then `bracketed_root`.
+    Secants from x and its slope are used while they halve the value, then ever longer steps until
+    the sign changes, then `bracketed_root`.
 
     Parameters
     ----------
-    function, about, small, narrow : as there
-    x, slope : about where the root is, and the slope there
+    function, about, small, narrow : as in `bracketed_root`
+    x, slope : approximate root, and the slope there
     low, high : the limits
 
     Returns
     -------
-    Whether the sign changes; root, value there, and the slope of the last secant.
+    Whether the sign changes; the root, the value there, and the slope of the last secant.
     """
     x = min(max(x, low), high)
     fx = function(about, x)

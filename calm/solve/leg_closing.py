@@ -39,63 +39,66 @@ MOST_STEPS, HALVINGS = 60, 9
 NEAR, CLOSED = 1e-4, 1e-10
 """Residual of lengths and forces, as shares of the longest leg and of a typical force: before the
 segments are kept, and of a finished shape."""
-BEFORE_CHOICE = 1e-7
-"""As `CLOSED`, of the shape in which segments are chosen: close enough that they depend on the net
-alone, and not on the way to it."""
+CLOSED_FOR_SEGMENTS = 1e-7
+"""As `CLOSED`, for the shape in which segments are chosen. It is small enough for the segments to
+depend on the net alone, not on the course of the search.
+"""
 MOST_LEFT = 10.0
 """Residual, as a multiple of `enough`, that is accepted if no step reduces it further."""
-LEADS_ON = 0.25
+KEPT_SLOPES_REDUCTION = 0.25
 """Factor by which a step must reduce the sum of squares for the slopes to be kept."""
 FLATTEST, MOST_HALVED = -1e-3, 100
-"""Slope of a single unknown, in shares, at which a secant is held; the most steps it may take."""
+"""Slope limit (per share) and largest number of steps for the secants of a single unknown."""
 SINGULAR = 1e-14
 """Pivot, in shares, below which an unknown keeps its value."""
-NO_HOLD = 1e-5
-"""Pull at a touchdown, as a share of the weight of a leg, that is too small to hold the net in its
-place. It is more than the drag in the weak current that stirs still water."""
+NEGLIGIBLE_PULL = 1e-5
+"""Largest horizontal pull at a touchdown, as a share of the weight of a leg, that cannot hold the
+net in place. It exceeds the drag of the weak current that is added to still water.
+"""
 NEEDS_ROOM = -1
-"""How a search ends that needs more segments than there is room for; else `FOUND` or
-`NO_SHAPE_NEAR`."""
+"""Outcome of a search that needs more segments than there is room for (instead of `FOUND` or
+`NO_SHAPE_NEAR`).
+"""
 
 DEPTH_ERROR, TENSION_ERROR = range(2)
 
 
 def newton_step(net: NetProblem, found: Sequence[float]) -> float:
-    """Solve the linear equations of a Newton step for a residual; the size of the step, in shares.
+    """Solve the linear equations of a Newton step, and return the size of the step, in shares.
 
-    The step goes to `net.way`. Gaussian elimination with partial pivoting; an unknown without a
-    pivot keeps its value.
+    The step is written to `net.update`. The method is Gaussian elimination with partial pivoting;
+    an unknown without a pivot keeps its value.
     """
-    size, paper, row = len(found), net.paper, 0
+    size, matrix, row = len(found), net.matrix, 0
     for r in range(size):
         for c in range(size):
-            paper[r][c] = net.slopes[r][c]
-        paper[r][size] = -found[r]
+            matrix[r][c] = net.slopes[r][c]
+        matrix[r][size] = -found[r]
     for k in range(size):
         pivot = row
         for r in range(row, size):
-            if abs(paper[r][k]) > abs(paper[pivot][k]):
+            if abs(matrix[r][k]) > abs(matrix[pivot][k]):
                 pivot = r
         net.order[k] = -1
-        if row == size or abs(paper[pivot][k]) < SINGULAR:
+        if row == size or abs(matrix[pivot][k]) < SINGULAR:
             continue
         for c in range(k, size + 1):
-            paper[row][c], paper[pivot][c] = paper[pivot][c], paper[row][c]
+            matrix[row][c], matrix[pivot][c] = matrix[pivot][c], matrix[row][c]
         for r in range(size):
-            share = 0.0 if r == row else paper[r][k] / paper[row][k]
+            share = 0.0 if r == row else matrix[r][k] / matrix[row][k]
             if share != 0.0:
                 for c in range(k, size + 1):
-                    paper[r][c] -= share * paper[row][c]
+                    matrix[r][c] -= share * matrix[row][c]
         net.order[k] = row
         row += 1
     for k in range(size):
         row = net.order[k]
-        net.way[k] = 0.0 if row < 0 else paper[row][size] / paper[row][k]
-    return sqrt(squares(net.way))
+        net.update[k] = 0.0 if row < 0 else matrix[row][size] / matrix[row][k]
+    return sqrt(squares(net.update))
 
 
 def squares(values: Sequence[float]) -> float:
-    """The sum of the squares."""
+    """Return the sum of the squares of the values."""
     total = 0.0
     for k in range(len(values)):
         total += values[k] * values[k]
@@ -103,15 +106,15 @@ def squares(values: Sequence[float]) -> float:
 
 
 def copy_values(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
-    """Copy values to where they are kept."""
+    """Copy the values to `kept`."""
     for k in range(len(values)):
         kept[k] = values[k]
 
 
 def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough: float) -> int:
-    """`close_net` of a net with one unknown, whose residual falls as the unknown grows.
+    """Close a net with one unknown, whose residual falls as the unknown grows (see `close_net`).
 
-    By secants, and by bisection if a secant does not halve the residual.
+    Uses secants, and bisection if a secant does not halve the residual.
     """
     above, below, scale, slope = -inf, inf, net.scale[0], net.slopes[0][0]
     slope, halved = slope if slope < 0.0 else -1.0, True
@@ -141,13 +144,13 @@ def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough:
 def close_net(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """Close a net by Newton's method; its last march is that of the unknowns it ends with.
+    """Close a net by Newton's method. The last march is the march with the unknowns found.
 
     Parameters
     ----------
     x : approximate unknowns, replaced by those found
-    enough : the residual that is small enough, in shares
-    known : whether the slopes are good already, and need not be found first
+    enough : residual at which the net counts as closed, in shares
+    known : whether the slopes are known already
     """
     if len(x) == 1:
         return close_one(net, x, how, enough)
@@ -160,7 +163,9 @@ def close_net(
 def close_on(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """`close_net` from unknowns that were the last to be marched, on the same segments."""
+    """Close a net from the unknowns that were marched last, on the same segments (see
+    `close_net`).
+    """
     if len(x) == 1:
         return close_one(net, x, how, enough)
     size, trial, fresh, plain, left = len(x), net.trial, not known, known, net.kept
@@ -173,7 +178,7 @@ def close_on(
         now = inf
         for _ in range(HALVINGS if fresh else 1):
             for k in range(size):
-                trial[k] = x[k] + share * net.way[k] * net.scale[k]
+                trial[k] = x[k] + share * net.update[k] * net.scale[k]
             failure = write_residual(net, trial, how, False)
             if failure == NO_ROOM:
                 return NEEDS_ROOM
@@ -189,13 +194,13 @@ def close_on(
             break
         if plain:
             copy_values(trial, x)
-            whole = share * share * squares(net.way)
+            whole = share * share * squares(net.update)
             for k in range(size):
                 off = (net.found[k] - (1.0 - share) * left[k]) * share / max(whole, 1e-300)
                 for m in range(size):
-                    net.slopes[k][m] += off * net.way[m]
+                    net.slopes[k][m] += off * net.update[m]
             copy_values(net.found, left)
-        fresh = not now < LEADS_ON * before
+        fresh = not now < KEPT_SLOPES_REDUCTION * before
         if fresh and (not plain or squares(left) > enough * enough):
             failure = write_residual(net, x, how, True)
             if failure != GOES_ON:
@@ -210,8 +215,7 @@ def close_on(
 
 
 def drifts(net: NetProblem) -> bool:
-    """Return whether nothing holds a net in its place: no end is held, and every leg to an anchor
-    lies on the seabed without pull."""
+    """Whether a net is not held: no end is held, and all anchored legs lie slack on the seabed."""
     anchored = False
     for i in range(len(net.legs)):
         leg, state = net.legs[i], net.state[i]
@@ -222,7 +226,7 @@ def drifts(net: NetProblem) -> bool:
         if leg.seabed == -inf:
             continue
         record, foot = net.lines.work.records[i][FINE], int(state[HUNG]) - 1
-        east, north, least = record[3][foot], record[4][foot], NO_HOLD * leg.weight
+        east, north, least = record[3][foot], record[4][foot], NEGLIGIBLE_PULL * leg.weight
         if state[STAGE] < 0.0 or east * east + north * north > least * least:
             return False
         anchored = True
@@ -230,7 +234,7 @@ def drifts(net: NetProblem) -> bool:
 
 
 def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
-    """Turn the records of all legs that were marched up into those of legs marched down."""
+    """Reverse the records of all legs that were marched upwards."""
     for i in range(len(net.legs)):
         if net.legs[i].kind == ANCHORED:
             record_down(net, i, x, how)
@@ -239,8 +243,9 @@ def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
 def close_coarsely(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Choose segments of twice an angle step [rad] near approximate unknowns; close the net on
-    them."""
+    """Choose segments of twice an angle step [rad] near approximate unknowns, and close the net on
+    them.
+    """
     choosing = Marching(sea, 2.0 * step, CHOSEN, False, False, COARSE, 0.0)
     failure = write_residual(net, x, choosing, False)
     if failure != GOES_ON:
@@ -250,19 +255,19 @@ def close_coarsely(
 
 
 def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float) -> int:
-    """Close a net to the last digits from approximate unknowns, on fine enough segments."""
+    """Close a net to full precision from approximate unknowns, on sufficiently fine segments."""
     # segments chosen near rough unknowns depend on these, so that they are chosen again in the
     # closed shape; a single unknown is known well enough at once
     if len(x) > 1 and net.lines.limits.near == 0.0:
-        ending = close_coarsely(net, sea, x, step, max(enough, BEFORE_CHOICE))
+        ending = close_coarsely(net, sea, x, step, max(enough, CLOSED_FOR_SEGMENTS))
         if ending != FOUND:
             return ending
-    asked = step
+    requested = step
     for _ in range(MOST_ROUNDS):
         ending = close_both(net, sea, x, step, enough)
         if ending != FOUND:
             return ending
-        step = finer(extrapolate_legs(net, x), net.span, asked, step, segments_of(net))
+        step = finer(extrapolate_legs(net, x), net.span, requested, step, segments_of(net))
         if step == 0.0:
             break
     return FOUND
@@ -271,7 +276,7 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
 def close_both(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Close a net near its unknowns on segments of twice an angle step, and on their halves."""
+    """Close a net near its unknowns on segments of twice an angle step, and on halved segments."""
     ending = close_coarsely(net, sea, x, step, enough)
     if ending != FOUND:
         return ending
@@ -289,7 +294,7 @@ def close_both(
 
 
 def segments_of(net: NetProblem) -> int:
-    """Number of segments in the fine shape: the halves of all chosen ones."""
+    """Number of segments in the fine shape, twice the number of chosen segments."""
     segments = 0
     for i in range(len(net.legs)):
         for k in range(net.legs[i].cables):
@@ -298,7 +303,7 @@ def segments_of(net: NetProblem) -> int:
 
 
 def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
-    """Extrapolate the shapes of all legs and the places of the nodes; return the errors."""
+    """Extrapolate the shapes of all legs and the positions of the nodes, and return the errors."""
     records, near = net.lines.work.records, net.lines.limits.near
     deep = taut = moved = relative = 0.0
     for k in range(len(x)):
@@ -332,7 +337,7 @@ class NetTask(NamedTuple):
     task : MARCH or SLOPES marches the net, without its slopes or with them; CLOSE is `close_net`,
         SETTLE is `settle`, DRIFTS is `drifts` of the net that was settled last
     x : the unknowns, which CLOSE and SETTLE replace
-    enough, known : as of `close_net`
+    enough, known : as in `close_net`
     """
 
     task: int
@@ -346,21 +351,21 @@ class NetTask(NamedTuple):
 MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
-def do_task(asked: NetTask, _: float) -> float:
-    """Do a task; return how it ended, or of DRIFTS 1 for yes."""
-    net, x, how = asked.net, asked.x, asked.how
-    if asked.task == DRIFTS:
+def do_task(job: NetTask, _: float) -> float:
+    """Perform a task and return its outcome; for DRIFTS, 1 if the net drifts, else 0."""
+    net, x, how = job.net, job.x, job.how
+    if job.task == DRIFTS:
         return 1.0 if drifts(net) else 0.0
-    if asked.task == SETTLE:
-        return float(settle(net, how.sea, x, how.step, asked.enough))
-    if asked.task == CLOSE:
-        return float(close_net(net, x, how, asked.enough, asked.known))
-    failure = write_residual(net, x, how, asked.task == SLOPES)
-    if asked.task == MARCH and failure == GOES_ON:
+    if job.task == SETTLE:
+        return float(settle(net, how.sea, x, how.step, job.enough))
+    if job.task == CLOSE:
+        return float(close_net(net, x, how, job.enough, job.known))
+    failure = write_residual(net, x, how, job.task == SLOPES)
+    if job.task == MARCH and failure == GOES_ON:
         record_shapes(net, x, how)
     return float(failure)
 
 
-def do_by_address(ask: Callable[[NetTask, float], float], asked: NetTask) -> float:
+def do_by_address(ask: Callable[[NetTask, float], float], job: NetTask) -> float:
     """Call `do_task` by the address of its compiled form."""
-    return ask(asked, 0.0)
+    return ask(job, 0.0)

@@ -1,9 +1,9 @@
 """An anchored leg of a net, marched up from its touchdown.
 
-The unknowns are the force on its lower end. The horizontal ones are the pull at the touchdown. The
-vertical one is the weight that the seabed bears, or minus the pull on the anchor if nothing lies.
-Upwards from the touchdown the march is stable even if no pull acts there. Then the leg is slack:
-the part on the seabed is longer than the way to the anchor.
+The unknowns are the components of the force on its lower end. The horizontal ones are the pull at
+the touchdown. The vertical one is the weight carried by the seabed, or minus the pull on the anchor
+if no part lies on the seabed. Upwards from the touchdown the march is stable even if the pull there
+is zero. Then the leg is slack: the part on the seabed is longer than the distance to the anchor.
 """
 
 from collections.abc import Sequence
@@ -60,7 +60,7 @@ NO_PULL = 1e-9
 def course_from_below(course: Course) -> Course:
     """Turn the course of a leg upside down: a point load at its lower end, then its stages upwards.
 
-    The point load at its upper end is left out. Pieces keep their numbers.
+    The point load at its upper end is omitted. Pieces keep their numbers.
     """
     stages, loads = [course.stages[0]], [course.loads[0]]
     cables: list[CableStretch] = []
@@ -78,7 +78,7 @@ def course_from_below(course: Course) -> Course:
 
 
 def weight_of(course: Course, stage: Stage, excess: float) -> float:
-    """Weight of a stage in the water above the seabed [N]."""
+    """Weight of a stage, submerged in the water near the seabed [N]."""
     if stage.kind == CABLE:
         cable = course.cables[stage.first]
         return -(cable.buoyancy + excess * cable.volume) * cable.length
@@ -95,7 +95,7 @@ def pull_of(up: float, east: float, north: float) -> Load:
 
 
 def of_length(cable: CableStretch, length: float) -> CableStretch:
-    """The same cable with another length [m]."""
+    """Return a copy of a cable with another length [m]."""
     return CableStretch(
         cable.piece, length, cable.buoyancy, cable.volume, cable.normal_drag,
         cable.tangential_drag, cable.compliance, cable.thinning, cable.friction,
@@ -104,9 +104,9 @@ def of_length(cable: CableStretch, length: float) -> CableStretch:
 
 
 def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March an anchored leg up from its touchdown, or from its anchor; return how that ended.
+    """March an anchored leg up from its touchdown, or from its anchor, and return the outcome.
 
-    Its record goes up the leg; `record_down` turns it.
+    The record runs up the leg; `record_down` reverses it.
     """
     leg, state, problem, bed = net.legs[i], net.state[i], leg_of(net, how.sea, i), bed_of(net, i)
     stages, loads, cables = net.up.stages[i], net.up.loads[i], net.up.cables[i][: leg.cables]
@@ -115,7 +115,8 @@ def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
     east, north, borne = x[at], x[at + 1], x[at + 2]
     if east * east + north * north <= NO_PULL * NO_PULL * net.scale[at] * net.scale[at]:
         east = north = 0.0
-    along = -bed.east * east - bed.north * north  # the pull at a touchdown is along the seabed
+    # the pull at a touchdown is parallel to the seabed
+    along = -bed.east * east - bed.north * north
     lowest = leg.stages - max(leg.landing, 1)  # the highest stage, from below, that may lie
     lies = borne > 0.0 and lowest > 0
     height = x[at + 3] if leg.own > 3 else end_height(leg, lies, -borne)
@@ -189,15 +190,16 @@ def lay(
 
 
 def record_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> None:
-    """Turn the record of an anchored leg into one like those of other legs: first the pull at its
-    upper end, then the part that hangs, then the part on the seabed."""
+    """Reverse the record of an anchored leg so that it matches other legs: first the pull at its
+    upper end, then the hanging part, then the part on the seabed.
+    """
     state, record, out = net.state[i], net.lines.work.records[i][how.record], net.passed[i]
     nodes, height = int(state[HUNG]), net.lines.work.records[i][how.record][2][0]
     set_row(net.lines.course.loads[i], 0, pull_of(-out[5], -out[3], -out[4]))
     turn_round(record, nodes)
     if state[STAGE] < 0.0:
         return
-    if state[HANGS] > 0.0:  # else the node bears a part of what lies there
+    if state[HANGS] > 0.0:  # otherwise the seabed carries part of the load at this node
         record[3][nodes - 1], record[4][nodes - 1] = -state[TO_EAST], -state[TO_NORTH]
         record[5][nodes - 1] = -state[TO_UP]
     lay(net, i, how.sea, height, how.record, True)
@@ -209,10 +211,10 @@ def record_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> N
 def pass_hung(
     net: NetProblem, i: int, course: Course, how: Marching, work: SearchArrays, depth: float
 ) -> int:
-    """March the hanging part of an anchored leg; return how that ended.
+    """March the hanging part of an anchored leg, and return the outcome.
 
-    Cuts are those of whole cables, from below. Given cuts are stretched or shortened to the length
-    of their cable that hangs, which makes the march a smooth function of this length.
+    Cuts refer to whole cables, counted from below. Given cuts are scaled to the hanging length of
+    their cable, which makes the march a smooth function of this length.
     """
     leg, cuts = net.legs[i], net.cuts
     of_step, counts = work.chosen, work.counts
@@ -269,7 +271,8 @@ def pass_hung(
 
 def turn_round(record: Record, nodes: int) -> None:
     """Reverse the record of a march upwards. It then begins with the pull at the upper end of the
-    leg, where it began with the pull at the lower end."""
+    leg instead of the pull at the lower end.
+    """
     for k in range(6):
         a, b = 1, nodes - 1
         column = record[k]
@@ -286,7 +289,8 @@ def turn_round(record: Record, nodes: int) -> None:
         while a < b:
             column[a], column[b] = column[b], column[a]
             a, b = a + 1, b - 1
-    ends = record[SEGMENT]  # of the node at the lower end of an element, now that it is turned
+    # refers to the node at the lower end of an element, now that the record is reversed
+    ends = record[SEGMENT]
     for n in range(2, nodes):
         if ends[n] != NO_SEGMENT:
             ends[n] = ends[n + 1] if n + 1 < nodes and ends[n + 1] >= HALVES else ENDS
@@ -295,14 +299,14 @@ def turn_round(record: Record, nodes: int) -> None:
 
 @within
 def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
-    """Write the distance by which a leg misses its anchor, east and north, and the height above the
+    """Write the horizontal distance by which a leg misses its anchor, and the height above the
     seabed at which it begins.
 
-    Pulled line on the seabed leads straight to the anchor. Line without pull may be longer than the
-    way. One condition covers both. Let d be the way from the touchdown to the anchor, r the reach
-    of the line on the seabed, and h the pull. Either d has the length r and the direction of h, or
-    d is shorter than r and h is zero. So d is the projection of d + ρh on the disc of radius r,
-    for any ρ > 0 (the form of contact conditions by Alart and Curnier).
+    A part on the seabed under tension leads straight to the anchor. A slack part may be longer than
+    this distance. One condition covers both. Let d be the vector from the touchdown to the anchor,
+    r the length of line on the seabed, and h the pull. Either d has the length r and the direction
+    of h, or d is shorter than r and h is zero. So d is the projection of d + ρh on the disc of
+    radius r, for any ρ > 0 (the form of contact conditions by Alart and Curnier).
 
     `loose` is as in `Marching`.
     """
@@ -333,7 +337,7 @@ def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float)
 
 
 def lay_loosely(net: NetProblem, i: int, x: Sequence[float], record: Record) -> None:
-    """Draw the part of a slack leg on the seabed: straight to its anchor, and shortened to fit."""
+    """Draw the part of a slack leg on the seabed as a straight, shortened line to its anchor."""
     state, hung, count = net.state[i], int(net.state[i][HUNG]), int(net.state[i][COUNT])
     foot, reach = hung - 1, max(net.state[i][LIES], 1e-300)
     to_east, to_north, _ = place_of(net, i, x, 1)

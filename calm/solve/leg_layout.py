@@ -1,4 +1,4 @@
-"""A leg of a net laid out for the march, and as a line of its own once it is found."""
+"""Layout of a net's leg for the march, and as a line of its own after the solution."""
 
 from __future__ import annotations
 
@@ -43,16 +43,16 @@ from calm.solve.solution import FOUND, Settings, Solution, Status
 
 @dataclass(frozen=True)
 class LegEnd:
-    """Hold where a leg ends: free, at a node, or held.
+    """End of a leg: free, at a node, or held.
 
     Attributes
     ----------
-    node : its number; -1 where it ends at none
-    place : east, north and up [m] of an end that is held; None where it is not
-    seabed : height of the seabed below an anchor [m]; -inf where the end stands on none
-    deeper : how much deeper it is there per metre to the east and to the north [-]
-    past : current past an end that is held, whose vortices set the frequency of the leg's cables,
-        where these strum [m/s]
+    node : number of the node; -1 for none
+    place : position east, north and up [m] of an end that is held, else None
+    seabed : height of the seabed below an anchor [m]; -inf without an anchor
+    deeper : slope of the seabed there: increase in depth per metre to the east and to the north [-]
+    past : current at an end that is held [m/s], which sets the strumming frequency of the
+        leg's cables
     """
 
     node: int = -1
@@ -63,7 +63,7 @@ class LegEnd:
 
     @property
     def free(self) -> bool:
-        """Return whether nothing holds it."""
+        """Whether the end is neither at a node nor held."""
         return self.node < 0 and self.place is None
 
 
@@ -78,9 +78,9 @@ class NetLeg:
 
 @dataclass(frozen=True)
 class LaidLeg:
-    """A leg as it is marched: its line, and the problem that its march takes.
+    """A leg prepared for the march: its line and its problem.
 
-    The line of a leg that hangs with a free lower end is listed from that end.
+    The line of a leg that hangs with a free lower end is listed from the free end.
     """
 
     leg: NetLeg
@@ -90,25 +90,27 @@ class LaidLeg:
 
     @property
     def ends(self) -> tuple[LegEnd, LegEnd]:
-        """Return where its march begins and ends."""
+        """The ends at which the march begins and ends."""
         upper, lower = self.leg.upper, self.leg.lower
         return (lower, upper) if self.kind == leg_numbers.HANGING_DOWN else (upper, lower)
 
     @property
     def unknowns(self) -> int:
-        """Number of its own unknowns: on a slope the height of the touchdown is one more."""
+        """Number of unknowns of the leg; on a slope the height of the touchdown is an additional
+        one.
+        """
         if self.kind == leg_numbers.ANCHORED:
             return 3 + any(self.bed[:2])
         return 3 if self.kind == leg_numbers.PULLED else 1
 
     @property
     def below_a_point(self) -> bool:
-        """Return whether its line begins with a point that is pulled at."""
+        """Whether its line begins with a point load."""
         return self.kind in (leg_numbers.PULLED, leg_numbers.ANCHORED)
 
     @property
     def shedding(self) -> tuple[float, float, float, float]:
-        """Strouhal number over the diameter at its end [1/m] and current there, as in `LegRow`."""
+        """Strouhal number over the diameter at the end [1/m] and current there, as in `LegRow`."""
         model, diameter, past = self.line.strumming, self.line.diameter, self.ends[1].past
         if model is None or past is None or not diameter.any():
             return 0.0, 0.0, 0.0, 0.0
@@ -116,7 +118,7 @@ class LaidLeg:
 
     @staticmethod
     def of(leg: NetLeg, water: Water, settings: Settings, rough: bool) -> LaidLeg:
-        """Lay out a leg; `rough` as of `problem_of`."""
+        """Lay out a leg; `rough` as in `problem_of`."""
         line = leg.line
         if leg.upper.free:
             kind = leg_numbers.STANDING
@@ -129,12 +131,12 @@ class LaidLeg:
         return LaidLeg(leg, line, kind, problem)
 
     def row(self, first: int, span: float) -> LegRow:
-        """The leg in numbers.
+        """The leg as a row of numbers.
 
         Parameters
         ----------
-        first : of its unknowns
-        span : as of `NetProblem`
+        first : index of the first of its unknowns
+        span : as in `NetProblem`
         """
         (start, end), (course, limits) = self.ends, (self.problem.course, self.problem.limits)
         length, counted = self.leg.line.length, (len(course.stages), course.landing)
@@ -158,28 +160,29 @@ class LaidLeg:
 
     @property
     def bed(self) -> Bed:
-        """The seabed below it."""
+        """The seabed below the leg."""
         lower, bed = self.leg.lower, self.problem.limits.bed
         own = lower.deeper if isfinite(lower.seabed) else bed[:2]
         return bed._replace(east=own[0], north=own[1])
 
     @property
     def weight(self) -> float:
-        """Of all that it lifts or weighs, up or down [N]."""
+        """Sum of the absolute net forces of all pieces, at least 1 mN [N]."""
         line = self.leg.line
         return max(float(np.abs(line.net_force(np.zeros(len(line.length)))).sum()), 1e-3)
 
     @property
     def may_lie(self) -> tuple[float, float]:
-        """Length [m] and weight [N] of what may lie on the seabed."""
+        """Length [m] and weight [N] of the part that may lie on the seabed."""
         course = self.problem.course
         stages = course.stages[max(course.landing, 1) :] if isfinite(self.leg.lower.seabed) else []
         weights = [weight_of(course, stage, self.bed.excess) for stage in stages]
         return sum(stage.length for stage in stages), sum(weights)
 
     def most_lying(self, height: float) -> float:
-        """Largest weight on the seabed below an upper end at a height above it [N]: that of the leg
-        without as much of its upper part. inf if the leg cannot lie."""
+        """Largest weight of line on the seabed [N] if the upper end is at a height above the seabed
+        [m]; inf if the leg cannot lie there.
+        """
         course, hung, weight = self.problem.course, max(height, 0.0), 0.0
         if self.may_lie[1] <= 0.0:
             return inf
@@ -191,7 +194,7 @@ class LaidLeg:
 
     @property
     def highest(self) -> float:
-        """Greatest height that is allowed [m]: of the surface, or of an end held above it."""
+        """Largest allowed height [m]: the surface, or an end that is held above the surface."""
         return max(0.0, *(each.place[2] for each in self.ends if each.place is not None), 0.0)
 
 
@@ -277,13 +280,13 @@ def leg_found(
     errors: tuple[float, float],
     water: Water, settings: Settings, compiled: bool,
 ) -> Solution:  # fmt: skip
-    """Return a leg as the solution of a line of its own, audited.
+    """Return a leg as the audited solution of a single line.
 
     Parameters
     ----------
-    i : its number
-    ends : (3,) place of its end in the fine shape, and extrapolated [m]
-    errors : of depths [m] and of tensions [N]
+    i : number of the leg
+    ends : (3,) position of its end in the fine shape, and extrapolated [m]
+    errors : errors of depths [m] and of tensions [N]
     """
     state, (deep, taut) = net.state[i], errors
     frequency = float(state[leg_numbers.FREQUENCY])
@@ -341,7 +344,7 @@ def leg_found(
 
 
 def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> None:
-    """Refuse a leg that is out of the water, or in the seabed where it cannot lie."""
+    """Raise an exception if a leg is out of the water, or below a seabed on which it cannot lie."""
     depth = leg.water.depth
     near += 1e-6 * depth
     height, lower = leg.position[:, 2], laid.leg.lower
@@ -360,7 +363,7 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
         height = np.where(np.arange(len(height)) > leg.piece_nodes[leg.afloat[0], 1], height, 0.0)
         if leg.buoyancy_used < 0.0:
             raise Status.ABOVE_SURFACE.because(
-                "More than the float at the upper end of {piece} would come to the surface.",
+                "More than the float at the upper end of {piece} would surface.",
                 piece(0),
             )
     highest = int(np.argmax(height))
@@ -369,9 +372,9 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
 
 
 def unsettled(why: str) -> NoEquilibrium:
-    """Return why a net does not come to rest, with advice."""
+    """Return the exception for a net without equilibrium, with advice."""
     return Status.NOT_CONVERGED.because(
-        f"The net does not come to rest: {why}.",
-        advice="Check the lengths of its legs against the distances of their ends; solve it with "
-        "fewer legs, or with less current, to find what prevents it.",
+        f"No equilibrium of the net was found: {why}.",
+        advice="Check the lengths of its legs against the distances between their ends. Solve the "
+        "net with fewer legs or with a weaker current to find the cause.",
     )

@@ -38,23 +38,24 @@ from calm.solve.leg_numbers import (
 )
 from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, Unknown
 
-JUMP = 1e-6
+SLOPE_STEP = 1e-6
 """Share by which an unknown is moved for the slopes."""
 LEAST_PULL = 1e-3
 """Pull of a leg, as a share of its weight, below which that is the scale of its forces."""
 ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-2, 1e-9, 50, -0.3
-"""What a frequency may lack, as a share of it, where segments are chosen and where they are given;
-how often a leg is marched for it, and the slope at which its secants are held."""
+"""Allowed relative error of the frequency while segments are chosen and while they are given; the
+most marches of a leg for its frequency; and the slope limit of the secants in the frequency.
+"""
 
 
 def load_leg(
     net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]
 ) -> tuple[float, float]:
-    """Load a leg with its unknowns.
+    """Set the loads of a leg from its unknowns.
 
     Returns
     -------
-    Depth of its start, and length of its head above the surface, as of `place` [m].
+    Depth of its start, and length of its part above the surface, as in `place` [m].
     """
     leg, state = net.legs[i], net.state[i]
     if leg.kind == PULLED:
@@ -70,11 +71,11 @@ def load_leg(
 
 
 def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg from its unknowns; return how that ended, see `calm.physics.line`.
+    """March a leg from its unknowns, and return the outcome, see `calm.physics.line`.
 
-    A leg that strums is marched until it vibrates at the frequency of the vortices at its end. This
-    falls as the assumed frequency rises, since more drag lifts the line. It is found by secants,
-    and by bisection of a bracket if these do not converge.
+    A strumming leg is marched until its frequency equals the shedding frequency of the vortices at
+    its end. The shedding frequency falls as the assumed frequency rises, since more drag raises the
+    line. The solution is found by secants, and by bisection of a bracket if these do not converge.
     """
     leg, state = net.legs[i], net.state[i]
     failure = march_once(net, i, x, how)
@@ -101,7 +102,7 @@ def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int
 
 
 def march_once(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg once; one that strums at its last frequency."""
+    """March a leg once, with its last frequency if it strums."""
     net.state[i][SHARE] = 1.0
     if net.legs[i].kind == ANCHORED:
         return march_up(net, i, x, how)
@@ -109,7 +110,7 @@ def march_once(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
 
 
 def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg from its upper end, or from a free lower one."""
+    """March a leg from its upper end, or from a free lower end."""
     leg, state, problem = net.legs[i], net.state[i], leg_of(net, how.sea, i)
     course, work = problem.course, problem.work
     depth, out = load_leg(net, problem, i, x)
@@ -130,13 +131,13 @@ def march_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> in
     passed[0], passed[1] = record[0][n] - record[0][0], record[1][n] - record[1][0]
     passed[2], passed[6] = left[Z], 0.0
     passed[3], passed[4], passed[5] = record[3][n], record[4][n], record[5][n]
-    if lands:  # how high it ends is in what it misses
+    if lands:  # the height of the end contributes to the miss
         passed[2] -= end_height(leg, left[LANDED] >= 0.0, passed[5])
     return GOES_ON
 
 
 def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
-    """The frequency F = St |V| sin φ/D of the vortices at the end of a leg [Hz].
+    """Shedding frequency F = St |V| sin φ/D of the vortices at the end of a leg [Hz].
 
     φ is the angle between the current and the force there, see `calm.physics.strumming`.
     """
@@ -150,7 +151,7 @@ def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
 
 
 def row_of(net: NetProblem, i: int, k: int) -> int:
-    """Row of the residual for the result k of a leg's march, see `OUT`; -1 for none."""
+    """Row of the residual for result k of a leg's march (see `OUT`), -1 if there is none."""
     leg = net.legs[i]
     pulled = leg.own > 1
     if k < 2:
@@ -177,10 +178,10 @@ def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, colu
 
 
 def write_residual(net: NetProblem, x: MutableSequence[float], how: Marching, slopes: bool) -> int:
-    """March all legs and write the residual to `found`; if asked, also its slopes, for which the
-    scales of forces are taken anew.
+    """March all legs and write the residual to `found`, and if requested also its slopes, for which
+    the scales of forces are updated.
 
-    Returns how the marches ended.
+    Returns the outcome of the marches.
     """
     size, nodes = len(net.found), net.nodes_at
     for k in range(size):
@@ -218,33 +219,33 @@ def write_residual(net: NetProblem, x: MutableSequence[float], how: Marching, sl
 
 
 def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: Marching) -> int:
-    """Add the share of a leg to the slopes of the residual."""
+    """Add the contribution of a leg to the slopes of the residual."""
     leg, nodes, at, passed = net.legs[i], net.nodes_at, net.legs[i].first, net.passed[i]
     start, end = nodes + 3 * leg.start, nodes + 3 * leg.end
     if leg.kind == ANCHORED and leg.start >= 0:
         net.slopes[at + 2][start + 2] -= net.scale[start + 2] / net.rows[at + 2]
-        for k in range(2):  # the place of its upper end changes what it misses, not its march
+        for k in range(2):  # the position of its upper end changes the miss, but not the march
             before = x[start + k]
-            add_passed(net, i, passed, -1.0 / JUMP, start + k)
-            x[start + k] = before + JUMP * net.scale[start + k]
+            add_passed(net, i, passed, -1.0 / SLOPE_STEP, start + k)
+            x[start + k] = before + SLOPE_STEP * net.scale[start + k]
             write_anchor_miss(net, i, x, how.loose)
-            add_passed(net, i, passed, 1.0 / JUMP, start + k)
+            add_passed(net, i, passed, 1.0 / SLOPE_STEP, start + k)
             x[start + k] = before
             write_anchor_miss(net, i, x, how.loose)
     moved = Marching(how.sea, how.step, how.cuts, True, how.exact, OTHER, how.loose)
     free = leg.own + (1 if leg.kind == PULLED and leg.start >= 0 else 0)
     for m in range(free):
         k = at + m if m < leg.own else start + 2
-        add_passed(net, i, passed, -1.0 / JUMP, k)
+        add_passed(net, i, passed, -1.0 / SLOPE_STEP, k)
     for m in range(free):
         k = at + m if m < leg.own else start + 2
         before = x[k]
-        x[k] = before + JUMP * net.scale[k]
+        x[k] = before + SLOPE_STEP * net.scale[k]
         failure = march_leg(net, i, x, moved)
         x[k] = before
         if failure != GOES_ON:
             return failure
-        add_passed(net, i, passed, 1.0 / JUMP, k)
+        add_passed(net, i, passed, 1.0 / SLOPE_STEP, k)
     if leg.kind == PULLED and leg.start >= 0:
         for k in range(3):
             net.slopes[start + k][at + k] -= net.scale[at + k] / net.rows[start + k]
@@ -258,11 +259,11 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
 
 
 def take_scale(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
-    """Scale the unknown forces on a leg by its own pull, as it was marched last.
+    """Scale the unknown forces on a leg by the pull of its last march.
 
-    A slack leg pulls with a thousandth of others: steps that suit these say nothing of its slopes.
-    None is scaled by more than what the heaviest leg weighs: legs too short for their ends would
-    else be stretched until they meet.
+    The pull of a slack leg may be a thousandth of other pulls: steps of a size suited to these give
+    no information about its slopes. No scale exceeds the weight of the heaviest leg; otherwise legs
+    that are too short would be stretched until they meet.
     """
     leg, out = net.legs[i], net.passed[i]
     if leg.own == 1:

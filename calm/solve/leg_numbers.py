@@ -1,4 +1,4 @@
-"""A net of legs in the arrays and named tuples that the compiled laws take."""
+"""Data structures of a net of legs: arrays and named tuples used by compiled code."""
 
 from collections.abc import MutableSequence, Sequence
 from math import inf
@@ -16,47 +16,51 @@ STANDING, HANGING_DOWN, PULLED, ANCHORED = range(4)
 """Legs marched from a free upper end, from a free lower end, from an upper end that is held or at a
 node, and from the seabed up to such an end."""
 STAGE, GROUNDED, SHARE, MARCHES, COUNT, HUNG = range(6)
-"""State of a leg after its last march: the stage of its touchdown, or -1; its length on the seabed
-[m]; the share of a float's buoyancy in use; the number of its marches, of its nodes, and of the
-nodes that hang."""
+"""Indices into the state of a leg after its last march: the stage of its touchdown, or -1; its
+length on the seabed [m]; the share of a float's buoyancy in use; the numbers of marches, of nodes,
+and of hanging nodes.
+"""
 EAST, NORTH, TO_EAST, TO_NORTH, TO_UP, HANGS, LIES, SLACK = range(6, 14)
-"""State of an anchored leg: the way from its touchdown to its upper end, east and north [m]; the
-pull at the touchdown, east, north and up [N]; the hanging length of the stage of the touchdown, as
-in `calm.physics.seabed`; the reach of its part on the seabed, and how much longer this is than the
-way to the anchor [m]."""
+"""Indices into the state of an anchored leg: vector from its touchdown to its upper end, east and
+north [m]; pull at the touchdown, east, north and up [N]; hanging length of the stage of the
+touchdown, as in `calm.physics.seabed`; length of its part on the seabed, and the excess of this
+length over the distance to the anchor [m].
+"""
 FREQUENCY, LACKING, YIELD = range(14, 17)
-"""State of a leg that strums: the frequency of its cables [Hz]; the frequency of the vortices minus
-that [Hz], and its slope [-]."""
+"""Indices into the state of a strumming leg: frequency of its cables [Hz]; shedding frequency minus
+this frequency [Hz]; slope of this difference [-].
+"""
 COARSE_COUNT, COARSE_HUNG, COARSE_STAGE, COARSE_GROUNDED = range(17, 21)
 """`COUNT`, `HUNG`, `STAGE` and `GROUNDED` of the shape on coarse segments."""
 OF_LEG = 21
 OUT = 7
-"""Number of results of a march (`passed`): 0 and 1 the way east and north, or the miss of an
-anchored leg; 2 the height and 3 to 5 the force at the end of the march; 6 the height above the
-seabed at which an anchored leg begins."""
+"""Number of results of a march (`passed`): 0 and 1 are the distance east and north, or the miss of
+an anchored leg; 2 is the height and 3 to 5 are the force at the end of the march; 6 is the height
+above the seabed at which an anchored leg begins.
+"""
 
 
 class LegRow(NamedTuple):
-    """A leg in numbers.
+    """A leg as a row of numbers.
 
     Attributes
     ----------
-    kind, first, own : how it is marched; the first of its own unknowns and how many it has
-    start, end : numbers of the nodes at its upper and at its lower end (of one that hangs down from
-        its upper end the other way round); -1 for none
-    seabed : height of the seabed below its anchor; -inf where it has none [m]
-    rise : height of its anchor's top above that [m]
-    lifts : vertical pull on the anchor from which on its end is at the top [N], see `end_height`
-    deeper_east, deeper_north : as of `Water`, below the leg
-    longest : segment at an angle step of 1° [m]
+    kind, first, own : kind of march; index of the first of its own unknowns, and their number
+    start, end : numbers of the nodes at its upper and at its lower end (reversed for a leg that
+        hangs down from its upper end); -1 for none
+    seabed : height of the seabed below its anchor [m]; -inf without an anchor
+    rise : height of its anchor's top above the seabed [m]
+    lifts : vertical pull above which its end is at the top of the anchor [N], see `end_height`
+    deeper_east, deeper_north : as in `Water`, below the leg
+    longest : longest segment at an angle step of 1° [m]
     stands : range of its unknown that stands for a float at the surface [m], see `LaidLeg`
-    highest : how high it may come [m]
+    highest : largest allowed height [m]
     rides : as in `Limits`
-    sheds : Strouhal number over diameter at its end, where vortices set the frequency of a leg that
-        strums [1/m]; 0 of one that does not
+    sheds : Strouhal number over diameter at its end [1/m], if vortices set the strumming frequency
+        of the leg there; 0 for a leg that does not strum
     past_east, past_north, past_up : current there [m/s]
-    weight : of all its pieces, up or down, the scale of a leg that hardly pulls [N]
-    stages, landing, cables, surfacing, rows, pieces : how many there are of each, see `Course`
+    weight : sum of the absolute net forces of its pieces [N], the scale of forces on a slack leg
+    stages, landing, cables, surfacing, rows, pieces : number of each, see `Course`
     """
 
     kind: int
@@ -91,22 +95,22 @@ class NetProblem(NamedTuple):
 
     Attributes
     ----------
-    lines : a `LineProblem` whose arrays have a row for each leg, as long as the longest needs
-    up : the courses of anchored legs from below, see `calm.solve.leg_from_below`
-    cuts : room for the segments of such a leg
-    held : (·, 6) places of the ends of each leg that are held, where its march begins and ends [m]
-    state : numbers of each leg: `STAGE` and those after it
-    passed : (·, `OUT`) what each march came out with
-    first, last : node of each piece's ends
-    found, kept : the residual as shares of `rows`, of the last march and of the unknowns kept
-    slopes, way : the Jacobian of `found` by shares of `scale`, and the Newton step
-    trial, paper, order : work arrays for the step
-    coarse, better : the unknowns on coarse segments, and as extrapolated
-    scale : of the unknowns; that of the forces on a leg is its own
-    errors : of depths [m] and tensions [N]
-    nodes_at : first unknown of the nodes
-    length, force : of the longest leg [m]; a typical one [N]
-    span : what errors of depths are measured by [m]
+    lines : a `LineProblem` whose arrays have a row for each leg, sized for the longest leg
+    up : courses of anchored legs from below, see `calm.solve.leg_from_below`
+    cuts : work array for the segments of such a leg
+    held : (·, 6) positions of held ends of each leg: start and end of its march [m]
+    state : state of each leg: `STAGE` and the following
+    passed : (·, `OUT`) results of each march
+    first, last : nodes at the ends of each piece
+    found, kept : residual as shares of `rows`: of the last march, and of the unknowns kept
+    slopes, update : the Jacobian of `found` by shares of `scale`, and the Newton step
+    trial, matrix, order : work arrays for the step
+    coarse, better : the unknowns on coarse segments, and extrapolated
+    scale : scales of the unknowns; every leg has its own scale of forces
+    errors : errors of depths [m] and tensions [N]
+    nodes_at : index of the first unknown of the nodes
+    length, force : length of the longest leg [m]; a typical force [N]
+    span : length to which errors of depth are relative [m]
     """
 
     legs: Sequence[LegRow]
@@ -121,9 +125,9 @@ class NetProblem(NamedTuple):
     found: MutableSequence[float]
     kept: MutableSequence[float]
     slopes: Sequence[MutableSequence[float]]
-    way: MutableSequence[float]
+    update: MutableSequence[float]
     trial: MutableSequence[float]
-    paper: Sequence[MutableSequence[float]]
+    matrix: Sequence[MutableSequence[float]]
     order: MutableSequence[int]
     coarse: MutableSequence[float]
     better: MutableSequence[float]
@@ -137,14 +141,15 @@ class NetProblem(NamedTuple):
 
 
 class Marching(NamedTuple):
-    """How all legs are marched: water, angle step, cuts, whether these are given or chosen in the
-    march, and the record.
+    """Settings for the march of all legs: water, angle step, cuts (given, or chosen in the march),
+    and record.
 
-    `exact`: whether segments are split at every level. Marches for slopes must split as the march
-    that they belong to: other splits change the results by more than the small step does.
+    `exact`: whether segments are split at every level. Marches for slopes must be split like the
+    march that they belong to: the effect of a different split exceeds the effect of the small step.
 
-    `loose`: pull of a slack leg towards its anchor, as a share of its scale. It is zero in truth; a
-    search may begin with more, so that slack legs say which way a net drifts.
+    `loose`: pull of a slack leg towards its anchor, as a share of its scale. The true value is
+    zero; a search may start with a larger value, so that slack legs determine the direction in
+    which a net drifts.
     """
 
     sea: Sea
@@ -158,7 +163,7 @@ class Marching(NamedTuple):
 
 @within
 def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
-    """Return a leg as the problem of a single line."""
+    """Return a leg in the form of a single-line problem."""
     leg, lines, own = net.legs[i], net.lines, net.lines.afloat[i]
     course, work = lines.course, lines.work
     course = Course(
@@ -187,8 +192,9 @@ def bed_of(net: NetProblem, i: int) -> Bed:
 
 
 def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: int) -> float:
-    """Height of a node of a leg above the plane of the seabed through its anchor [m]; of one
-    without, through the origin."""
+    """Height of a node of a leg above the plane of the seabed through its anchor, or through the
+    origin if it has no anchor [m].
+    """
     end, level = int(net.state[i][COUNT]) - 1, net.legs[i].seabed
     east, north = record[0][n] - record[0][end], record[1][n] - record[1][end]
     if level == -inf:
@@ -199,7 +205,7 @@ def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: in
 
 @within
 def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[float, float, float]:
-    """Return the place where the record of a leg is to begin (`end` 0) or to end (1) [m]."""
+    """Position at which the record of a leg begins (`end` 0) or ends (1) [m]."""
     leg, held = net.legs[i], net.held[i]
     node = leg.end if end else leg.start
     if node >= 0:
@@ -210,11 +216,11 @@ def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[flo
 
 @within
 def end_height(leg: LegRow, lies: bool, pull: float) -> float:
-    """Height of the lower end of an anchored leg [m], by the vertical pull there [N].
+    """Height of the lower end of an anchored leg [m], from the vertical pull there [N].
 
-    A leg that lies ends on the seabed, one that pulls upwards at the top of its anchor. Where it
-    lifts less than a piece of itself as long as the anchor is high, its end is in between: without
-    a jump, so that neither state has to be guessed.
+    A leg on the seabed ends at the seabed; a leg that pulls upwards ends at the top of its anchor.
+    If the pull is less than the weight of a piece of line as long as the anchor height, its end is
+    in between. This avoids a jump, so that neither state has to be guessed.
     """
     if lies:
         return leg.seabed

@@ -28,28 +28,28 @@ from calm.solve.solution import (
 )
 
 MOST_BETWEEN = 6
-"""Most marches to find two shapes near enough for linear interpolation between them."""
+"""Largest number of marches to find two shapes close enough for linear interpolation."""
 LINEAR = 4e-7
-"""Largest product of the misses of two shapes, in spans squared, for a third to be interpolated
-linearly."""
+"""Largest product of the misses of two shapes, in spans squared, for linear interpolation."""
 FAR = 3e-4
-"""Largest miss on halved cuts, as a share of the span, for that interpolation."""
-FAR_BELOW = 0.01
-"""Depth below the seabed, as a share of the water depth, at which a line is refused on coarse cuts
-already."""
+"""Largest miss on halved cuts, as a share of the span, for this interpolation."""
+COARSE_REJECTION_DEPTH = 0.01
+"""Depth below the seabed, as a share of the water depth, at which a line is already rejected on
+coarse cuts.
+"""
 
 
 class FoundShape(NamedTuple):
-    """A shape of a line, or why there is none.
+    """A shape of a line, or the reason why there is none.
 
     Attributes
     ----------
-    closed : the shape in the record `FINE`, as it was marched; its columns from `BETTER` on are
+    closed : the shape in the record `FINE`, as marched; its columns from `BETTER` on are
         extrapolated
     errors : see `calm.solve.accuracy`
     share, grounded : extrapolated unknown, and length on the seabed [m]
-    closure, moment : what the audit found
-    other : another equilibrium that the search came upon
+    closure, moment : residuals found by the audit
+    other : another equilibrium found by the search
     """
 
     closed: Closed
@@ -65,24 +65,24 @@ NO_OTHER = OtherEquilibrium(-1.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def not_audited(closed: Closed, errors: Errors, share: float, grounded: float) -> FoundShape:
-    """Return a shape that is still to be audited."""
+    """Return a shape before its audit."""
     return FoundShape(closed, errors, share, grounded, 0.0, 0.0, NO_OTHER)
 
 
 def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
-    """Return why there is no shape."""
+    """Return the outcome of a line without a shape."""
     closed = Closed(ending, value, piece, root, 0, 0, False, 0.0, 0)
     return not_audited(closed, UNKNOWN_ERRORS, root.x, 0.0)
 
 
 def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
-    """Close a line from a coarse root on segments that are fine enough.
+    """Close a line near a coarse root on sufficiently fine segments.
 
-    The shape is in the record `FINE` and is not audited yet.
+    The shape is in the record `FINE` and is not yet audited.
 
     Parameters
     ----------
-    hangs : whether the line is to hang clear of the seabed; one that comes far below it is refused
+    hangs : whether the line must hang clear of the seabed; it is rejected if far below the seabed
     """
     problem, limits = search.problem, search.problem.limits
     coarse = fine = not_closed(NO_SHAPE_NEAR, 0.0, root)
@@ -106,9 +106,9 @@ def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
 
 
 def close_both(search: Search, root: Root, step: float, hangs: bool) -> tuple[Closed, Closed]:
-    """Close a line near a root on the segments chosen at twice a step, and on their halves.
+    """Close a line near a root on the segments chosen at twice a step, and on halved segments.
 
-    `hangs` as for `settle_line`.
+    `hangs` is as in `settle_line`.
     """
     root, problem = planned(search, root, 2.0 * step), search.problem
     coarse, fine = closed_between(search, root)
@@ -126,23 +126,23 @@ def extent_of(closed: Closed) -> Extent:
 
 
 def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bool) -> Closed:
-    """`polish`, then refuse a line that hangs far below the seabed before it is cut finer."""
+    """Apply `polish`, and reject a line that hangs far below the seabed before it is cut finer."""
     return refused_far_below(search.problem, polish(search, root, cuts, record), record, hangs)
 
 
 def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: bool) -> Closed:
-    """Return a closed line, refused where it is to hang and comes far below the seabed."""
+    """Return a closed line, rejected if it must hang but is far below the seabed."""
     if not hangs or closed.ending != FOUND:
         return closed
     lowest, above = lowest_node(problem, problem.work.records[record], closed.nodes)
-    if above < -FAR_BELOW * problem.limits.depth:
+    if above < -COARSE_REJECTION_DEPTH * problem.limits.depth:
         piece = int(problem.work.records[record][6][max(lowest, 1)])
         return Closed(BELOW_SEABED, -above, piece, closed.root, 0, 0, False, 0.0, 0)
     return closed
 
 
 def lowest_node(problem: LineProblem, record: Record, nodes: int) -> tuple[int, float]:
-    """The node that is nearest to the seabed, and its height above it [m]."""
+    """Node nearest to the seabed, and its height above the seabed [m]."""
     lowest, least, end = 0, inf, nodes - 1
     for n in range(nodes):
         x, y = record[0][n] - record[0][end], record[1][n] - record[1][end]
@@ -153,11 +153,12 @@ def lowest_node(problem: LineProblem, record: Record, nodes: int) -> tuple[int, 
 
 
 def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
-    """Close a line of a batch on its cuts and on their halves, by linear interpolation.
+    """Close a line of a batch on its cuts and on halved cuts, by linear interpolation.
 
-    Two shapes on the cuts, in the records `OTHER` and `COARSE`, show how every node moves with the
-    unknown. Both closed shapes follow from them, and from one march on the halves. Not `FOUND` if
-    the closed shapes are too far from those marched, or if the line lies on the seabed.
+    Two shapes on the cuts, in the records `OTHER` and `COARSE`, give the change of every node with
+    the unknown. Both closed shapes follow from this change and from one march on the halved cuts.
+    The outcome is not `FOUND` if the closed shapes are too far from the marched ones, or if the
+    line lies on the seabed.
     """
     problem, unknown = search.problem, root.unknown
     limits, work = problem.limits, problem.work
@@ -165,7 +166,7 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
     if limits.near == 0.0 or isnan(root.miss) or unknown.sought > 0 or unknown.lands:
         return none, none
     high, near, halved = limits.span, 0.5, 1.0
-    if unknown.sought != BELOW:  # a slack line swings far by little of its buoyancy
+    if unknown.sought != BELOW:  # a slack line moves far for a small change of its buoyancy
         high, near, halved = 1.0, 0.05, 0.1
     before, last, x = work.left[LAST], root.miss, root.x
     for _ in range(MOST_BETWEEN):

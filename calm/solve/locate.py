@@ -36,36 +36,40 @@ from calm.solve.solution import (
 )
 
 SCAN = 16
-"""Depths tried between the upright line and its deepest conceivable knockdown where the current
-grows or turns with depth: the resolution at which separate equilibria are told apart."""
+"""Number of depths tried between the upright line and its largest possible knockdown, if the
+current grows or turns with depth. This is the resolution at which separate equilibria are
+distinguished.
+"""
 NEAR = (0.02, 0.2)
-"""Shares of the first of these steps at which the miss is looked at, too: a line whose top is in a
-weak current may fall short there, and reach the anchor again where more current pulls it up."""
-DIP = 8
-"""Depths tried to see whether the miss changes sign between three of those."""
+"""Positions of additional samples, as shares of the first step of this scan. A line whose top is in
+a weak current may miss the anchor there, and reach the anchor in slightly stronger current.
+"""
+DIP_SAMPLES = 8
+"""Number of depths tried to see whether the miss changes sign between three samples."""
 GOLDEN = 0.381966
 ROUNDING = 1e-12
-"""Share of a current that is no growth of it: what a weaker one of the same direction leaves."""
+"""Rounding error of the current, as a share: a smaller growth does not count."""
 SHARES = (0.0, 0.4, 0.7, 0.85, 0.94, 1.0 - AWASH, 0.995)
-"""Shares of its buoyancy in use at which a float that would be under water is tried afloat."""
+"""Shares of its buoyancy in use with which an immersed float is tried afloat."""
 SHARE_STEPS, CURRENT_STEPS = 8, 10
-"""Steps of the buoyancy in use in which several roots are looked for, and of the current in which
-it is raised from zero to choose one of them."""
+"""Number of steps of the buoyancy in use in the search for several roots, and of the current as it
+is raised from zero to select a root.
+"""
 WEAK = 0.1
-"""Speed, as a share of the greatest, below which it does not matter how a current turns."""
+"""Speed, as a share of the maximum, below which a change of direction is ignored."""
 
 Sample = tuple[float, float]
 """A value of the unknown and the miss there [m]."""
 
 
 class CoarseRoots(NamedTuple):
-    """Coarse roots, of a line that hangs clear of the seabed or one that lands.
+    """Coarse roots of a line, either hanging clear of the seabed or with a touchdown.
 
     Attributes
     ----------
-    ending, value : FOUND, or why there is none: see `calm.solve.solution`
-    root : the highest
-    other : another one, the deepest that the scan came upon, or one with another share of the
+    ending, value : FOUND, or the reason why there is none (see `calm.solve.solution`)
+    root : root of the highest equilibrium
+    other : another root: the deepest of the scan, or a root with another share of the
         float's buoyancy in use; not `found` if there is none
     """
 
@@ -78,7 +82,7 @@ class CoarseRoots(NamedTuple):
 def locate(search: Search, lands: bool, first: bool) -> CoarseRoots:
     """Find coarse roots, or only the `first` below the surface.
 
-    Where the miss grows with depth a line does not stay, so such roots do not count.
+    Roots at which the miss grows with depth are unstable and are ignored.
     """
     problem = search.problem
     unknown = whole_line(problem, lands)
@@ -138,12 +142,12 @@ def locate(search: Search, lands: bool, first: bool) -> CoarseRoots:
 
 
 def stopped(problem: LineProblem, none: Root) -> CoarseRoots:
-    """Return what comes of a march that stopped."""
+    """Return the outcome of a march that stopped."""
     return CoarseRoots(MARCH_STOPPED, problem.work.left[FAILURE], none, none)
 
 
 def sample(search: Search, unknown: Unknown, count: int, depth: float) -> int:
-    """Add the miss at a depth to the samples; returns how many there are."""
+    """Add the miss at a depth to the samples, and return the number of samples."""
     miss = coarse_miss(search, unknown, depth)
     samples = search.problem.work.samples
     samples[0][count], samples[1][count] = depth, miss
@@ -151,11 +155,12 @@ def sample(search: Search, unknown: Unknown, count: int, depth: float) -> int:
 
 
 def samples_below(search: Search, unknown: Unknown, count: int) -> int:
-    """Samples of depth that tell roots apart, from given samples on; 0 where a march stops.
+    """Sample the miss in depth so that its roots are separated, and return the number of samples,
+    or 0 if a march stops.
 
-    Where the current neither grows nor turns with depth the miss falls by more than the shift, so
-    that there is one root at most, which the first shift brackets. Where it does so enough to
-    matter, depths are scanned.
+    If the current neither grows nor turns with depth, the miss falls by more than the shift. Then
+    there is at most one root, which the first shift brackets. If the current grows or turns
+    significantly, depths are scanned.
     """
     problem, limits = search.problem, search.problem.limits
     samples, deepest = problem.work.samples, limits.depth
@@ -190,15 +195,15 @@ def samples_below(search: Search, unknown: Unknown, count: int) -> int:
 
 
 def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: Sample) -> Sample:
-    """Find a sample beside the middle one and of the other sign, in a dip of the miss.
+    """Find a sample with the opposite sign next to the middle sample, in a dip of the miss.
 
-    By golden section; the middle sample where it does not.
+    Uses a golden-section search; returns the middle sample if this fails.
     """
     sign = 1.0 if here[1] > 0.0 else -1.0
     if not 0.0 < sign * here[1] < min(sign * before[1], sign * after[1]):
         return here
     low, best, high = before, here, after
-    for _ in range(DIP):
+    for _ in range(DIP_SAMPLES):
         left = best[0] - low[0] > high[0] - best[0]
         x = best[0] - GOLDEN * (best[0] - low[0] if left else best[0] - high[0])
         tried = (x, coarse_miss(search, unknown, x))
@@ -214,9 +219,10 @@ def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: S
 
 
 def growth_below(sea: Sea, depth: float) -> float:
-    """Largest growth of the current with depth below a depth, relative to the top speed [1/m].
+    """Largest growth of the current with depth below a depth, relative to the maximum speed [1/m].
 
-    A current that only weakens does not grow; one that turns does, by what is new in it.
+    A current that only weakens does not grow. For a current that turns, the part that is not
+    parallel to the current above counts as growth.
     """
     greatest = rise = 0.0
     last = len(sea.intervals) - 1
@@ -238,7 +244,7 @@ def growth_below(sea: Sea, depth: float) -> float:
 
 
 def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
-    """Knockdown if the greatest current ran at every level [m]."""
+    """Knockdown if the strongest current acted at all levels [m]."""
     problem, sea = search.problem, search.problem.sea
     greatest, fastest = 1, -1.0
     for k in range(1, len(sea.intervals)):
@@ -253,7 +259,7 @@ def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
 
 
 def in_even_current(problem: LineProblem, u: float, v: float, w: float) -> LineProblem:
-    """Return the same problem with one current at every level."""
+    """Return a copy of the problem with a uniform current."""
     sea, even = problem.sea, problem.work.even
     for k in range(len(sea.intervals)):
         here = sea.intervals[k]
@@ -265,7 +271,7 @@ def in_even_current(problem: LineProblem, u: float, v: float, w: float) -> LineP
 
 
 def in_weaker_current(problem: LineProblem, share: float) -> LineProblem:
-    """Return the same problem with a share of the current at every level."""
+    """Return a copy of the problem with a share of the current at every level."""
     sea, even = problem.sea, problem.work.even
     for k in range(len(sea.intervals)):
         here = sea.intervals[k]
@@ -280,7 +286,7 @@ def in_weaker_current(problem: LineProblem, share: float) -> LineProblem:
 
 
 def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:
-    """Return the same problem in other water."""
+    """Return a copy of the problem in other water."""
     return LineProblem(
         problem.course, sea, problem.loads, problem.flexible, problem.surfacing, problem.afloat,
         problem.hull, problem.limits, problem.starts, problem.work,
@@ -288,10 +294,11 @@ def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:
 
 
 def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
-    """The highest root with a float at the surface that could be under water as well.
+    """Find the highest root with a float at the surface that could also be immersed.
 
-    There its drag is less, or the wind pushes against the current. `immersed` ≥ 0 is the miss with
-    all buoyancy in use. A miss of NaN in what is `found` shows a march that stopped.
+    At the surface its drag is less, or the wind acts against the current. `immersed` ≥ 0 is the
+    miss with all buoyancy in use. A miss of NaN in a root that is `found` marks a march that
+    stopped.
     """
     problem = search.problem
     none = Root(False, unknown, nan, nan, nan)
@@ -310,22 +317,23 @@ def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
             root = coarse_root(search, unknown, following, low, share, high)
             if isnan(root.miss) or len(problem.surfacing) == 1:
                 return root
-            stands = height_at(search, root, 1)
-            if isnan(stands):
+            height = height_at(search, root, 1)
+            if isnan(height):
                 return Root(True, unknown, nan, nan, nan)
-            return root if stands <= problem.limits.allowed else none
+            return root if height <= problem.limits.allowed else none
         share, high = following, low
     return none
 
 
 def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
-    """Share of buoyancy in use of the lowest float at the surface, and of those above it.
+    """Find the share of buoyancy in use of the lowest float at the surface, and of the floats above
+    it.
 
-    The top float is tried first. Where it closes the line only with the next float out of the
-    water, or not at all, that one lies at the surface too: the share of the upper float then
-    follows from the part of the line between them, and the next float closes the line. One float
-    rides at its draft; several are taken as just below the surface.
-    `deep` < 0 is the miss with the free end at the surface and all buoyancy in use.
+    The top float is tried first. If it closes the line only with the next float out of the water,
+    or not at all, the next float is at the surface too. The share of the upper float then follows
+    from the part of the line between them, and the next float closes the line. A single float rides
+    at its draft; several floats are assumed just below the surface. `deep` < 0 is the miss with the
+    free end at the surface and all buoyancy in use.
     """
     problem, limits = search.problem, search.problem.limits
     none = Root(False, unknown, nan, nan, nan)
@@ -341,16 +349,16 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
         if isnan(unloaded):
             return stopped(problem, none)
         if unloaded > 0.0:
-            other, stands = none, 0.0
+            other, height = none, 0.0
             if k == 0 and turns_back(problem.sea):
                 root, other = roots_afloat(search, unknown)
             else:
                 root = coarse_root(search, unknown, 1.0, deep, 0.0, unloaded)
             if not isnan(root.miss) and k + 1 < count:
-                stands = height_at(search, root, k + 1)
-            if isnan(root.miss) or isnan(stands):
+                height = height_at(search, root, k + 1)
+            if isnan(root.miss) or isnan(height):
                 return stopped(problem, none)
-            if k + 1 == count or stands <= limits.allowed:
+            if k + 1 == count or height <= limits.allowed:
                 return CoarseRoots(FOUND, 0.0, root, other)
         if k + 1 == count:
             break
@@ -374,7 +382,7 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
 def turns_back(sea: Sea) -> bool:
     """Whether the current turns by more than 90° with depth.
 
-    Then a line at the surface may have several equilibria. Weak currents do not count.
+    Then a line at the surface may have several equilibria. Weak currents are ignored.
     """
     last = len(sea.intervals)
     greatest = 0.0
@@ -395,10 +403,11 @@ def turns_back(sea: Sea) -> bool:
 
 
 def roots_afloat(search: Search, unknown: Unknown) -> tuple[Root, Root]:
-    """The share of its buoyancy in use with which the top float rides, and another stable one.
+    """Find the share of its buoyancy in use with which the top float rides, and another stable
+    root.
 
-    Of several the first is that which a current rising from zero leads to. The second is not
-    `found` if there is only one.
+    If there are several roots, the first root returned is reached by raising the current from zero.
+    The second is not `found` if there is only one root.
     """
     lowest, highest = outer_roots(search, unknown)
     if isnan(lowest.miss) or lowest.x == highest.x:
@@ -422,10 +431,10 @@ def roots_afloat(search: Search, unknown: Unknown) -> tuple[Root, Root]:
 
 
 def outer_roots(search: Search, unknown: Unknown) -> tuple[Root, Root]:
-    """The stable roots with the least and with the greatest share of the buoyancy in use.
+    """Find the stable roots with the smallest and the largest share of the buoyancy in use.
 
-    Stable is a line that more buoyancy in use draws down. A root that is not `found`, or a miss of
-    NaN where a march stopped, tells that there is none.
+    An equilibrium is stable if more buoyancy in use draws the line down. Without stable roots, the
+    roots are not `found`; a miss of NaN marks a march that stopped.
     """
     lowest = highest = Root(False, unknown, nan, nan, nan)
     share, high = 0.0, coarse_miss(search, unknown, 0.0)
@@ -446,7 +455,7 @@ def height_at(search: Search, root: Root, lower: int) -> float:
 
 
 def surfaced_root(search: Search, unknown: Unknown, lower: int) -> Root:
-    """The share in use of a float that leaves the next one's top at the surface."""
+    """Find the share in use of a float that places the next float's top at the surface."""
     part = down_to(search.problem, unknown, lower)
     loaded, unloaded = coarse_miss(search, part, 1.0), coarse_miss(search, part, 0.0)
     if isnan(loaded) or isnan(unloaded):
@@ -459,7 +468,7 @@ def surfaced_root(search: Search, unknown: Unknown, lower: int) -> Root:
 
 
 def slack_at_rest(search: Search, unknown: Unknown) -> bool:
-    """In still water: whether the line stands too deep however little buoyancy is used."""
+    """Whether the line in still water stays too deep even with the smallest buoyancy in use."""
     assert unknown.sought != BELOW
     least = search.problem.surfacing[unknown.sought].least
     share = min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)

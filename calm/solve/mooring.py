@@ -1,9 +1,8 @@
-"""A moored line: its shape, searched for as it is or at the address of the compiled search;
-and shapes near a solved one, so alike in their segments that their differences are derivatives.
+"""Static equilibrium of a moored line, interpreted or compiled, and shapes close to a solved one.
 
-Two independent solves cut a line differently and differ by their truncation errors too, which
-drowns a small change. Here every neighbour keeps the cuts of the first shape and starts at its
-root: two or three marches close it.
+Two independent solutions cut a line differently and also differ by their truncation errors, which
+hides a small change. Here every neighbouring line keeps the cuts of the first shape and starts at
+its root. Two or three marches close it, and differences between the shapes are derivatives.
 """
 
 from collections.abc import Callable, MutableSequence, Sequence
@@ -15,7 +14,6 @@ import numpy as np
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import NO_ROOM, Floats, Line, Trace, Water
 from calm.physics.passing import FAILURE
-from calm.physics.track import Track
 from calm.solve.accuracy import Errors, take_as_marched
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root, miss_at, not_closed, planned, polish, whole_line
@@ -44,28 +42,28 @@ from calm.solve.solution import (
     Solution,
     Status,
     refuse_unsupported,
-    runs_compiled,
     standing_lift,
 )
 from calm.solve.starts import fill_starts
+from calm.solve.two_speeds import CompiledPart, runs_compiled
 
 MOST_DEPTHS = 500
-"""The longest line that is solved, in depths: segments are no longer than a hundredth of one."""
+"""Largest length of a line, in water depths: segments are at most a hundredth of the depth."""
 MORE_ROOM = 8
-"""How many times as much room a line gets that needs more segments."""
+"""Factor by which the work arrays grow if a line needs more segments."""
 
 
-BREATH = 1e-3
-"""A current that turns a slack line and moves nothing else [m/s]."""
+SLACK_LINE_CURRENT = 1e-3
+"""Speed of a current that gives a slack line a direction but has no other effect [m/s]."""
 
 
 def stirred(water: Water) -> Water | None:
-    """Return the same water with a weak current where it has none; None if it has one everywhere.
+    """Return the water with a weak current at its still levels, or None if no level is still.
 
-    The slack part of a line in the still layer of a current folds plumb, as in the weakest current.
+    A slack line in a still layer of a current hangs in a vertical fold, as in the weakest current.
     """
-    still = np.hypot(water.u, water.v) < BREATH
-    return replace(water, u=np.where(still, BREATH, water.u)) if still.any() else None
+    still = np.hypot(water.u, water.v) < SLACK_LINE_CURRENT
+    return replace(water, u=np.where(still, SLACK_LINE_CURRENT, water.u)) if still.any() else None
 
 
 def solve_mooring(line: Line, water: Water, settings: Settings | None = None) -> Solution:
@@ -74,25 +72,26 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     Parameters
     ----------
     line, water : see `calm.physics.line`
-    settings : angle step and tolerance; 1° and 1e-7 of the depth where not given
+    settings : angle step and tolerance; 1° and 1e-7 of the depth by default
 
     Returns
     -------
-    Solution : of the highest equilibrium found. At 1° its depths and offsets are within 5e-5 of
-        the water depth, its tensions within 2e-4, of the continuous line's.
+    Solution : the highest equilibrium found. At 1° its depths and offsets are within 5e-5 of
+        the water depth, and its tensions within 2e-4, of those of the continuous line.
 
     Raises
     ------
     NoEquilibrium
-        With one of the statuses of `Status`: nothing is returned that does not pass every check.
+        No shape passed every check; the status is one of `Status`.
     """
     settings = settings or Settings()
     refuse_endless(line, water)
-    refuse_unsupported(line, water, standing_lift(line, water))
+    lift = standing_lift(line, water)
+    refuse_unsupported(line, water, lift)
     compiled = runs_compiled(settings, line)
     room = ROOM
     while True:
-        problem = problem_of(line, water, settings, compiled=compiled, room=room)
+        problem = problem_of(line, water, settings, compiled=compiled, room=room, lift=lift)
         search = search_of(problem, compiled)
         referee = referee_of(line, water, 0.0, compiled)
         found = find_compiled(search, referee) if compiled else find_shape(search, referee)
@@ -106,15 +105,15 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
 
 
 def find_compiled(search: Search, referee: Referee) -> FoundShape:
-    """`find_shape`, compiled."""
-    asked = AskedSearch(search, referee)
-    find = by_address(find_asked, asked)
-    outcome(find_now, True, find, asked)
-    return as_told(list(search.problem.work.found))
+    """Run `find_shape` compiled."""
+    task = SearchTask(search, referee)
+    find = by_address(run_search, task)
+    outcome(call_search, True, find, task)
+    return read_found(list(search.problem.work.found))
 
 
 def search_of(problem: LineProblem, compiled: bool) -> Search:
-    """The search for a problem, at either speed."""
+    """Return the search for a problem, compiled or interpreted."""
     if not compiled:
         return Search(miss_at, problem)
     whole = whole_line(problem, False)
@@ -123,14 +122,12 @@ def search_of(problem: LineProblem, compiled: bool) -> Search:
 
 
 def lacks_room(problem: LineProblem) -> bool:
-    """Return whether a search has ended because a line needs more segments than there was room
-    for.
-    """
+    """Whether a search ended because the work arrays hold too few segments."""
     return bool(problem.work.left[FAILURE] == NO_ROOM)
 
 
 def refuse_endless(line: Line, water: Water) -> None:
-    """Refuse a line that is far longer than the water is deep.
+    """Raise an exception if a line is far longer than the water depth.
 
     Raises
     ------
@@ -139,107 +136,110 @@ def refuse_endless(line: Line, water: Water) -> None:
     out = float(line.length.sum())
     if out > MOST_DEPTHS * water.depth:
         raise Status.NOT_CONVERGED.because(
-            f"The line, {out:.0f} m, is {out / water.depth:.0f} times as long as the water is "
-            f"deep; up to {MOST_DEPTHS} times is solved.",
-            advice="Shorten it: what lies on the seabed does little for the anchor.",
+            f"The line is {out:.0f} m long, {out / water.depth:.0f} times the water depth; the "
+            f"limit is {MOST_DEPTHS} times.",
+            advice="Shorten the line; the part on the seabed hardly affects the anchor load.",
         )
 
 
-class AskedSearch(NamedTuple):
-    """Hold what `find_asked` is asked for."""
+class SearchTask(NamedTuple):
+    """Arguments of `run_search`."""
 
     search: Search
     referee: Referee
 
 
-def find_asked(asked: AskedSearch, first: float) -> float:
-    """Look for a shape, and tell what was found in the work of the problem; how it ended.
+def run_search(task: SearchTask, first: float) -> float:
+    """Run a search, write the result to the work arrays of the problem, and return the outcome.
 
-    Before the first of many, where `first` is not 0, it is found where they are sought.
+    If `first` is not 0, the starts of a batch are computed instead, before its first profile.
     """
     if first > 0.0:
-        return float(fill_starts(asked.search))
-    found = find_shape(asked.search, asked.referee)
-    tell(found, asked.search.problem.work.found)
+        return float(fill_starts(task.search))
+    found = find_shape(task.search, task.referee)
+    write_found(found, task.search.problem.work.found)
     return float(found.closed.ending)
 
 
-def find_now(find: Callable[[AskedSearch, float], float], asked: AskedSearch) -> float:
+def call_search(find: Callable[[SearchTask, float], float], task: SearchTask) -> float:
     """Call a search by its address."""
-    return find(asked, 0.0)
+    return find(task, 0.0)
 
 
 ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
 NODES, HANGING, LANDED, GROUNDED, SEGMENTS, FIRST_ERROR = range(11, 17)
 CLOSURE, MOMENT, SHARE_IN_USE, LIES, FIRST_OTHER = range(22, 27)
-"""Where it stands in what a search tells; from `FIRST_ERROR` on the errors, and
-from `FIRST_OTHER` on another equilibrium."""
+"""Indices into the result array of a search; from `FIRST_ERROR` on the errors, and from
+`FIRST_OTHER` on another equilibrium.
+"""
 
 
-def tell(found: FoundShape, told: MutableSequence[float]) -> None:
-    """Write down what was found."""
+def write_found(found: FoundShape, values: MutableSequence[float]) -> None:
+    """Write a found shape to the result array."""
     closed, errors = found.closed, found.errors
     root = closed.root
     unknown = root.unknown
-    told[ENDING], told[VALUE], told[PIECE] = closed.ending, closed.value, closed.piece
-    told[GOAL], told[SOUGHT] = unknown.goal, unknown.sought
-    told[RIDES], told[LANDS], told[STAGES] = unknown.rides, unknown.lands, unknown.stages
-    told[UNKNOWN_VALUE], told[MISS], told[SLOPE] = root.x, root.miss, root.slope
-    told[NODES], told[HANGING] = closed.nodes, closed.hanging
-    told[LANDED], told[GROUNDED] = closed.landed, closed.grounded
-    told[SEGMENTS] = closed.segments
-    told[FIRST_ERROR], told[FIRST_ERROR + 1] = errors.depth, errors.tension
-    told[FIRST_ERROR + 2] = errors.relative
-    told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
-    told[SHARE_IN_USE], told[LIES] = found.share, found.grounded
-    told[CLOSURE], told[MOMENT] = found.closure, found.moment
+    values[ENDING], values[VALUE], values[PIECE] = closed.ending, closed.value, closed.piece
+    values[GOAL], values[SOUGHT] = unknown.goal, unknown.sought
+    values[RIDES], values[LANDS], values[STAGES] = unknown.rides, unknown.lands, unknown.stages
+    values[UNKNOWN_VALUE], values[MISS], values[SLOPE] = root.x, root.miss, root.slope
+    values[NODES], values[HANGING] = closed.nodes, closed.hanging
+    values[LANDED], values[GROUNDED] = closed.landed, closed.grounded
+    values[SEGMENTS] = closed.segments
+    values[FIRST_ERROR], values[FIRST_ERROR + 1] = errors.depth, errors.tension
+    values[FIRST_ERROR + 2] = errors.relative
+    values[FIRST_ERROR + 3], values[FIRST_ERROR + 4] = errors.lift, errors.pull
+    values[SHARE_IN_USE], values[LIES] = found.share, found.grounded
+    values[CLOSURE], values[MOMENT] = found.closure, found.moment
     other = found.other
-    told[FIRST_OTHER], told[FIRST_OTHER + 1] = other.depth, other.grounded_length
-    told[FIRST_OTHER + 2], told[FIRST_OTHER + 3] = other.used_buoyancy, other.anchor_vertical
-    told[FIRST_OTHER + 4] = other.anchor_horizontal
+    values[FIRST_OTHER], values[FIRST_OTHER + 1] = other.depth, other.grounded_length
+    values[FIRST_OTHER + 2], values[FIRST_OTHER + 3] = other.used_buoyancy, other.anchor_vertical
+    values[FIRST_OTHER + 4] = other.anchor_horizontal
 
 
-def as_told(told: Sequence[float]) -> FoundShape:
-    """Return what was found, by what was written down."""
-    whole = [int(told[i]) for i in range(len(told)) if i in WHOLE]
+def read_found(values: Sequence[float]) -> FoundShape:
+    """Return the found shape from the result array."""
+    whole = [int(values[i]) for i in range(len(values)) if i in WHOLE]
     ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = whole
-    unknown = Unknown(told[GOAL], sought, bool(rides), bool(lands), stages)
-    root = Root(True, unknown, told[UNKNOWN_VALUE], told[MISS], told[SLOPE])
-    value = float(told[VALUE])
+    unknown = Unknown(values[GOAL], sought, bool(rides), bool(lands), stages)
+    root = Root(True, unknown, values[UNKNOWN_VALUE], values[MISS], values[SLOPE])
+    value = float(values[VALUE])
     closed = Closed(
-        ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]), segments
+        ending, value, piece, root, nodes, hanging, bool(landed), float(values[GROUNDED]), segments
     )
-    errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
-    other = OtherEquilibrium(*(float(figure) for figure in told[FIRST_OTHER : FIRST_OTHER + 5]))
-    share, lies = float(told[SHARE_IN_USE]), float(told[LIES])
-    return FoundShape(closed, errors, share, lies, float(told[CLOSURE]), float(told[MOMENT]), other)
+    errors = Errors(*(float(error) for error in values[FIRST_ERROR : FIRST_ERROR + 5]))
+    other = OtherEquilibrium(*(float(figure) for figure in values[FIRST_OTHER : FIRST_OTHER + 5]))
+    share, lies = float(values[SHARE_IN_USE]), float(values[LIES])
+    return FoundShape(
+        closed, errors, share, lies, float(values[CLOSURE]), float(values[MOMENT]), other
+    )
 
 
 WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
 
 
 class Nearby:
-    """A moored line and the lines that differ a little from it.
+    """A moored line, and lines that differ slightly from this line.
 
     Parameters
     ----------
-    line, water, settings : as of `solve_mooring`; a tight `tolerance` lets small changes be seen
+    line, water, settings : as in `solve_mooring`; a tight `tolerance` resolves small changes
 
     Attributes
     ----------
-    solution : of the line itself
+    solution : solution of the line itself
 
     Raises
     ------
     NoEquilibrium
-        As `solve_mooring` does.
+        As in `solve_mooring`.
     """
 
     def __init__(self, line: Line, water: Water, settings: Settings) -> None:
         self.solution = solve_mooring(line, water, settings)
         self._water, self._settings = water, settings
         self._room = 2 * len(self.solution.cut) + 64
-        self._compiled = compiled = runs_compiled(settings, line)
+        self._compiled = compiled = runs_compiled(settings, line, CompiledPart.NEARBY)
         problem = problem_of(line, water, settings, compiled=compiled, room=self._room)
         search = search_of(problem, compiled)
         closed: Closed = outcome(close_coarsely, compiled, search, self.solution.landed)
@@ -252,13 +252,15 @@ class Nearby:
         self._trace = Trace.of(work.records[FINE], closed.nodes)
 
     def node(self, piece: int, clamp: int = -1) -> int:
-        """The node at the top of a piece, or at a clamp, in every one of these shapes."""
+        """Node at the top of a piece, or at a clamp, with the same number in all of these
+        shapes.
+        """
         if clamp >= 0:
             return int(np.argmax(self._trace.clamp == clamp))
         return int(np.argmax(self._trace.piece == piece))
 
     def shape(self, line: Line) -> tuple[Floats, float]:
-        """Nodes of a line that differs a little, and its buoyancy in use.
+        """Return the nodes of a slightly different line, and its share of buoyancy in use.
 
         Returns
         -------
@@ -270,31 +272,30 @@ class Nearby:
         NoEquilibrium
             ``not-converged`` or ``slack``.
         """
-        search, closed = self._closed(line, self._water, None)
+        search, closed = self._closed(line, self._water)
         trace = Trace.of(search.problem.work.records[FINE], closed.nodes)
         position = trace.position
         position[:, :2] -= position[-1, :2]
         return position, _used(search.problem, closed, line)
 
-    def solved(self, line: Line, water: Water, track: Track | None = None) -> Solution:
-        """The solution of a line that differs, on the cuts of this one.
+    def solved(self, line: Line, water: Water) -> Solution:
+        """Solve a different line on the cuts of this line.
 
-        Its errors are stated as those of this one, whose cuts it has.
+        The error estimates are those of this line, since the cuts are the same.
 
         Parameters
         ----------
-        line, water : of the same pieces, all cables longer by one factor
-        track : the line laid out, where it is known
+        line, water : a line of the same pieces, with all cables scaled by one factor, and its water
 
         Raises
         ------
         NoEquilibrium
-            Where there is none that passes every check, or none of the same kind near by.
+            No shape passes every check, or none of the same kind is near.
         """
-        search, closed = self._closed(line, water, track)
+        search, closed = self._closed(line, water)
         base, compiled = self.solution, self._compiled
         if closed.landed != base.landed:
-            raise Status.NOT_CONVERGED.because("It lies on the seabed, or hangs, unlike the other.")
+            raise Status.NOT_CONVERGED.because("Only one of the lines has a part on the seabed.")
         errors = Errors(base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error)
         referee = referee_of(line, water, 0.0, compiled)
         found = not_audited(closed, errors, closed.root.x, closed.grounded)
@@ -304,11 +305,9 @@ class Nearby:
         found = outcome(audited, compiled, problem, referee, found)
         return solution_found(found, problem, line, water, self._settings)
 
-    def _closed(self, line: Line, water: Water, track: Track | None) -> tuple[Search, Closed]:
+    def _closed(self, line: Line, water: Water) -> tuple[Search, Closed]:
         compiled = self._compiled
-        problem = problem_of(
-            line, water, self._settings, compiled=compiled, track=track, room=self._room
-        )
+        problem = problem_of(line, water, self._settings, compiled=compiled, room=self._room)
         given, cables = self.solution.line, line.flexible
         longer = line.length[cables].sum() / given.length[cables].sum() if cables.any() else 1.0
         work = problem.work
@@ -324,7 +323,7 @@ class Nearby:
         return search, closed
 
     def _moved(self, water: Water, problem: LineProblem) -> Root:
-        """The root in water of another depth."""
+        """Return the root in water of another depth."""
         root, deeper = self._root, water.depth - self._water.depth
         was, x = root.unknown, root.x
         unknown = Unknown(was.goal - deeper, was.sought, was.rides, was.lands, was.stages)
@@ -345,7 +344,7 @@ def close_coarsely(search: Search, lands: bool) -> Closed:
 
 
 def _used(problem: LineProblem, closed: Closed, line: Line) -> float:
-    """Share in use of the buoyancy in reference water of the floats at the surface."""
+    """Share of the buoyancy (in reference water) of the floats at the surface that is in use."""
     sought = closed.root.unknown.sought
     if sought == BELOW:
         return 1.0

@@ -1,9 +1,9 @@
 """A net of legs: lines with more ends than one free and one anchored, joined at nodes.
 
-Every leg is passed by the march of a single line: from its free end, if it has one, else from its
-upper end with a pull on it that is unknown. Unknown are besides the depths of the free ends and the
-places of the nodes; asked is that every leg ends where it is held and that the pulls at every node
-balance: see `calm.solve.leg_marches`.
+Every leg is integrated by the march of a single line: from its free end if it has one, else from
+its upper end with an unknown pull. Further unknowns are the depths of the free ends and the
+positions of the nodes. The conditions are that every leg ends at its held position and that the
+pulls at every node balance (see `calm.solve.leg_marches`).
 """
 
 from collections.abc import Callable, Sequence
@@ -16,13 +16,13 @@ import numpy as np
 from calm.errors import NoEquilibrium
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import FAILURES, GOES_ON, NO_ROOM, Floats, Line, Trace, Water
-from calm.physics.profile import Profile
+from calm.physics.profile import profile_of
 from calm.solve import leg_closing, leg_numbers
 from calm.solve.finish import refuse_unbalanced
 from calm.solve.leg_closing import NetTask, copy_values, do_by_address, do_task
 from calm.solve.leg_layout import LaidLeg, NetLeg, lay_net, leg_found, refuse_misplaced, unsettled
 from calm.solve.leg_numbers import Marching
-from calm.solve.mooring import BREATH, stirred
+from calm.solve.mooring import SLACK_LINE_CURRENT, stirred
 from calm.solve.net_start import NetStart, start_of
 from calm.solve.problem import CHOSEN, FINE, ROOM
 from calm.solve.solution import (
@@ -30,15 +30,15 @@ from calm.solve.solution import (
     Settings,
     Solution,
     Status,
-    expect_many,
-    runs_compiled,
 )
+from calm.solve.two_speeds import CompiledPart, count_lines, runs_compiled
 
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
 LOOSE, TIGHTEST, FALL = 1e-2, 1e-8, 0.1
-"""Pulls of slack legs, as shares of their scales, with which a net that nothing else holds is first
-and last sought, and by what they fall between."""
+"""First and last pull of slack legs, as shares of their scales, in the search for a net that is
+held by slack legs alone, and the factor between successive pulls.
+"""
 
 
 @dataclass(frozen=True)
@@ -47,14 +47,14 @@ class NetSolution:
 
     Attributes
     ----------
-    legs : each a line of its own, in the common frame; one that hangs from its upper end is listed
-        from its lower one
-    nodes : (n, 3) places [m]
-    imbalance : (n,) what is left of the pulls at each node [N]
-    miss : the worst distance of a leg's end from where it is held [m]
-    depth_error, tension_error : own estimate of the worst errors [m], [N]
-    marches : done for it
-    unknowns : of the solution, from which similar nets are sought
+    legs : each leg as a single line, in the common frame; a leg that hangs from its upper end is
+        listed from its lower end
+    nodes : (n, 3) positions [m]
+    imbalance : (n,) size of the resultant force at each node [N]
+    miss : largest distance between a leg's end and its held position [m]
+    depth_error, tension_error : estimates of the largest errors [m], [N]
+    marches : number of marches
+    unknowns : unknowns of the solution, used to start the search for similar nets
     """
 
     legs: tuple[Solution, ...]
@@ -72,22 +72,24 @@ class LacksRoom(Exception):
 
 
 class NetSearch:
-    """The search for a net: its legs laid out, and its unknowns, those of each leg and then the
-    places of the nodes."""
+    """Search for the equilibrium of a net.
+
+    The unknowns are those of each leg, followed by the positions of the nodes.
+    """
 
     def __init__(
         self, legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
         room: int = ROOM, rough: bool = False,
     ) -> None:  # fmt: skip
-        self.compiled, self.settings = runs_compiled(settings), settings
+        self.compiled, self.settings = runs_compiled(settings, solver=CompiledPart.LEGS), settings
         self.laid = [LaidLeg.of(leg, water, settings, rough) for leg in legs]
         self.nodes, self.room = nodes, room
         self.net = lay_net(self.laid, nodes, self.compiled, room)
         self.put_in(water)
 
     def put_in(self, water: Water) -> None:
-        """Give the net other water, of the same depth and density."""
-        profile = Profile(water)
+        """Replace the water by other water of the same depth and density."""
+        profile = profile_of(water)
         self.water, self.sea = water, profile.packed if self.compiled else profile.sea
 
     def begin(self, start: NetStart) -> Floats:
@@ -104,21 +106,22 @@ class NetSearch:
                 x[first + 3 : first + each.unknowns] = each.leg.lower.seabed
                 height = start.first[i][2] - each.leg.lower.seabed
                 x[first + 2] = min(x[first + 2], each.most_lying(height))
-            elif x[first] < 0.0 and not down and each.problem.surfacing:  # what pulls is in use
+            # the share of buoyancy in use follows from the pull
+            elif x[first] < 0.0 and not down and each.problem.surfacing:
                 share = pull[2] / each.problem.surfacing[0].surface_lift
                 x[first] = min(max(share, 0.01), 1.0) * each.stands - each.stands
             first += each.unknowns
         return x
 
     def do(self, task: int, x: Floats, how: Marching, enough: float = 0.0) -> tuple[int, Floats]:
-        """Do a task of `NetTask`; return how it ended, and the unknowns after it."""
+        """Run a task of `NetTask`, and return its outcome and the resulting unknowns."""
         own: Any = x.copy() if self.compiled else x.tolist()
-        asked = NetTask(task, self.net, own, how, enough, False)
+        job = NetTask(task, self.net, own, how, enough, False)
         if self.compiled:
-            ask = by_address(do_task, asked)
-            ending = outcome(do_by_address, True, ask, asked)
+            ask = by_address(do_task, job)
+            ending = outcome(do_by_address, True, ask, job)
         else:
-            ending = do_task(asked, 0.0)
+            ending = do_task(job, 0.0)
         closing = task in (leg_closing.CLOSE, leg_closing.SETTLE)
         if ending == (leg_closing.NEEDS_ROOM if closing else NO_ROOM):
             raise LacksRoom
@@ -127,11 +130,11 @@ class NetSearch:
     def marching(
         self, step: float, cuts: int, record: int, *, given: bool, loose: float = 0.0
     ) -> Marching:
-        """Return how all legs are to be marched."""
+        """Return the settings for the march of all legs."""
         return Marching(self.sea, float(step), cuts, given, given, record, loose)
 
     def closed(self, x: Floats, step: float, enough: float, loose: float = 0.0) -> Floats | None:
-        """Return the unknowns closed by Newton's method, None if it does not converge.
+        """Return the unknowns closed by Newton's method, or None if it does not converge.
 
         `loose` is as in `Marching`.
         """
@@ -140,45 +143,44 @@ class NetSearch:
         return found if ending == FOUND else None
 
     def settled(self, x: Floats) -> Floats:
-        """Return the unknowns closed to the last digits, on segments that are fine enough.
+        """Return the unknowns closed to full precision, on sufficiently fine segments.
 
-        NoEquilibrium: Newton's method does not converge.
+        Raises NoEquilibrium if Newton's method does not converge.
         """
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=False)
-        # slack legs may miss the first limit; the audit judges what meets the second alone
+        # slack legs may not meet the first limit; the audit decides if only the second is met
         for enough in (leg_closing.CLOSED, 100.0 * leg_closing.CLOSED):
             ending, found = self.do(leg_closing.SETTLE, x, how, enough)
             if ending == FOUND:
                 return found
-        raise unsettled("its legs do not come together to the last digits")
+        raise unsettled("its legs do not meet to full precision")
 
     def end(self, i: int, x: Floats) -> Floats:
-        """Return where the march of a leg ends [m]."""
+        """Position at which the march of a leg must end [m]."""
         end, first = self.laid[i].ends[1], self.net.nodes_at
         return x[first + 3 * end.node :] if end.place is None else np.array(end.place)
 
     def shape(self, i: int, x: Floats) -> Trace:
-        """Return the shape of a leg as it was marched last, in the frame of the net."""
+        """Return the shape of the last march of a leg, in the frame of the net."""
         nodes = int(self.net.state[i][leg_numbers.COUNT])
         trace = Trace.of(self.net.lines.work.records[i][FINE], nodes)
         trace.position[:, :2] += self.end(i, x)[:2] - trace.position[-1, :2]
         return trace
 
     def solution(self, x: Floats) -> NetSolution:
-        """Return the solution that was settled last, with every leg audited and every node in
-        balance.
+        """Return the last settled solution, with every leg audited and every node in balance.
 
-        NoEquilibrium: it does not pass the checks.
+        Raises NoEquilibrium if the solution fails a check.
         """
         net, legs, better = self.net, [], np.array(self.net.better)
         water = self.water
-        slow = float(np.hypot(water.u, water.v).max(initial=0.0)) <= BREATH
+        slow = float(np.hypot(water.u, water.v).max(initial=0.0)) <= SLACK_LINE_CURRENT
         how = self.marching(self.settings.angle_step, CHOSEN, FINE, given=True)
         if slow and self.do(leg_closing.DRIFTS, x, how)[0]:
             raise Status.SLACK.because(
-                "Nothing holds the net sideways: every leg to an anchor lies on the seabed and is "
-                "slack, so that the net may be anywhere between its anchors.",
-                advice="Shorten a leg, or give the current that the net has to stand in.",
+                "The net has no horizontal restraint: every anchored leg lies on the seabed and is "
+                "slack, so the net can be at any position between its anchors.",
+                advice="Shorten a leg, or set the current in which the net must hold its position.",
             )
         left = np.abs(np.array(net.found) * np.array(net.rows))
         miss = float(left[: net.nodes_at].max())
@@ -196,7 +198,7 @@ class NetSearch:
             )
         greatest = max(float(each.tension.max()) for each in legs)
         if len(imbalance) and float(imbalance.max()) > 1e-6 * greatest:
-            raise unsettled(f"the pulls at a node leave {imbalance.max():.2g} N over")
+            raise unsettled(f"the forces at a node do not balance, by {imbalance.max():.2g} N")
         for leg in legs:
             refuse_unbalanced(leg.closure, leg.moment_residual)
         return NetSolution(
@@ -216,18 +218,18 @@ def solve_net(
 
     Parameters
     ----------
-    legs : their ends at nodes, held, or free
-    nodes : how many nodes there are
-    water, settings : as for `solve_mooring`
-    near : the same net in other water, from which it is sought first
+    legs : the legs, with ends that are at nodes, held, or free
+    nodes : number of nodes
+    water, settings : as in `solve_mooring`
+    near : solution of the same net in other water, tried first as a start
 
     Raises
     ------
     NoEquilibrium
-        None was found, or what was found does not pass the checks.
+        No equilibrium was found, or the one found fails a check.
     """
     settings = settings or Settings()
-    expect_many(4.0 * len(legs))
+    count_lines(4.0 * len(legs), CompiledPart.LEGS)
 
     def solved(net: NetSearch) -> NetSolution:
         found = net.solution(settled_from(net, near))
@@ -250,7 +252,7 @@ def with_room(
     solve: Callable[[NetSearch], Answer],
     legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
 ) -> Answer:  # fmt: skip
-    """Return the outcome of a search, repeated with more room until all segments fit."""
+    """Return the result of a search, repeated with larger work arrays until all segments fit."""
     room = ROOM
     while True:
         try:
@@ -260,11 +262,11 @@ def with_room(
 
 
 def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
-    """Return the unknowns of a net closed to the last digits.
+    """Return the unknowns of a net, closed to full precision.
 
-    If slack legs alone hold a net in still water, no force says which way it drifts. Newton's
-    method then begins with slack legs that pull a little, towards their anchors, and this pull is
-    lowered to a tenth at a time, or by less if that does not converge.
+    If a net in still water is held by slack legs alone, no force determines the direction in which
+    it drifts. Newton's method then begins with slack legs that pull slightly towards their anchors.
+    This pull is reduced to a tenth at a time, or by less if that does not converge.
 
     Raises
     ------
@@ -288,9 +290,10 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
 def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0) -> Floats:
     """Return roughly closed unknowns of a net.
 
-    They are sought near another solution if there is one. Else the current is raised from still
-    water in steps, which leads to the highest of several equilibria. If that does not converge,
-    they are sought from where lumps let go in the current come to rest (`calm.solve.net_start`).
+    If another solution is given, the search starts near it. Otherwise the current is raised from
+    still water in steps, which leads to the highest of several equilibria. If that fails, the
+    search starts from the rest positions of lumped masses released in the current
+    (`calm.solve.net_start`).
 
     `loose` is as in `Marching`.
 
@@ -306,7 +309,7 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
     still, way, stride = water.still(), 0.0, 1.0
     net.put_in(still)
     x = net.closed(net.begin(start_of(legs, net.nodes, still)), step, leg_closing.NEAR, loose)
-    why = "not even in still water do its legs come together"
+    why = "its legs do not meet even in still water"
     while x is not None and way < 1.0 and stride >= 0.01:
         following = min(way + stride, 1.0)
         moving = replace(water, u=following * water.u, v=following * water.v, w=following * water.w)
@@ -314,7 +317,7 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
         closer = net.closed(x, step, leg_closing.NEAR, loose)
         stride = stride if closer is not None else 0.5 * stride
         x, way = (x, way) if closer is None else (closer, following)
-        why = f"beyond {way:.0%} of the current its legs do not come together"
+        why = f"above {way:.0%} of the current its legs do not meet"
     if x is None or way < 1.0:
         net.put_in(water)
         x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, leg_closing.NEAR, loose)
@@ -324,16 +327,17 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
 
 
 class NearbyNet:
-    """A net and those in which one leg differs a little, by the slopes and the cuts of the net.
+    """A net, and nets in which one leg differs slightly, on the slopes and the cuts of the first
+    net.
 
     Parameters
     ----------
-    legs, nodes, water, settings, near : as of `solve_net`
+    legs, nodes, water, settings, near : as in `solve_net`
 
     Raises
     ------
     NoEquilibrium
-        As `solve_net` does.
+        As in `solve_net`.
     """
 
     def __init__(
@@ -347,13 +351,15 @@ class NearbyNet:
         _, x = net.do(leg_closing.MARCH, roughly_closed(net, near), chosen)
         ending, self._x = net.do(leg_closing.CLOSE, x, self._how, leg_closing.CLOSED)
         if ending != FOUND:
-            raise unsettled("its legs do not come together to the last digits")
+            raise unsettled("its legs do not meet to full precision")
         net.do(leg_closing.SLOPES, self._x, self._how)
         self._slopes = np.array(net.net.slopes)
         net.do(leg_closing.MARCH, self._x, self._how)
 
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
-        """The node at the top of a piece of a leg, or at a clamp, in every one of these shapes."""
+        """Node at the top of a piece of a leg, or at a clamp, with the same number in all of these
+        shapes.
+        """
         each, trace = self._net.laid[leg], self._net.shape(leg, self._x)
         if clamp >= 0:
             return int(np.argmax(trace.clamp == clamp))
@@ -363,7 +369,9 @@ class NearbyNet:
         return int(np.argmax(trace.piece == piece + int(each.below_a_point)))
 
     def shape(self, number: int, line: Line, leg: int) -> tuple[Floats, float]:
-        """Nodes of a leg where that of a number has another line, and its buoyancy in use.
+        """Return the nodes of a leg, and its buoyancy in use, if leg `number` has another line.
+
+        Two steps with the slopes of the original net leave an error of third order in the change.
 
         Two steps by the slopes of the net itself leave an error of the third order in the change.
 

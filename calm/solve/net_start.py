@@ -1,7 +1,7 @@
-"""Start of a net: lumps on springs are let go, and come to rest where its legs about are.
+"""Approximate start for a net: lumped masses on springs are released and settle.
 
-Only a start for the march, which settles everything anew: cables stretch here by some hundredths,
-and friction along them does not count.
+This is only a start for the march, which solves the net anew: cables stretch here by some
+hundredths, and tangential friction is ignored.
 """
 
 from __future__ import annotations
@@ -18,21 +18,23 @@ if TYPE_CHECKING:
     from calm.solve.leg_layout import NetLeg
 
 MOST_LUMPS, SOFTEST = 14, 0.02
-"""Springs of a leg at most, and how much one stretches under the weight of everything."""
+"""Largest number of springs in a leg, and the strain of a spring under the weight of the net."""
 ROUNDS, AT_REST, SWAY = 6000, 2e-3, 20
-"""Steps at most; what of a typical force may be left; steps between two looks at the drag."""
+"""Largest number of steps; allowed imbalance, as a share of a typical force; number of steps
+between updates of the drag.
+"""
 
 
 class NetStart(NamedTuple):
-    """Hold where a net about is.
+    """Approximate positions and forces of a net.
 
     Attributes
     ----------
-    nodes : (n, 3) places of the nodes [m]
-    first : (k, 3) place of each leg's upper end [m]
+    nodes : (n, 3) positions of the nodes [m]
+    first : (k, 3) position of each leg's upper end [m]
     pull : (k, 3) force on each leg's upper end [N]
-    lower : (k, 3) place of each leg's lower end [m]
-    held : (k, 3) force on each leg's lower end, where the seabed bears nothing [N]
+    lower : (k, 3) position of each leg's lower end [m]
+    held : (k, 3) force on each leg's lower end, without support by the seabed [N]
     """
 
     nodes: Floats
@@ -43,7 +45,7 @@ class NetStart(NamedTuple):
 
 
 class _Lumps:
-    """The lumps of all legs: where they are, what they weigh, and the springs between them."""
+    """Lumped masses of all legs: positions, net forces, and the springs between them."""
 
     def __init__(self, legs: tuple[NetLeg, ...], nodes: int, water: Water) -> None:
         self.water, self.nodes = water, nodes
@@ -83,14 +85,16 @@ class _Lumps:
         self.fixed = np.array(fixed)
         self.lift, self.drag = np.array(lift), np.array(drag)
         self.insensitive, self.bed = np.array(insensitive), np.array(bed)
-        self.springs: Integers = np.array(springs, dtype=np.int64)
+        self.springs: Integers = np.array(springs, dtype=np.intp)
         self.lengths = np.array(lengths)
         self.place = self._spread(np.array(places), legs)
         self.typical = float(np.abs(self.lift).sum()) + 1.0
         self.stiffness = self.typical / SOFTEST / self.lengths
 
     def _spread(self, place: Floats, legs: tuple[NetLeg, ...]) -> Floats:
-        """Every lump somewhere: nodes between what holds them, the others along their legs."""
+        """Place all lumps: nodes between the points that hold them, other lumps along their
+        legs.
+        """
         for _ in range(200):
             before = place.copy()
             for lump in range(self.nodes):
@@ -118,7 +122,7 @@ class _Lumps:
         return place
 
     def settle(self) -> None:
-        """Let everything go, and stop it whenever it moves fastest, until it is at rest."""
+        """Release all lumps, and stop them whenever their kinetic energy peaks, until they rest."""
         a, b = self.springs.T
         mass = np.zeros(len(self.place))
         for ends in (a, b):
@@ -174,7 +178,9 @@ class _Lumps:
 
 
 def _points(line: Line, water: Water) -> list[tuple[float, float, float, float]]:
-    """Return what hangs where on a line [m]: net force [N], drag across it and drag any way."""
+    """List the bodies on a line: distance from the top [m], net force [N], drag normal to the axis
+    only, and drag in all directions, per squared speed.
+    """
     found, top = [], 0.0
     density = water.density_at(np.array(0.5 * water.depth))
     excess = (float(density) - 1025.0) * water.gravity
@@ -193,12 +199,12 @@ def _points(line: Line, water: Water) -> list[tuple[float, float, float, float]]
 
 
 def start_of(legs: tuple[NetLeg, ...], nodes: int, water: Water) -> NetStart:
-    """Return where a net of legs about is.
+    """Compute approximate positions and forces for a net of legs.
 
     Parameters
     ----------
     legs : from their upper to their lower ends
-    nodes : how many nodes they have
+    nodes : number of nodes
     """
     lumps = _Lumps(legs, nodes, water)
     lumps.settle()

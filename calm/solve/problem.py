@@ -1,4 +1,4 @@
-"""A line to be closed as the search takes it: plain numbers, and room to work in."""
+"""A line prepared for the search: plain numbers and work arrays."""
 
 from collections.abc import Callable, MutableSequence, Sequence
 from math import degrees
@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from calm.physics.compiled import record_type
-from calm.physics.hull import NEVER_AFLOAT, HullRow, SurfaceFloat
+from calm.physics.hull import UNKNOWN_FLOAT, HullRow, SurfaceFloat
 from calm.physics.line import COLUMNS, Bed, Floats, Line, Water
 from calm.physics.passing import LEFT
-from calm.physics.profile import Interval, Profile, Sea
+from calm.physics.profile import Interval, Sea, profile_of
 from calm.physics.track import ROD, Course, Load, Track
 from calm.solve.solution import (
     SUPPORTED,
@@ -22,50 +22,61 @@ from calm.solve.solution import (
 )
 
 COARSE_STEP = np.radians(4.0).item()
-"""Angle step of the marches that only look for the neighbourhood of a root."""
+"""Angle step of the marches that search for the neighbourhood of a root."""
 REACH, ROUGH_REACH = 0.01, 0.013
-"""Longest segment at an angle step of 1°, as a share of the span: of a line, and of one of many."""
+"""Longest segment at an angle step of 1°, as a share of the span: for a single line, and in a
+batch.
+"""
 ROOM, MANY_ROOM = 512, 256
-"""Segments that there is room for at first, of one line and of many; where a line needs more, it is
-solved with more."""
+"""Initial number of segments that the work arrays hold, for a single line and in a batch; lines
+that need more are solved again with larger arrays.
+"""
 MOST_AFLOAT = 16
-"""Floats at the surface one after the other: each is sought with all those above it."""
+"""Largest number of successive floats at the surface; each is solved together with all those
+above.
+"""
 MOST_SAMPLES = 64
 STARTS, FASTEST, START_ROWS = 41, 4.0, 7
-"""Even currents in which a line is sought beforehand, the fastest [m/s], and what is known of each.
+"""Number of uniform currents in which a line is solved before a batch, the fastest of them [m/s],
+and the number of stored values per current.
 """
 SHARE_TOLERANCE = 1e-9
-"""How well the share of a surface float's buoyancy in use is found."""
+"""Tolerance of the share of a surface float's buoyancy in use."""
 ROUGH, ROUGH_SHARE, ROUGHLY_NEAR = 1e-5, 1e-7, 2e-6
-"""The miss allowed of one of many lines, how well its share is found, and how far from a load the
-water may be looked up, as shares of the water depth and of the buoyancy."""
+"""Tolerances in a batch: the allowed miss and the distance of a load from its water sample, as
+shares of the water depth, and the tolerance of the buoyancy share.
 
-TOLD = 32
-"""Numbers by which a search tells what it has found."""
+In the order allowed miss, buoyancy share, distance.
+"""
+
+FOUND_SIZE = 32
+"""Size of the array for the results of a search."""
 
 COARSE, FINE, KEPT, OTHER = range(4)
-"""The records of shapes: on the cuts that the march chose, on these halved, and those kept while
-another is looked for."""
+"""Records of shapes: on the cuts chosen by the march, on halved cuts, and two for shapes that are
+kept during another search.
+"""
 CHOSEN, HALVED = range(2)
-"""The cuts: as the march chose them, and halved."""
+"""Cuts as chosen by the march, and halved cuts."""
 NOT_RECORDED = -1
 MARCHES, CHANGED, LAST = range(LEFT, LEFT + 3)
-"""In `SearchArrays.left`, after what a march leaves: how many there have been of the whole line,
-whether loads are not as they are in the line, and the unknown of the last one."""
+"""Indices into `SearchArrays.left` after the results of a march: the number of marches of the whole
+line, the number of loads changed for floats at the surface, and the unknown of the last march.
+"""
 
 
 class BuoyantPiece(NamedTuple):
-    """A rigid buoyant piece, which may lie at the surface.
+    """A rigid buoyant piece, which may float at the surface.
 
     Attributes
     ----------
-    piece : of the line
-    load, stage : where it is among the loads and stages of the course
-    length : [m]
-    rigid_above : length of what is rigid with it above it [m]
+    piece : index of the piece in the line
+    load, stage : its indices among the loads and stages of the course
+    length : of the piece [m]
+    rigid_above : length of the rigid pieces connected to it above [m]
     upto : length of all pieces down to its lower end [m]
-    surface_lift : its net force in the water of the surface [N]
-    least : share of its buoyancy with which the line below it just stands in still water [-]
+    surface_lift : its net force in surface water [N]
+    least : smallest share of its buoyancy that holds the line below it upright in still water [-]
     """
 
     piece: int
@@ -79,24 +90,25 @@ class BuoyantPiece(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """Hold what a line is sought within.
+    """Limits and settings of the search for a line.
 
     Attributes
     ----------
-    span : what lengths are measured by: the water depth, in a tow the line out [m]
-    depth : of the water [m]
-    anchor_height : [m]
+    span : scale of lengths [m]: the water depth, or for a tow the length of line paid out
+    depth : water depth [m]
+    anchor_height : height of the top of the anchor above the seabed [m]
     angle_step, coarse_step : turn of one segment [rad]
-    allowed : the greatest miss of a solution [m]
-    share_allowed : how well the share of a float's buoyancy in use is found [-]
+    allowed : the largest miss of a solution [m]
+    share_allowed : tolerance of the share of a float's buoyancy in use [-]
     bed : the seabed
-    near : as in `How`; where it is not 0 the line is one of many, whose shape is not audited
-    length, standing : of the line, uncut, and standing upright in still water [m]
-    lift : net force of all of it [N]
-    rides : whether it is known how the first float rides
-    at_rest : whether neither water nor wind moves
+    near : as in `How`; if not 0, the line is solved in a batch, without an audit
+    length, standing : length of the line, unstretched, and upright in still water [m]
+    lift : net buoyancy of the whole line [N]
+    rides : whether the draft of the first float can be computed
+    at_rest : whether there is neither current nor wind
     blown : whether there is wind
-    refused, refused_at_rest : why such a line need not be sought, in moving and in still water
+    refused, refused_at_rest : reasons to reject the line without a search, in moving and in still
+        water
     """
 
     span: float
@@ -119,20 +131,20 @@ class Limits(NamedTuple):
 
 
 class SearchArrays(NamedTuple):
-    """Hold what a search writes on.
+    """Work arrays of a search.
 
     Attributes
     ----------
     left : see `calm.physics.passing` and above
-    chosen : the segments as the march chose them [m]
-    counts : how many of them each cable has
-    records : of shapes, COARSE to OTHER
+    chosen : segments chosen by the march [m]
+    counts : number of segments of each cable
+    records : records of shapes, COARSE to OTHER
     shares : share in use of every float at the surface, the slope of its miss, and the shares of
         the shapes in the records KEPT and OTHER
-    samples : unknowns and misses
-    even : intervals of an even current
-    elements : (3, n) numbers for every element of a shape
-    found : see `calm.solve.mooring.tell`
+    samples : sampled unknowns and misses
+    even : intervals of a uniform current
+    elements : (3, n) values for every element of a shape
+    found : see `calm.solve.mooring.write_found`
     """
 
     left: MutableSequence[float]
@@ -147,16 +159,16 @@ class SearchArrays(NamedTuple):
 
 
 class LineProblem(NamedTuple):
-    """A line and its water, its limits, and room to work in.
+    """A line and its water, with limits and work arrays.
 
     Attributes
     ----------
-    course : the line; its loads are as they are at the surface
-    loads : as they are in the line
+    course : the line, with its loads reduced for floats at the surface
+    loads : the loads without this reduction
     flexible : whether a piece is a cable or chain
     surfacing : the floats, from the top down
-    afloat, hull : the first of them at the surface, and the rows of its hull
-    starts : where one of many is found in even currents of growing speed, see `calm.solve.starts`
+    afloat, hull : the first float at the surface, and the rows of its hull
+    starts : solutions in uniform currents of growing speed, see `calm.solve.starts`
     """
 
     course: Course
@@ -172,17 +184,17 @@ class LineProblem(NamedTuple):
 
 
 class Unknown(NamedTuple):
-    """Hold what closes a line: the depth of its free end, or how much of a float's buoyancy is
-    used.
+    """The unknown that closes a line: the depth of its free end, or the used share of a float's
+    buoyancy.
 
     Attributes
     ----------
-    goal : height at which it must end [m], + up from the surface
-    sought : the float whose share is sought; those above it are at the surface, too. `BELOW` where
+    goal : height above the surface at which the line must end [m]
+    sought : the float whose share is unknown; floats above it are also at the surface. `BELOW` if
         the free end is below the surface
     rides : whether the float rides at its draft; else it is just below the surface
-    lands : whether the line may come down on the seabed before its end
-    stages : how many of its stages are marched
+    lands : whether the line may have a touchdown before its end
+    stages : number of stages to march
     """
 
     goal: float
@@ -196,14 +208,14 @@ BELOW = -1
 
 
 class About(NamedTuple):
-    """Hold what a march is about: all but the value of the unknown.
+    """Arguments of a march, except the value of the unknown.
 
     Attributes
     ----------
     step : angle step [rad]
-    cuts : which of the cuts are used, or written
-    given : whether they are used
-    record : where the shape is recorded, or `NOT_RECORDED`
+    cuts : index of the cuts that are used, or written
+    given : whether these cuts are used
+    record : record for the shape, or `NOT_RECORDED`
     """
 
     problem: LineProblem
@@ -215,7 +227,7 @@ class About(NamedTuple):
 
 
 class Search(NamedTuple):
-    """A problem and the march that it is solved by, see `calm.solve.closing.miss_at`."""
+    """A problem, and the function that marches it (see `calm.solve.closing.miss_at`)."""
 
     miss: Callable[[About, float], float]
     problem: LineProblem
@@ -227,34 +239,34 @@ def problem_of(
     settings: Settings,
     *,
     compiled: bool,
-    track: Track | None = None,
     rough: bool = False,
     room: int = ROOM,
     intervals: int = 0,
+    lift: Floats | None = None,
 ) -> LineProblem:
-    """Lay out a line and its water.
+    """Prepare a line and its water for the search.
 
     Parameters
     ----------
-    compiled : whether compiled laws are to take it: its sequences are arrays
-    track : the line laid out, where it is known
-    rough : whether it is solved as one of many, without an audit
-    room : for how many segments
-    intervals : of other water that it is to be solved in, at most
+    compiled : whether it is for compiled code; its sequences are then arrays
+    rough : whether it is solved in a batch, without an audit
+    room : number of segments that the work arrays hold
+    intervals : largest number of intervals of other water in which it will be solved
+    lift : the `standing_lift` of the line, if known
     """
-    track = track or Track.of(line)
-    profile = Profile(water)
+    track = Track.of(line)
+    profile = profile_of(water)
     span = float(line.length.sum()) if line.towed else water.depth
     floating = None if line.towed else line.floating
     surfacing = []
-    lift = np.zeros(0)
+    upright = np.zeros(0)
     moving = at_rest = SUPPORTED
     standing = 0.0
     if not line.towed:
-        lift = standing_lift(line, water)
-        surfacing = _surfacing(line, water, track, lift)
-        standing = standing_length(line, lift)
-        moving, at_rest = (support_of(lift, still)[0] for still in (False, True))
+        upright = standing_lift(line, water) if lift is None else lift
+        surfacing = _surfacing(line, water, track, upright)
+        standing = standing_length(line, upright)
+        moving, at_rest = (support_of(upright, still)[0] for still in (False, True))
     blown = floating is not None and floating.blown
     excess = profile.excess_at(water.depth) if np.isfinite(water.depth) else 0.0
     bed = Bed(
@@ -272,16 +284,16 @@ def problem_of(
         near=ROUGHLY_NEAR * span if rough else 0.0,
         length=float(line.length.sum()),
         standing=float(standing),
-        lift=float(lift.sum()),
+        lift=float(upright.sum()),
         rides=floating is not None,
         at_rest=not (water.moving or blown),
         blown=bool(blown),
         refused=moving,
         refused_at_rest=at_rest,
     )
-    afloat = NEVER_AFLOAT if floating is None else floating.as_numbers
+    afloat = UNKNOWN_FLOAT if floating is None else floating.as_numbers
     hull = () if floating is None or floating.hull is None else floating.hull.rows
-    flexible: Any = line.flexible.astype(np.int64)
+    flexible: Any = line.flexible.astype(np.intp)
     if compiled:
         course, sea = track.packed, profile.packed
         loads: Any = course.loads
@@ -301,7 +313,7 @@ def problem_of(
 
 
 def work_for(course: Course, intervals: int, room: int, compiled: bool) -> SearchArrays:
-    """Room to work in, for so many intervals of the water and so many segments."""
+    """Create work arrays for given numbers of water intervals and segments."""
     cables = len(course.cables)
     nodes = 2 * room + 3 * len(course.loads) + 2 * len(course.stages) + 2
     if compiled:
@@ -309,13 +321,13 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
         return SearchArrays(
             left=zeros(LAST + 1),
             chosen=zeros(room),
-            counts=zeros(cables, np.int64),
+            counts=zeros(cables, np.intp),
             records=zeros((OTHER + 1, COLUMNS, nodes)),
             shares=zeros((OTHER + 1, MOST_AFLOAT + 1)),
             samples=zeros((2, MOST_SAMPLES)),
             even=zeros(intervals, record_type(Interval)),
             elements=zeros((3, nodes)),
-            found=zeros(TOLD),
+            found=zeros(FOUND_SIZE),
         )
 
     def rows(count: int, length: int) -> list[list[float]]:
@@ -330,18 +342,18 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Searc
         samples=rows(2, MOST_SAMPLES),
         even=[Interval(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)] * intervals,
         elements=rows(3, nodes),
-        found=[0.0] * TOLD,
+        found=[0.0] * FOUND_SIZE,
     )
 
 
 def reach_of(limits: Limits, step: float) -> float:
-    """The longest segment at an angle step [m]."""
+    """Longest segment at an angle step [m]."""
     reach = ROUGH_REACH if limits.near > 0.0 else REACH
     return reach * degrees(step) * limits.span
 
 
 def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[BuoyantPiece]:
-    """The rigid buoyant pieces of a line, from the top down."""
+    """Return the rigid buoyant pieces of a line, from the top down."""
     at_surface = surface_lift(line, water).tolist()
     upto, carried = np.cumsum(line.length).tolist(), np.cumsum(lift)
     found = []

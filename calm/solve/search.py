@@ -1,7 +1,7 @@
 """The whole search for a moored line: from a problem to a shape that has passed every check.
 
-What is found clear of the seabed, or lying on it, is settled, looked at for what is out of the
-water or in the seabed, and audited.
+A shape found clear of the seabed, or lying on it, is closed on fine segments, checked for parts out
+of the water or below the seabed, and audited.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -57,26 +57,30 @@ from calm.solve.starts import is_highest, start_of
 LARGEST_CLOSURE = 1e-6
 LARGEST_MOMENT = 1e-8
 UNSEEN = 1e-9
-"""Error, as a share of the span and of the greatest force, that both step sizes may have alike:
-of rounding, of a share of buoyancy, of a node that should be at a level and is just beside it."""
-BARELY_LANDED = 4.0
-"""Length on the seabed, in heights of the anchor, up to which a line that can as well hang between
-the seabed and the top of its anchor is taken to hang there; beyond it does so where that is higher.
+"""Error, as a share of the span and of the largest force, that is the same at both step sizes and
+so does not appear in their difference: rounding, the buoyancy share, and nodes that should be at a
+level but are slightly off.
 """
-DISTINCT = 1e-3
-"""Difference of the shares of its buoyancy in use in two equilibria of a float at the surface."""
-PERHAPS_LANDED = 20.0
-"""The same, up to which it is looked whether it could hang: the other shape is then reported."""
+SHORT_LANDED_LENGTH = 4.0
+"""Length on the seabed, in anchor heights, up to which a line is solved as hanging from the top of
+its anchor if it can also hang there; beyond this length, only if that equilibrium is higher.
+"""
+LEAST_SHARE_DIFFERENCE = 1e-3
+"""Smallest difference of the used buoyancy shares between two equilibria of a surface float."""
+CHECKED_LANDED_LENGTH = 20.0
+"""Length on the seabed, in anchor heights, up to which a hanging equilibrium is also sought; the
+other shape is then reported.
+"""
 
 
 class Referee(NamedTuple):
-    """Hold what the audit of a line takes.
+    """Arguments of the audit of a line.
 
     Attributes
     ----------
-    moored : the line as it is loaded, and its water
-    bodies : as they are in the line
-    first, last : room for the nodes of every piece
+    moored : the line with its loads in use, and its water
+    bodies : bodies without the reduction of floats at the surface
+    first, last : work arrays for the nodes of every piece
     """
 
     moored: Moored
@@ -86,7 +90,7 @@ class Referee(NamedTuple):
 
 
 def find_shape(search: Search, referee: Referee) -> FoundShape:
-    """Look for a line clear of the seabed or lying on it, the likelier first."""
+    """Search for a shape clear of the seabed or lying on it, the likelier one first."""
     problem = search.problem
     limits = problem.limits
     may_land = problem.course.landing < len(problem.course.stages)
@@ -109,10 +113,10 @@ def find_shape(search: Search, referee: Referee) -> FoundShape:
 
 
 def rising(search: Search, referee: Referee) -> FoundShape:
-    """One of many that could lie on the seabed, and clearly rises from its anchor.
+    """Search for a line of a batch that could lie on the seabed but clearly rises from its anchor.
 
-    It is looked for where the line does not come down from its start on. A line that sags, or any
-    other, is refused: it could lie on the seabed as well.
+    It is sought if the line does not descend anywhere from its start. A line with a sag, for
+    example, is rejected here, since it could also lie on the seabed.
     """
     problem = search.problem
     lying, start = start_of(search, True), start_of(search, False)
@@ -132,19 +136,19 @@ def rising(search: Search, referee: Referee) -> FoundShape:
 
 
 def is_slack(found: FoundShape) -> bool:
-    """Return whether a line is refused as slack."""
+    """Whether a line was rejected as slack."""
     return found.closed.ending == SLACK_AT_REST or found.closed.ending == SLACK_ON_DIGITS
 
 
 def beside(found: FoundShape, other: OtherEquilibrium) -> FoundShape:
-    """The shape, with another equilibrium."""
+    """Return the shape with another equilibrium attached."""
     return FoundShape(
         found.closed, found.errors, found.share, found.grounded, found.closure, found.moment, other
     )
 
 
 def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
-    """The shape in the record `FINE` as another equilibrium."""
+    """Return the shape in the record `FINE` as another equilibrium."""
     record, closed = problem.work.records[FINE], found.closed
     end = closed.nodes - 1
     x, y, z = record[BETTER + 3][end], record[BETTER + 4][end], record[BETTER + 5][end]
@@ -154,7 +158,7 @@ def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
 
 
 def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
-    """The highest shape of a kind, with the depth of the deepest where that is another."""
+    """Find the highest shape of a kind, and attach the deepest shape if it differs."""
     problem = search.problem
     if not lands and problem.limits.lift <= 0.0:
         nowhere = Root(False, whole_line(problem, lands), nan, nan, nan)
@@ -170,12 +174,12 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
     if located.ending != FOUND:
         return refused(located.ending, located.value, -1, located.root)
     found = shape_near(search, referee, located.root, lands)
-    if found.closed.ending == MISSES:  # the line jumps there as a float tips over
+    if found.closed.ending == MISSES:  # the miss jumps there because a float tips over
         located = locate(search, lands, False)
         return shape_near(search, referee, located.other, lands) if located.other.found else found
     if found.closed.ending != FOUND or not located.other.found:
         return found
-    if problem.limits.near > 0.0:  # of one of many its share is told, found roughly
+    if problem.limits.near > 0.0:  # in a batch, only its share is reported, found roughly
         afloat = located.other.unknown.sought != BELOW
         share = OtherEquilibrium(0.0, 0.0, located.other.x, nan, nan)
         return beside(found, share) if afloat else found
@@ -188,13 +192,13 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
     apart = 2.0 * (found.errors.depth + second.errors.depth)
     same = (
         other.depth - first.depth <= apart
-        and abs(other.used_buoyancy - first.used_buoyancy) < DISTINCT
+        and abs(other.used_buoyancy - first.used_buoyancy) < LEAST_SHARE_DIFFERENCE
     )
     return found if second.closed.ending != FOUND or same else beside(found, other)
 
 
 def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
-    """Copy a shape from one record to another, and the shares in use of the floats above it."""
+    """Copy a shape from one record to another, including the used shares of the floats above."""
     source, kept = problem.work.records[of], problem.work.records[to]
     shares = problem.work.shares
     for k in range(found.closed.root.unknown.sought):
@@ -208,13 +212,13 @@ def keep(problem: LineProblem, to: int, of: int, found: FoundShape) -> None:
 
 
 def load_again(problem: LineProblem, found: FoundShape) -> None:
-    """Load what is at the surface as it is in a shape."""
+    """Set the loads of the pieces at the surface as in a shape."""
     root = found.closed.root
     place(problem, root.unknown, root.x)
 
 
 def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> FoundShape:
-    """The audited shape near a coarse root."""
+    """Return the audited shape near a coarse root."""
     problem, limits = search.problem, search.problem.limits
     if not lands:
         return audited(problem, referee, settle_line(search, root, True))
@@ -229,7 +233,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
     closed = landed.closed
     if not closed.landed:
         return refused(NOT_LYING, 0.0, -1, root)
-    if closed.grounded > PERHAPS_LANDED * limits.anchor_height:
+    if closed.grounded > CHECKED_LANDED_LENGTH * limits.anchor_height:
         return landed
     keep(problem, KEPT, FINE, landed)
     lying = other_of(problem, landed)
@@ -238,7 +242,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
         return hanging
     clear_of_it = other_of(problem, hanging) if hanging.closed.ending == FOUND else NO_OTHER
     if hanging.closed.ending == FOUND:
-        barely = closed.grounded <= BARELY_LANDED * limits.anchor_height
+        barely = closed.grounded <= SHORT_LANDED_LENGTH * limits.anchor_height
         higher = lying.depth - hanging.errors.depth - landed.errors.depth
         if barely or clear_of_it.depth < higher:
             return beside(hanging, lying)
@@ -250,7 +254,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
 
 
 def hanging_clear(problem: LineProblem, root: Root) -> Root:
-    """The same root for the line hanging clear of the seabed, to be sought again from there."""
+    """Return the root for a line that hangs clear of the seabed, as a start for its search."""
     goal = problem.limits.anchor_height - problem.limits.depth
     given = root.unknown
     unknown = Unknown(goal, given.sought, given.rides, False, given.stages)
@@ -258,7 +262,7 @@ def hanging_clear(problem: LineProblem, root: Root) -> Root:
 
 
 def audited(problem: LineProblem, referee: Referee, found: FoundShape) -> FoundShape:
-    """A shape with what no halving shows of its errors, refused where a check fails."""
+    """Complete the error estimates of a shape, and reject it if a check fails."""
     closed, off, moment = found.closed, 0.0, 0.0
     if closed.ending != FOUND:
         return found
@@ -290,11 +294,11 @@ def residuals(
     landed: bool,
     limits: Limits,
 ) -> tuple[float, float]:
-    """Closure and moment residual of a shape, recomputed from its coordinates.
+    """Compute closure and moment residual of a shape from its coordinates.
 
     Parameters
     ----------
-    elements : (3, n) room for the loads of every element
+    elements : (3, n) work array for the loads of every element
     landed : whether the shape lies on the seabed at its end
     """
     find_ends(shape)
@@ -304,7 +308,7 @@ def residuals(
 
 
 def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
-    """Return whether a shape passes the audit, and what is wrong with it."""
+    """Return the outcome of the audit, and the residual that exceeds its limit."""
     if not off <= LARGEST_CLOSURE:
         return NOT_CLOSED, off
     if not moment <= LARGEST_MOMENT:
@@ -313,7 +317,7 @@ def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
 
 
 def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
-    """The errors of a shape, with what no halving shows."""
+    """Complete the error estimates with errors that are equal at both step sizes."""
     closed, span, errors = found.closed, problem.limits.span, found.errors
     unclosed = abs(closed.root.miss) / span + UNSEEN
     record, greatest = problem.work.records[FINE], 0.0
@@ -332,9 +336,10 @@ def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
 
 
 def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple[int, float]:
-    """The piece that is out of the water, and by how much, or in the seabed, negative [m]; or -1.
+    """Return a piece out of the water or below the seabed, else -1, and its height above the
+    surface or (negative) above the seabed [m].
 
-    A float at the surface may stand out of it, however it is turned.
+    A float at the surface may extend above the surface by its length, whatever its inclination.
     """
     record = problem.work.records[FINE]
     margin = max(depth_error, 1e-6 * problem.limits.depth)
@@ -356,7 +361,7 @@ def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple
 
 
 def take_loads(problem: LineProblem, referee: Referee) -> None:
-    """Give the referee the loads as they are at the surface."""
+    """Set the loads of the audit to the loads in use at the surface."""
     bodies, pieces = referee.moored.bodies, referee.moored.pieces
     for k in range(len(referee.bodies)):
         set_row(bodies, k, referee.bodies[k])
@@ -367,7 +372,7 @@ def take_loads(problem: LineProblem, referee: Referee) -> None:
 
 
 def loaded(body: RefereeBody, load: Load) -> RefereeBody:
-    """A body with the forces of a load."""
+    """Return a body with the forces of a load."""
     return RefereeBody(
         body.flexible, body.length, load.buoyancy, load.volume, load.normal_drag,
         load.tangential_drag, body.directional, body.compliance, body.thinning, load.lift,

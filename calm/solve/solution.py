@@ -1,41 +1,33 @@
-"""The settings of a solve and what it returns: a solution, or the status of having none.
+"""Settings of a solve, and its result: a solution, or a status that explains why there is none."""
 
-Where the settings leave open at which of its two speeds the solver runs, as it stands or compiled
-by numba, it is compiled once that pays: fetching it costs as much as `WARM` moorings, compiling it
-first as much as `COLD`. `CALM_COMPILED=never` and `always` settle what is left open.
-"""
-
-import os
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
-from importlib.util import find_spec
 from math import nan, radians
 from typing import NamedTuple
 
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import is_kept
 from calm.physics.hull import Riding
 from calm.physics.line import Floats, Integers, Line, Trace, Water
 from calm.physics.seawater import REFERENCE_DENSITY
 
 LOOSEST_TOLERANCE = 2e-4
-"""The worst miss, as a share of the water depth, that CALM ever called an answer."""
+"""Largest miss, as a share of the water depth, that is accepted for a solution."""
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Tell how finely to march and how well to close.
+    """Step size of the march and tolerance of the closure.
 
     Attributes
     ----------
     angle_step : turn of one segment [rad]
     tolerance : allowed miss of the anchor, as a share of the water depth
-    seabed_friction : of a line that lies on the seabed [-]
-    compiled : whether the solver is compiled, or interpreted as it stands, which gives the same
-        digits; None leaves it to `runs_compiled`
+    seabed_friction : friction coefficient of a line on the seabed [-]
+    compiled : whether the solver is compiled or interpreted, with identical
+        results; None leaves the choice to `calm.solve.two_speeds`
     """
 
     angle_step: float = radians(1.0)
@@ -57,8 +49,8 @@ class OtherEquilibrium(NamedTuple):
 
     Attributes
     ----------
-    depth : of the free end [m]; negative if there is no other equilibrium
-    grounded_length : on the seabed [m]
+    depth : depth of the free end [m]; negative if there is no other equilibrium
+    grounded_length : length on the seabed [m]
     used_buoyancy : share in use of the buoyancy of the float at the surface; 1 below it
     anchor_vertical, anchor_horizontal : upward and horizontal force at the line's end [N]
     """
@@ -76,35 +68,35 @@ class Solution:
 
     Attributes
     ----------
-    line, water, settings : what was solved; of a tow the line from its free end, and the water as
-        the ship sees it
+    line, water, settings : the solved problem; for a tow, the line from its free end, and the water
+        as seen from the ship
     position : (k+1, 3) east and north of the anchor or the tow point, up from the surface [m];
         extrapolated from two shapes, as are the forces and tensions
     force : (k+1, 3) sum of all external forces on the free-end side of a node [N]
-    element_piece : (k,) piece of the line each element belongs to
-    element_clamp : (k,) clamp it is (an element without length), or -1
-    landed : whether the line comes down on the seabed before its end
-    hanging : how many of the elements hang; the others lie on the seabed
+    element_piece : (k,) piece of the line that each element belongs to
+    element_clamp : (k,) clamp that the element represents (without length), or -1
+    landed : whether the line has a touchdown before its end
+    hanging : number of hanging elements; the others lie on the seabed
     grounded_length : unstretched length on the seabed [m]
     cut : (k,) unstretched length [m]
-    strain : (k,) of cables and chains
+    strain : (k,) strain of cables and chains
     afloat : the pieces that float at the surface, none for a sub-surface line
     buoyancy_used : share of the buoyancy of the floats at the surface that the line needs
-    reserve : the rest of it [N]
+    reserve : the unused buoyancy of these floats [N]
     carried : the line with the buoyancies and drags in use (floats at the surface reduced)
-    riding : how the float at the surface sits there; None below it, or where it is just immersed
+    riding : draft and forces of the float at the surface; None if it is immersed
     marches, segments : the work done for this solution
     miss : height of the line's end above the anchor's top, or the tow point [m]
-    closure : |sum of the loads, recomputed - force at the line's end| / that force
-    moment_residual : worst departure of an element's axis from its moment balance [rad]
-    depth_error, tension_error : own estimate of the worst error of any depth or offset [m] and
+    closure : |recomputed sum of the loads - force at the line's end| / |force at the line's end|
+    moment_residual : largest deviation of an element's axis from its moment balance [rad]
+    depth_error, tension_error : estimates of the largest error of any depth or offset [m] and
         of any tension [N]
-    lift_error, pull_error : of the upward and of the horizontal force at the line's end [N]
+    lift_error, pull_error : errors of the upward and of the horizontal force at the line's end [N]
     other : another equilibrium that the solver found; None if it found none
-    frequency : of the cables that strum [Hz]; 0 where none does
-    pulled : whether its first end is not free but pulled: a leg of a net
+    frequency : strumming frequency of the cables [Hz]; 0 without strumming
+    pulled : whether a force acts on its first end, as on a leg of a net
     marched : the finer of the two shapes, which passed the audit; None if nothing was extrapolated
-    slack : length on the seabed beyond the way to the anchor, of a leg that nothing pulls there [m]
+    slack : excess of the length on the seabed over the distance to the anchor, for a slack leg [m]
     """
 
     line: Line
@@ -149,7 +141,7 @@ class Solution:
 
     @property
     def surface(self) -> bool:
-        """Return whether the line reaches the sea surface."""
+        """Whether the line reaches the sea surface."""
         return bool(self.afloat)
 
     @cached_property
@@ -165,17 +157,15 @@ class Solution:
         n = len(self.line.length)
         first = np.searchsorted(pieces, np.arange(n), side="left")
         last = np.searchsorted(pieces, np.arange(n), side="right")
-        return np.column_stack([first, last]).astype(np.int64)
+        return np.column_stack([first, last]).astype(np.intp)
 
     @property
     def body_node(self) -> int:
-        """Return where the lowest piece of a tow hangs on the line; of a bare cable, where that
-        ends.
-        """
+        """Node at which the lowest piece of a tow is attached, or the end of a bare cable."""
         return 0 if self.line.flexible[0] else int(self.piece_nodes[0, 1])
 
     def piece_at(self, node: int) -> int:
-        """The piece that ends at a node, or passes it."""
+        """The piece that ends at a node, or contains the node."""
         return int(self.element_piece[max(node - 1, 0)])
 
 
@@ -186,14 +176,16 @@ def sizes(vectors: Floats) -> Floats:
 
 
 def nodes_of(trace: Trace) -> tuple[Floats, Floats]:
-    """Positions relative to the line's end, heights absolute, and forces, (k+1, 3) each."""
+    """Positions relative to the line's end, with heights above the surface, and forces, (k+1, 3)
+    each.
+    """
     position = trace.position.copy()
     position[:, :2] -= position[-1, :2]
     return position, trace.force
 
 
 class Status(Enum):
-    """An outcome: its name in files and its advice."""
+    """Outcome of a solve, with its name in files and its advice."""
 
     CONVERGED = ("converged", "")
     NO_EQUILIBRIUM = (
@@ -202,11 +194,11 @@ class Status(Enum):
     )
     NOT_CONVERGED = (
         "not-converged",
-        "Try another angle_step; if it persists, simplify the line to find what prevents it.",
+        "Try another angle_step. If the error persists, simplify the line to find the cause.",
     )
     SLACK = (
         "slack",
-        "Shorten the line below the surface float, or give the current it has to stand in.",
+        "Shorten the line below the surface float, or set the current for which it is designed.",
     )
     GROUNDED = (
         "grounded",
@@ -225,9 +217,9 @@ class Status(Enum):
     def because(
         self, message: str, piece: int | None = None, advice: str | None = None
     ) -> NoEquilibrium:
-        """The exception that shows this outcome, at a piece of the line where it has one.
+        """Return the exception for this outcome, with the piece of the line, if any.
 
-        `advice` is in place of the outcome's own, which is that for moorings.
+        `advice` replaces the outcome's own advice, which applies to moorings.
         """
         return NoEquilibrium(self.label, message, self.advice if advice is None else advice, piece)
 
@@ -245,61 +237,18 @@ class Status(Enum):
     DRAGGED_DOWN, NOT_LYING, UNSUPPORTED,
     # a piece below the seabed, or above the surface, by its value [m]
     BELOW_SEABED, ABOVE_SURFACE,
-    # loads that do not sum up, an element out of balance: by its value, of the audit
+    # loads that do not balance, or an element out of balance (the residual of the audit as value)
     NOT_CLOSED, OUT_OF_BALANCE,
     # it folds in still water
     FOLDED,
 ) = range(16)  # fmt: skip
 
 
-WARM, COLD = 60, 1200
-"""Moorings to be solved for which it pays to fetch the compiled solver, and to compile it."""
-AS_MANY = 8
-"""Pieces and clamps of which a line's solve takes as long as one of an ordinary mooring."""
-
-
-class _Count:
-    """Count the lines that this process has solved or is to solve, and tell what pays for them."""
-
-    def __init__(self) -> None:
-        self.solves = 0.0
-        self.asked_at = 0.0
-        self.pays = False
-
-
-_count = _Count()
-
-
-def expect_many(solves: float) -> None:
-    """Notice that so many lines are going to be solved."""
-    _add(solves)
-    _count.pays = _count.pays or solves >= COLD
-
-
-def runs_compiled(settings: Settings, line: Line | None = None) -> bool:
-    """Return whether the solver is to be compiled for a line that is now solved."""
-    if settings.compiled is not None:
-        return settings.compiled
-    if line is not None:
-        _add(max((len(line.length) + len(line.clamp_piece)) / AS_MANY, 1.0))
-    wish = os.environ.get("CALM_COMPILED")
-    if wish == "never" or not (_count.pays or wish == "always"):
-        return False
-    return find_spec("numba") is not None
-
-
-def _add(solves: float) -> None:
-    _count.solves += solves
-    if not _count.pays and _count.solves >= max(WARM, 2.0 * _count.asked_at):
-        _count.asked_at = _count.solves
-        _count.pays = is_kept()
-
-
 def standing_lift(line: Line, water: Water) -> Floats:
-    """(n,) net force of every piece with its clamps where it would stand upright, + up [N].
+    """(n,) net force of every piece with its clamps, in an upright line, positive up [N].
 
-    Upright is unstretched, from the anchor up; what would stand out of the water counts as just
-    below the surface.
+    The line is upright and unstretched, from the anchor up; parts that would be out of the water
+    are assumed just below the surface.
     """
     below = np.cumsum(line.length[::-1])[::-1] - 0.5 * line.length
     depth = np.maximum(water.depth - line.anchor_height - below, 0.0)
@@ -308,15 +257,15 @@ def standing_lift(line: Line, water: Water) -> Floats:
 
 
 def surface_lift(line: Line, water: Water) -> Floats:
-    """(n,) net force of every piece without its clamps in the water of the surface, + up [N]."""
+    """(n,) net force of every piece without its clamps in surface water, positive up [N]."""
     excess = float(water.density_at(np.zeros(()))) - REFERENCE_DENSITY
     return line.buoyancy + excess * water.gravity * line.volume
 
 
 def standing_length(line: Line, lift: Floats) -> float:
-    """Length of the line standing upright in still water, each piece stretched by its mean
-    tension [m]; where a clamp hangs on a piece makes no difference here. `lift` is the
-    `standing_lift`."""
+    """Length of the line upright in still water, each piece stretched by its mean tension [m]. The
+    position of clamps on a piece is ignored. `lift` is the `standing_lift`.
+    """
     tension = np.maximum(np.cumsum(lift) - 0.5 * lift, 0.0)
     strain: Floats = line.compliance * tension
     for piece, curve in enumerate(line.elongation):
@@ -326,17 +275,18 @@ def standing_length(line: Line, lift: Floats) -> float:
 
 
 SUPPORTED, TOO_HEAVY, FOLDS = range(3)
-"""Whether a line is held up, or why not."""
+"""Whether a line has enough buoyancy, or the reason why not."""
 
 
 def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
-    """Return whether a line is held up, else the piece below which it folds and what is lacking
-    [N].
+    """Return whether a line has enough buoyancy, else the piece below which it folds and the
+    missing buoyancy [N].
 
     Parameters
     ----------
     lift : the `standing_lift`
-    at_rest : whether nothing moves; then it must stay held up down to its lowest float
+    at_rest : whether there is no current or wind; then each part down to the lowest float must be
+        held up
     """
     above = np.cumsum(lift)
     if not (above > 0.0).any():
@@ -352,14 +302,15 @@ def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
 
 
 def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
-    """Refuse a line that nothing holds up or, in still water, one that folds.
+    """Raise an exception if a line has too little buoyancy or, in still water, folds.
 
-    Once held up it must stay so, down to its lowest float. `lift` is the `standing_lift`.
+    Below its first buoyant part, the line must be held up down to its lowest float. `lift` is the
+    `standing_lift`.
 
     Raises
     ------
     NoEquilibrium
-        ``slack``, or ``no-equilibrium`` where too little holds the line up.
+        ``slack``, or ``no-equilibrium`` for too little buoyancy.
     """
     blown = line.floating is not None and line.floating.blown
     support, piece, lacking = support_of(lift, not (water.moving or blown))
@@ -367,16 +318,18 @@ def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
         raise too_heavy(lift)
     if support == FOLDS:
         raise Status.SLACK.because(
-            f"In still water the line is slack below {{piece}}: {lacking:.0f} N are "
-            "lacking to hold up what is above.",
+            f"In still water the line is slack below {{piece}}: {lacking:.0f} N of "
+            "buoyancy are missing to support the part above.",
             piece,
         )
 
 
 def too_heavy(lift: Floats) -> NoEquilibrium:
-    """The exception for a line that its buoyancy does not hold up, piece by piece [N]."""
+    """Return the exception for a line with too little buoyancy, from the net force of each piece
+    [N].
+    """
     up, down = float(lift[lift > 0.0].sum()), float(-lift[lift < 0.0].sum())
     return Status.NO_EQUILIBRIUM.because(
-        f"Too little buoyancy to hold the line up: its buoyant pieces lift {up:.0f} N, the "
-        f"others weigh {down:.0f} N in water."
+        f"Too little buoyancy to hold the line up: buoyant pieces {up:.0f} N net, "
+        f"weight of the other pieces in water {down:.0f} N."
     )

@@ -1,7 +1,7 @@
-"""Starts of the search for one of many profiles, from where the line is in even currents.
+"""Start values for the profiles of a batch, from solutions in uniform currents.
 
-What it is sought from follows from the profile alone, so that neither the order of many nor their
-company changes a digit.
+The start depends on the profile alone, so that neither the order of the profiles nor the
+composition of the batch changes any digit.
 """
 
 from collections.abc import Sequence
@@ -14,24 +14,26 @@ from calm.solve.locate import growth_below, in_even_current, locate, turns_back
 from calm.solve.problem import BELOW, FASTEST, STARTS, LineProblem, Search
 from calm.solve.solution import FOUND
 
-NOWHERE_NEAR = 0.97
-"""Share of its buoyancy in use beyond which a float may as well be under water."""
+IMMERSION_SHARE = 0.97
+"""Share of its buoyancy in use above which a float may also be immersed."""
 DROPS = 3
-"""How often it is looked what current a line comes into that is dragged down."""
-LEANS = 6
-"""The row of the knockdowns by `lean_of`."""
+"""Number of iterations for the current that acts on a line after its knockdown."""
+LEAN_ROW = 6
+"""Row with the knockdowns according to `lean_of`."""
 LOOKED_AT, SURE = 6, 0.3
-"""Depths at which it is looked whether a line falls on, and by which share of the rest at least."""
-GROWS = 0.25
-"""Growth of the current along the greatest fall of a line beyond which it is looked there."""
+"""Number of depths at which a line is tested for falling further, and the smallest share of the
+remaining fall.
+"""
+LEAST_CURRENT_GROWTH = 0.25
+"""Growth of the current over the largest fall of a line above which this test is made."""
 
 
 def fill_starts(search: Search) -> int:
-    """Find a line in even currents; returns how many of them it is found in.
+    """Solve a line in uniform currents, and return the number of currents with a solution.
 
-    The rows of `Problem.starts` are, clear of the seabed and lying on it: the unknown, the depth of
-    the free end [m] or, below 0, the share in use less one; the slope of the miss; the fall [m].
-    The last is `lean_of`.
+    The rows of `Problem.starts` are, first for a line clear of the seabed and then for a line lying
+    on it: the unknown, which is the depth of the free end [m] or, below 0, the share in use minus
+    one; the slope of the miss; and the fall [m]. The last row is `lean_of`.
     """
     problem, found = search.problem, 0
     limits, starts = problem.limits, problem.starts
@@ -45,7 +47,7 @@ def fill_starts(search: Search) -> int:
             fall = coarse_miss(evenly, unknown, upright)
             starts[3 * way + 2][k] = limits.depth if isnan(fall) else max(fall, limits.allowed)
             starts[3 * way][k] = starts[3 * way + 1][k] = nan
-            starts[LEANS][k] = lean_of(
+            starts[LEAN_ROW][k] = lean_of(
                 problem.course, evenly.problem.sea, upright, limits.depth, upright > 0.0
             )
             if limits.lift <= 0.0 and not lands:
@@ -61,7 +63,7 @@ def fill_starts(search: Search) -> int:
 
 
 def start_of(search: Search, lands: bool) -> Root:
-    """Return where a line is sought first; not `found` where the whole search is needed."""
+    """Return the start of a search, not `found` if the complete search is needed."""
     problem, limits = search.problem, search.problem.limits
     unknown = whole_line(problem, lands)
     nowhere = Root(False, unknown, nan, nan, nan)
@@ -72,7 +74,7 @@ def start_of(search: Search, lands: bool) -> Root:
     x, slope = expected(problem, row, upright, upright)
     if isnan(x) or not slope < 0.0:
         return nowhere
-    if upright > 0.0:  # what is dragged down may leave the strongest current
+    if upright > 0.0:  # a line that is knocked down may leave the strongest current
         before, fell = upright, x - upright
         for _ in range(DROPS):
             below, slope = expected(problem, row, upright, x)
@@ -82,26 +84,28 @@ def start_of(search: Search, lands: bool) -> Root:
             before, fell, x = x, below - x, min(x - (below - x) * (x - before) / change, below)
     if x >= 0.0:
         return Root(upright > 0.0, unknown, x, 0.0, slope)
-    if x > NOWHERE_NEAR - 1.0:
+    if x > IMMERSION_SHARE - 1.0:
         return nowhere
     return Root(True, with_sought(unknown, 0, unknown.rides), 1.0 + x, 0.0, slope)
 
 
 def is_highest(problem: LineProblem, root: Root) -> bool:
-    """Return whether a line found from its start surely has no equilibrium above.
+    """Whether a line found from its start certainly has no higher equilibrium.
 
-    It has none where the current does not grow with depth enough to matter. Else its fall in the
-    currents that it would come into above is told by its lean, as a share of what that is where it
-    was found.
+    This is certain if the current does not grow significantly with depth. Otherwise the fall in the
+    currents higher up is estimated from `lean_of`, relative to its value at the position found.
     """
     limits, starts = problem.limits, problem.starts
     if root.unknown.sought != BELOW:
-        return root.x < NOWHERE_NEAR and not turns_back(problem.sea)
+        return root.x < IMMERSION_SHARE and not turns_back(problem.sea)
     row = 3 if root.unknown.lands else 0
     upright = max(-limits.standing - root.unknown.goal, 0.0)
     at = min(greatest_speed(problem.sea) / FASTEST, 1.0) * (STARTS - 1)
     k = min(int(at), STARTS - 2)
-    if growth_below(problem.sea, upright) * between(starts[row + 2], k, at - k) <= GROWS:
+    if (
+        growth_below(problem.sea, upright) * between(starts[row + 2], k, at - k)
+        <= LEAST_CURRENT_GROWTH
+    ):
         return root.x > 0.0
     fell, there = root.x - upright, expected(problem, row, upright, root.x)[0] - upright
     if not fell > 0.0:
@@ -115,23 +119,24 @@ def is_highest(problem: LineProblem, root: Root) -> bool:
 
 
 def expected(problem: LineProblem, row: int, upright: float, top: float) -> tuple[float, float]:
-    """The unknown of a line and the slope of its miss, in the even current that leans it alike.
+    """Interpolate the unknown of a line and the slope of its miss in the uniform current that
+    inclines it equally.
 
     Parameters
     ----------
-    row : the first of its kind among the `starts`
-    upright, top : of the line hung up straight in still water, and as it is dragged down [m]
+    row : index of the first row of this kind in `starts`
+    upright, top : depth of the free end in still water, and after knockdown [m]
     """
     starts = problem.starts
     lean = lean_of(problem.course, problem.sea, top, problem.limits.depth, upright > 0.0)
-    at = sqrt(sqrt(lean / starts[LEANS][STARTS - 1])) * (STARTS - 1)
+    at = sqrt(sqrt(lean / starts[LEAN_ROW][STARTS - 1])) * (STARTS - 1)
     k = min(int(min(at, STARTS)), STARTS - 2)
-    share = min((lean - starts[LEANS][k]) / (starts[LEANS][k + 1] - starts[LEANS][k]), 1.0)
+    share = min((lean - starts[LEAN_ROW][k]) / (starts[LEAN_ROW][k + 1] - starts[LEAN_ROW][k]), 1.0)
     return between(starts[row], k, share), between(starts[row + 1], k, share)
 
 
 def greatest_speed(sea: Sea) -> float:
-    """The greatest speed of a current [m/s]."""
+    """Maximum speed of the current [m/s]."""
     greatest = 0.0
     for k in range(1, len(sea.intervals)):
         here = sea.intervals[k]
@@ -140,21 +145,22 @@ def greatest_speed(sea: Sea) -> float:
 
 
 def between(row: Sequence[float], k: int, share: float) -> float:
-    """Return what is known of a line in an even current between the k-th and the next."""
+    """Interpolate a row between the k-th uniform current and the next."""
     return row[k] + share * (row[k + 1] - row[k])
 
 
 def lean_of(course: Course, sea: Sea, top: float, depth: float, taut: bool) -> float:
-    """Knockdown of a line if the current leans it but little [m].
+    """Approximate knockdown of a line that is only slightly inclined by the current [m].
 
-    It leans by what drags it above over what pulls there, and falls by the square of its lean; in
-    an even current that is its speed's fourth power.
+    The inclination is the drag on the part above divided by its tension, and the knockdown grows
+    with the square of the inclination. In a uniform current it is thus proportional to the fourth
+    power of the speed.
 
     Parameters
     ----------
-    top, depth : of the line, and of the water [m]
-    taut : whether all its buoyancy pulls; else only what its cables lead to is told, but for a
-        factor
+    top, depth : depth of the top of the line, and of the water [m]
+    taut : whether all its buoyancy is in use; otherwise the result is for the cables alone, up to
+        a factor
     """
     length = 0.0
     for i in range(len(course.stages)):

@@ -1,8 +1,8 @@
 """Steady shape of a line towed by a ship.
 
 A tow is a leg of a net, held at the ship, and `calm.solve.net` closes it. This module finds the
-depth of the free end to start from: rough marches from below upwards, until the upper end of the
-line comes to the tow point.
+approximate depth of the free end: rough marches with ever shallower free ends, until the upper end
+of the line reaches the tow point.
 """
 
 from dataclasses import dataclass, replace
@@ -28,29 +28,32 @@ from calm.solve.solution import (
     Settings,
     Solution,
     Status,
-    expect_many,
 )
+from calm.solve.two_speeds import CompiledPart, count_lines
 
 SURFACE_BAND = 1e-7
 """Thickness of the band from water to air, as a share of the line out."""
 SCAN = 16
-"""Depths tried where the flow changes with depth: how finely separate equilibria are told apart."""
-FARTHER = 1.05
-"""In an even current, how far up the other side of the root is tried, in misses: where levels cut a
-line a march is not quite the same at every depth."""
+"""Number of depths tried if the flow varies with depth: the resolution of separate equilibria."""
+OVERSHOOT = 1.05
+"""Distance beyond the expected root that is tried in a uniform current, in misses. Since levels cut
+a line, the march is not quite the same at every depth.
+"""
 ROUGHLY = 5e-3
-"""Miss from which a rough root is one linear step away, as a share of the line out."""
+"""Miss at which a rough root is one linear step away, as a share of the line paid out."""
 SAME = 1e-6
 """Relative tolerance of the frequency of a line that strums."""
-NEARLY_OUT = 2e-3
-"""Depth at which a line that will not close is taken to be leaving the water, as a share of it."""
+LEAVING_DEPTH = 2e-3
+"""Depth at which a line that does not close is assumed to be leaving the water, as a share of the
+line paid out.
+"""
 NARROW_JUMP, AT_THE_JUMP = 1e-9, 1e-6
 """Width of a jump of the miss, and distance from the surface of the body that causes it, as shares
 of the line out."""
 PAY_OUT = "Pay out more line."
 RIDE_CLEAR = "Pay out or take in some line, so that it is clear of the surface."
-AT_SURFACE = "The towed line comes up to the surface behind the ship."
-STAY_BELOW = "Give it more weight or a depressor, or tow slower."
+AT_SURFACE = "The towed line reaches the surface behind the ship."
+STAY_BELOW = "Add weight or a depressor, or reduce the towing speed."
 
 
 @dataclass(frozen=True)
@@ -59,10 +62,10 @@ class Towing:
 
     Attributes
     ----------
-    east, north : velocity of the ship over the ground [m/s]
-    height : of the tow point above the surface [m]
-    wind : velocity of the air to the east and north [m/s], for what of the line is above water
-    in_air : whether the whole line is in the fluid of the `Water`, which has no surface: air
+    east, north : velocity of the ship over the ground, to the east and north [m/s]
+    height : height of the tow point above the surface [m]
+    wind : wind velocity to the east and north [m/s], for the part of the line above water
+    in_air : whether the whole line is in air; the `Water` then describes the air
     """
 
     east: float
@@ -79,26 +82,26 @@ def solve_tow(
 
     Parameters
     ----------
-    line : from the ship to the towed body
-    water : current over the ground; its depth is inf where there is no seabed to touch
-    settings : angle step, and tolerance as a share of the line out; 1° and 1e-7 where not given
+    line : the line from the ship to the towed body
+    water : current over the ground; its depth is inf if the seabed is ignored
+    settings : angle step, and tolerance as a share of the line out; 1° and 1e-7 by default
 
     Returns
     -------
-    Solution : from the free end: its piece 0 is the last of `line`, and x, y are those from the
-        tow point. Of several equilibria the deepest, the first that a ship gathering way meets.
+    Solution : listed from the free end: its piece 0 is the last of `line`; x and y are relative to
+        the tow point. Of several equilibria, the deepest, which an accelerating ship reaches first.
         At 1° positions are within 5e-5 of the line out, tensions within 2e-4.
 
     Raises
     ------
     NoEquilibrium
-        ``above-surface`` where a part would leave the water, ``grounded`` where one would touch
-        the seabed, ``not-converged`` where no shape passes every check.
+        ``above-surface`` if a part would leave the water, ``grounded`` if a part would touch the
+        seabed, ``not-converged`` if no shape passes every check.
     """
     if not line.length.any():
         raise Status.NO_EQUILIBRIUM.because("The towed line has no length.", advice=PAY_OUT)
     _refuse_limp(line)
-    expect_many(1.0)
+    count_lines(1.0, CompiledPart.LEGS)
     water = _relative(line, water, towing)
     u, v, w = map(float, water.current_at(np.zeros(())))
     ship = LegEnd(place=(0.0, 0.0, towing.height), past=(u, v, w))
@@ -112,24 +115,27 @@ def solve_tow(
 
 
 def _refuse_limp(line: Line) -> None:
-    """A free end of cable without weight or drag along it bears nothing, and points nowhere."""
+    """Raise an exception for a free cable end with neither weight nor tangential drag, whose
+    direction is undefined.
+    """
     bears = line.buoyancy[-1] or line.volume[-1] or line.tangential_drag[-1]
     last = len(line.length) - 1
     clamped = ((line.clamp_piece == last) & (line.clamp_at == line.length[-1])).any()
     if line.flexible[-1] and not bears and not clamped:
         raise Status.NO_EQUILIBRIUM.because(
-            "The free end of {piece} weighs nothing and has no drag along it, so nothing "
-            "stretches it.",
+            "The free end of {piece} has neither weight nor tangential drag, so its "
+            "direction is undefined.",
             0,
-            "Give it a weight or a `ct`, or tow something at its end.",
+            "Set its weight or `ct`, or attach a body to its end.",
         )
 
 
 def _relative(line: Line, water: Water, towing: Towing) -> Water:
-    """The water as the ship sees it, air above its surface where the line passes that.
+    """Return the flow relative to the ship, with air above the surface if the line extends above
+    it.
 
-    From water to air the flow and the density change over a thin band about the surface: so thin
-    that the shape is the same, and steady enough that the march is.
+    Flow and density change between water and air over a thin band about the surface. It is thin
+    enough not to change the shape, and smooth enough for the march.
     """
     u, v = water.u - towing.east, water.v - towing.north
     if towing.in_air or towing.height == 0.0:
@@ -140,7 +146,8 @@ def _relative(line: Line, water: Water, towing: Towing) -> Water:
     surface = water.current_at(np.array(half)) - (towing.east, towing.north, 0.0)
     air = np.array([towing.wind[0] - towing.east, towing.wind[1] - towing.north, 0.0])
 
-    # the density changes first: dense air, or water with the speed of the wind, would drag hard
+    # the density changes first, since dense air, or water with the speed of the wind, would cause
+    # large drag
     def column(in_air: float, at_surface: float, values: Floats) -> Floats:
         return np.array([in_air, at_surface, at_surface, *values[below]])
 
@@ -181,7 +188,9 @@ class _Marches:
 
 
 def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
-    """Find the deepest equilibrium, and the depth of the free end in the next one above [m]."""
+    """Find the deepest equilibrium, and the depth of the free end in the next equilibrium above
+    [m].
+    """
     rough = _Marches(net, max(COARSE_STEP, 2.0 * net.settings.angle_step))
     start, other_depth = _locate(rough, towing)
     how = net.marching(net.settings.angle_step, CHOSEN, FINE, given=False)
@@ -192,12 +201,12 @@ def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
 
 
 def _lacking(net: NetSearch) -> bool:
-    """Whether the frequency of the last march is not the one that the line sheds at the ship."""
+    """Whether the frequency of the last march differs from the shedding frequency at the ship."""
     return bool(abs(net.net.state[0][LACKING]) > SAME * net.net.state[0][FREQUENCY])
 
 
 def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
-    """Find the depth of the free end at the deepest root, and at the next one above [m]."""
+    """Find the depth of the free end at the deepest root, and at the next root above [m]."""
     span = rough.span
     found: list[float] = []
     allowed = rough.net.settings.tolerance * span
@@ -206,7 +215,7 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
     low = rough.miss(None, depth)
     while low > 0.0:  # the line stretches
         if depth > 100.0 * span:
-            raise Status.NOT_CONVERGED.because("The line stretches without end.")
+            raise Status.NOT_CONVERGED.because("The stretch of the line grows without limit.")
         depth += 2.0 * low
         low = rough.miss(None, depth)
     _refuse_stopped(rough, low)
@@ -215,14 +224,14 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
         if isnan(high) and found:
             break
         if isnan(high) and upper == shallowest and not towing.in_air:
-            # a line that drifts at the surface is now in the water, now in the air
-            upper = NEARLY_OUT * span
+            # a line that drifts at the surface is alternately in the water and in the air
+            upper = LEAVING_DEPTH * span
             high = rough.miss(None, upper)
             if high <= 0.0:
                 raise Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW)
         _refuse_stopped(rough, high)
         if upper == shallowest and -allowed <= high <= 0.0:
-            high = allowed  # at the surface, to within what is allowed
+            high = allowed  # at the surface, within the tolerance
         if (low <= 0.0) is not (high <= 0.0):
             found.append(_root(rough, upper, high, depth, low))
             if len(found) > 1:
@@ -244,15 +253,15 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
 
 
 def _upwards(water: Water, depth: float, low: float, span: float, shallowest: float) -> list[float]:
-    """Depths to try, from below. In even water the miss itself is the distance to the root."""
+    """Depths to try, from below. In uniform water the miss itself is the distance to the root."""
     if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
         steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()
         return steps
-    return [max(depth + FARTHER * low - NARROW_JUMP * span, shallowest)]
+    return [max(depth + OVERSHOOT * low - NARROW_JUMP * span, shallowest)]
 
 
 def _root(rough: _Marches, upper: float, high: float, depth: float, low: float) -> float:
-    """Root of the miss between two depths."""
+    """Find the root of the miss between two depths."""
     span = rough.span
     x, left, slope = bracketed_root(
         rough.miss, None, upper, high, depth, low, ROUGHLY * span, NARROW_JUMP * span
@@ -268,14 +277,14 @@ def _refuse_stopped(rough: _Marches, miss: float) -> None:
 
 def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEquilibrium:
     """Diagnose why a tow does not close near a rough root; `last` is the depth tried last [m]."""
-    net, nearly_out = rough.net, NEARLY_OUT * rough.span
+    net, nearly_out = rough.net, LEAVING_DEPTH * rough.span
     stopped, lacking = net.net.lines.work.left[0][FAILURE], _lacking(net)
-    failure = Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
+    failure = Status.NOT_CONVERGED.because("No closed shape was found near the approximate shape.")
     if stopped != GOES_ON:
         failure = march_stopped(stopped)
     elif lacking:
         failure = Status.NOT_CONVERGED.because(
-            "The frequency of the strumming line does not settle."
+            "The strumming frequency of the line does not converge."
         )
     if towing.in_air:
         return failure
@@ -292,13 +301,13 @@ def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEq
 def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | None:
     """Diagnose a rigid piece or a clamp at the surface, at which the miss or the frequency jumps.
 
-    CALM takes such a body to be in the water or out of it, by its middle. If the line closes in
-    neither state, the body would ride half out of the water.
+    Such a body is treated as either in the water or out of it, by the position of its midpoint. If
+    the line closes in neither state, the body would be half out of the water.
 
     Parameters
     ----------
-    depth : of the free end, where the search for a root has ended [m]
-    lacking : whether the frequency was not found there
+    depth : depth of the free end at which the search for a root has ended [m]
+    lacking : whether the frequency did not converge there
     """
     step, flexible = net.settings.angle_step, net.laid[0].line.flexible
     for kept in (_Marches(net, 2.0 * step, CHOSEN), _Marches(net, step, HALVED)):
@@ -314,10 +323,10 @@ def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | No
         what = "{piece}" if shape.clamp[body] < 0 else "a clamp on {piece}"
         why = f"its upper end would be {above:.2g} m above the tow point or {-below:.2g} m below"
         if lacking:
-            why = "in neither state does it strum at the frequency that it sheds at the ship"
+            why = "in neither state does its frequency match the vortex shedding at the ship"
         return Status.NO_EQUILIBRIUM.because(
-            f"The line closes neither with {what} in the water nor with it out: {why}. It would "
-            "ride half out of the water, which CALM does not solve.",
+            f"The line closes neither with {what} in water nor with {what} in air: {why}. It "
+            "would be half out of the water, which CALM does not solve.",
             int(shape.piece[body]),
             RIDE_CLEAR,
         )
@@ -325,7 +334,9 @@ def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | No
 
 
 def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
-    """Refuse parts in the air, except between the surface and the ship, and parts in the seabed."""
+    """Raise an exception for parts in the air, except between the surface and the ship, and for
+    parts below the seabed.
+    """
     height, depth = solution.position[:, 2], solution.water.depth
     margin = max(solution.depth_error, 1e-6 * float(solution.line.length.sum()))
     lowest = int(np.argmin(height))

@@ -68,7 +68,7 @@ def _against_lifting(view: View, catalogue: Catalogue | None) -> Iterator[Offer]
     draft = Draft(view.text)
     held = judge(draft.delete([len(draft.items) - 1]).text, view.path, view.environment)
     if view.file is not None and (result := single(held)) is not None:
-        needed = result.anchor.required_weight
+        needed = result.anchor_load.required_weight
         yield from _anchors(view.file.pieces[-1], needed, catalogue)
 
 
@@ -120,15 +120,15 @@ def _for(
 def _needed_weight(result: LegResult, grave: Sequence[Finding]) -> float:
     """Return what the anchor is to weigh in water for all that is found of it [N]."""
     factor = result.file.checks.anchor_factor
-    needed = [result.anchor.required_weight]
+    needed = [result.anchor_load.required_weight]
     for finding in grave:
         if finding.rule == "anchor-weight" and finding.limit is not None:
             needed.append(finding.limit)
         if finding.rule == "anchor-uplift" and finding.value is not None:
             needed.append(factor * finding.value)
         if finding.rule == "anchor-sliding" and finding.value is not None:
-            vertical = result.anchor.vertical
-            needed.append(factor * (vertical + finding.value / result.anchor.friction))
+            vertical = result.anchor_load.vertical
+            needed.append(factor * (vertical + finding.value / result.anchor_load.friction))
     return max(needed)
 
 
@@ -208,9 +208,9 @@ def differences(before: View, after: View) -> list[str]:
         figures = [
             ("top", "depth", one.top.depth, other.top.depth),
             ("knockdown", "knockdown", one.top.knockdown, other.top.knockdown),
-            ("anchor needs", "required_weight", one.anchor.required_weight,
-             other.anchor.required_weight),
-            ("anchor weighs", "required_weight", one.anchor.weight, other.anchor.weight),
+            ("anchor needs", "required_weight", one.anchor_load.required_weight,
+             other.anchor_load.required_weight),
+            ("anchor weighs", "required_weight", one.anchor_load.weight, other.anchor_load.weight),
         ]  # fmt: skip
         for name, quantity, old, new in figures:
             texts = [QUANTITIES[quantity].say(value) for value in (old, new)]

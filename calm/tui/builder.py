@@ -17,6 +17,7 @@ from calm.tui.dialogs import Question, ask, choose, numbered
 from calm.tui.forms import values_of, written
 from calm.tui.key_table import bindings, hints
 from calm.tui.mooring_sheet import (
+    PENDING,
     figures_sheet,
     hung_at,
     missing_figures,
@@ -58,7 +59,7 @@ class BuilderScreen(ComparingScreen):
         place = places.get(type(self.focused), "line")
         if self.focused is not None and self.catalogue in self.focused.ancestors_with_self:
             place = "catalogue"
-        self.query_one(KeyBar).show_keys(hints(place))
+        self.query_one(KeyBar).show_keys(hints(place), beside=place == "catalogue")
 
     def action_suspend(self) -> None:
         """Back to the shell; undo where there is none, or a value is typed."""
@@ -119,9 +120,11 @@ class BuilderScreen(ComparingScreen):
                 )
 
         if missing:
-            ask(self.app, figures_sheet(missing), take)
-        else:
+            ask(self.app, figures_sheet(missing, complete=view.complete), take)
+        elif view.complete or view.result is None:
             self.tell("No figure of a component is missing")
+        else:
+            self.tell(f"No figure of a component is missing so far. {PENDING}")
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""

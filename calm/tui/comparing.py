@@ -14,6 +14,7 @@ from calm.files.editing import Draft
 from calm.tui import checking, line_screen
 from calm.tui.dialogs import Answer, LongText, Question, choose, enter, numbered
 from calm.tui.forms import Asked
+from calm.tui.mooring_sheet import PENDING
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -95,7 +96,7 @@ class ComparingScreen(line_screen.LineScreen):
         if not found:
             text = "No finding has a remedy that can be computed here. " + text
         if single(view) is not None and not view.complete:
-            text += " Launch, recovery, breaks and waves are still being judged."
+            text += f" {PENDING}"
         choose(self.app, Question("Advice", text, answers))
 
     def _ask_for_target(self, view: View, mooring: Design) -> None:
@@ -173,6 +174,9 @@ class ComparingScreen(line_screen.LineScreen):
         choose(self.app, Question("On paper", "", answers))
 
     def _ask_where(self, what: str) -> None:
+        if self.workspace.papers_elsewhere:
+            self.tell(self.workspace.papers_elsewhere)
+            return
         path = self.session.file.path
         if path is None or self.session.changed:
             self.tell("Save the file first: reports are made from the saved file")

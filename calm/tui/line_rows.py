@@ -11,7 +11,7 @@ from textual.events import Paste
 from calm.assemble.catalogue_search import Index, Listed
 from calm.case.columns import Output
 from calm.case.result_tables import table_columns
-from calm.checks.finding import State, worst_state
+from calm.checks.finding import State, percent_used, worst_state
 from calm.files import Place, components
 from calm.files.editing import Draft, LineItem, Value
 from calm.quantities import QUANTITIES
@@ -27,14 +27,14 @@ from calm.tui.mooring_sheet import (
     serial_of_equipment,
     texts_of_equipment,
 )
-from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE
+from calm.tui.theme import CLAMP, ROLES, UNKNOWN_ROLE, UNKNOWN_USE
 from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
     from calm.tui.live import FoundRow, View
 
 
-_MOST_MARGIN = 9.99
+_MOST_USE = 9.99
 
 
 def table_rows(
@@ -136,11 +136,12 @@ def _told(found: Sequence[FoundRow]) -> dict[str, str]:
         known = [row.figures[one.name] for row in found if one.name in row.figures]
         if known and one.quantity:
             texts[one.name] = one.quantity.format(one.worst(known))
-    margins = [row.margin for row in found if row.margin is not None]
+    uses = [row.use for row in found if row.use is not None]
     if any(row.lacks_strength for row in found):
-        texts["margin"] = UNKNOWN_MARGIN
-    elif margins:
-        texts["margin"] = f"{min(*margins, _MOST_MARGIN):+.0%}"
+        texts["use"] = UNKNOWN_USE
+    elif uses:
+        most = max(uses)
+        texts["use"] = f">{_MOST_USE:.0%}" if most > _MOST_USE else f"{percent_used(most):.0f}%"
     return texts
 
 

@@ -1,5 +1,5 @@
 """The line as a table, top to bottom: a cursor, marks, figures, no lines between the cells;
-and ways through it: words that are found, the least margins, the next of a kind.
+and ways through it: words that are found, the greatest use, the next of a kind.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from rich.style import Style
 
 from calm.case.columns import Output, ResultColumn
 from calm.case.result_tables import table_columns
-from calm.checks.finding import State
+from calm.checks.finding import State, percent_used
 from calm.checks.strength import strength
 from calm.files import Place
 from calm.tui import cell_editor, checking, dialogs, forms, theme
@@ -188,7 +188,7 @@ EDITABLE: tuple[Column, ...] = ("component", "label", "count", "length")
 """The columns that a person fills, from the left."""
 
 _WORDS = ("leg", "component", "label")
-_WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "margin": 7,
+_WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "use": 5,
            "planned_depth": 7}  # fmt: skip
 _USUAL_WIDTH = 9
 _LEAST_TEXT, _WANTED_TEXT = 9, 12
@@ -235,14 +235,14 @@ def layout_for(
         figures["planned_depth"] = "planned"  # in the unit of the depth beside it
     else:
         figures.pop("planned_depth")
-    heads |= figures | {"margin": "margin"}
+    heads |= figures | {"use": "use"}
     shown = list(heads)[0 if leg else 1 :]
     fixed = _WIDTHS | {"length": min(max(length, _WIDTHS["length"]), _MOST_LENGTH)}
     fixed["leg"] = min(max(leg, 3), _MOST_LEG)
     for name, head in figures.items():
         fixed[name] = max(_WIDTHS.get(name, _USUAL_WIDTH), len(head))
     others = [name for name in figures if name not in _WIDTHS]
-    for name in (*others, "margin", "planned_depth", "tilt", "count", "tension", "depth"):
+    for name in (*others, "use", "planned_depth", "tilt", "count", "tension", "depth"):
         if _text_room(shown, width, fixed) >= 2 * _WANTED_TEXT:
             break
         if name in shown:
@@ -299,22 +299,23 @@ class LineSearch(cell_editor.EditableTable):
         self._to(by, lambda row: all(word in self._said(row) for word in wanted), self.words)
 
     def action_weakest(self) -> None:
-        """To the row with the least margin of its strength."""
+        """To the row whose strength is used most."""
         view = self.workspace.judged("The line is still being judged; ask again")
         if view is None:
             return
         found = [
-            (each.share, each.place.row, each)
+            (each.utilisation, each.place.row, each)
             for each in (*view.findings, *view.tighter)
-            if each.share is not None and each.place is not None
+            if each.utilisation is not None and each.place is not None
             if each.rule == strength.name
         ]
         if not found:
-            self.workspace.tell("No margin of strength is known")
+            self.workspace.tell("No use of strength is known")
             return
-        share, place, finding = min(found, key=lambda each: each[0])
+        use, place, finding = max(found, key=lambda each: each[0])
         self.table.go_to(place)
-        self.workspace.tell(f"The weakest, {share:+.0%}: {finding.component}, {finding.message}")
+        used = f"{percent_used(use):.0f} %"
+        self.workspace.tell(f"The weakest, {used}: {finding.component}, {finding.message}")
 
     def _to(self, by: int, is_wanted: Callable[[TableRow], bool], what: str) -> None:
         rows: Sequence[TableRow] = self.table.rows

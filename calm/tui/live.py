@@ -44,7 +44,7 @@ class View:
     result : the line solved; None where it could not be
     failure : why it could not
     findings : of the design check; none for a tow
-    tighter : of each rule what another situation leaves less margin in, without being graver
+    tighter : of each rule and part what another situation uses more, without being graver
     environments : the names of those that the file gives besides its own
     rows : down the file, clamps below their piece
     complete : whether the findings are all that `calm check` has, see `judge_fully`; a tow's, which
@@ -137,7 +137,7 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     if view.complete or not view.anchored or view.result is None or view.result.towed:
         return view
     file = view.result.file
-    moorings, problems = _in_all_environments(view, view.result.design, catalogs)
+    moorings, problems = in_all_environments(view, view.result.design, catalogs)
     assessment = design_check.check(*moorings)
     findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
     rows = tuple(rows_of(file, view.result, (*findings, *tighter)))
@@ -147,8 +147,8 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     )  # fmt: skip
 
 
-def _in_all_environments(
-    view: View, here: Design, catalogs: Sequence[str | Path]
+def in_all_environments(
+    view: View, here: Design, catalogs: Sequence[str | Path] = ()
 ) -> tuple[list[Design], list[Problem]]:
     """The mooring in each of its environments, as long in all as here; what is wrong with them."""
     found: list[Design] = []
@@ -237,7 +237,7 @@ class FoundRow:
     label : as in results
     length : as cut [m]; None of a clamp, and of one to be cut to fit until it is solved
     figures : what the columns of the builder have of it, by name; none where nothing is solved
-    margin : the least that a finding leaves, as a share of its limit; None where none is known
+    use : the greatest utilisation of its findings; None where none is known
     state : the gravest of its findings; None where there is none
     lacks_strength : whether a figure of its strength is missing
     """
@@ -246,7 +246,7 @@ class FoundRow:
     label: str
     length: float | None
     figures: Mapping[str, float] = field(default_factory=dict)
-    margin: float | None = None
+    use: float | None = None
     state: State | None = None
     lacks_strength: bool = False
 
@@ -279,7 +279,9 @@ def rows_of(
                 part.label,
                 length,
                 figures,
-                margin=min((each.share for each in own if each.share is not None), default=None),
+                use=max(
+                    (use for each in own if (use := each.utilisation) is not None), default=None
+                ),
                 state=gravest.state if gravest else None,
                 lacks_strength=any(map(_lacks_strength, own)),
             )
@@ -289,5 +291,5 @@ def _lacks_strength(finding: Finding) -> bool:
     """Whether `strength` lacks a figure, or would if nobody had accepted it."""
     if finding.missing is not None:
         return strength.name in finding.missing.needed_by
-    lacks = finding.lacks is not None and finding.share is None
+    lacks = finding.lacks is not None and finding.utilisation is None
     return lacks and finding.rule == strength.name

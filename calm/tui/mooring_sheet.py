@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from calm.checks.missing import alternatives
 from calm.files import Clamp, Flexible, MooringFile, Piece, Place
 from calm.files.editing import Draft, Value
-from calm.files.item_keys import Equipment
+from calm.files.item_keys import ASSEMBLY_FIGURES, Equipment
 from calm.files.logbook import DeployedItem
 from calm.files.pieces import parts_of
 from calm.files.reader import MooringKeys
-from calm.files.rule_texts import RULES
 from calm.files.yaml_document import Location
 from calm.tui.checking import Reading
 from calm.tui.component_screen import form_fields
@@ -202,12 +200,19 @@ def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
 
 
 _ELSEWHERE = "part of an assembly of the catalogue: use its parts, or define it in the file (o)"
+PENDING = "Launch, recovery, breaks and waves are still being judged."
 _SOURCE = "data sheet, test certificate …"
 
 
-def figures_sheet(missing: Sequence[Missing]) -> InputSheet:
-    """Ask for all figures of each component, and for their source; any may stay empty."""
+def figures_sheet(missing: Sequence[Missing], *, complete: bool = True) -> InputSheet:
+    """Ask for all figures of each component, and for their source; any may stay empty.
+
+    Parameters
+    ----------
+    complete : whether all rules have been judged; else others may need more
+    """
     asked: list[Asked] = []
+    notes = [] if complete else [PENDING]
     elsewhere = [f"{each.called}: {_ELSEWHERE}" for each in missing if not each.fields]
     for each in missing:
         for number, figure in enumerate(each.fields):
@@ -218,7 +223,7 @@ def figures_sheet(missing: Sequence[Missing]) -> InputSheet:
     asked.append(Asked("source", "source", takes=_SOURCE, above="Of the figures"))
     count = len(missing)
     title = f"Figures missing of {count} component{'s' * (count != 1)}; any may stay empty"
-    return InputSheet(title, "\n".join(elsewhere), asked)
+    return InputSheet(title, "\n".join([*elsewhere, *notes]), asked)
 
 
 @dataclass
@@ -230,7 +235,7 @@ class Missing:
     use, kind : of the component
     labels : of the pieces and clamps that it is missing of, as the keys of a dict
     targets : by key where in the file it is written: in the definition, where the file has it,
-        else in every row that lacks it; nowhere where that stands in an assembly
+        else in every row that lacks it, of an assembly its own; nowhere if that cannot take it
     estimates : class estimate by key, without its source
     """
 
@@ -264,10 +269,8 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
     for figure in (one.missing for one in view.findings if one.missing is not None):
         own_places = [part.place for part in pieces if part.use == figure.component_id]
         places = [one for one in own_places if one in figure.places] or own_places
-        rules = (RULES[name].figures for name in figure.needed_by)
-        keys = dict.fromkeys((*alternatives(figure.quantity), *chain.from_iterable(rules)))
         for place in places:
-            wanted.setdefault(place, {}).update(keys)
+            wanted.setdefault(place, {}).update(dict.fromkeys(alternatives(figure.quantity)))
         if figure.class_estimate is not None:
             bounds = str(figure.class_estimate).partition(": ")[2].partition(" (")[0]
             estimates[figure.component_id, figure.quantity] = f"estimated: {bounds}"
@@ -286,6 +289,8 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
                 targets["components", part.use] = None
             elif part.place.part < 0:
                 targets[location(part.place)] = None
+            elif key in ASSEMBLY_FIGURES:
+                targets[location(part.place.row)] = None
     return list(found.values())
 
 

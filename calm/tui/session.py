@@ -3,7 +3,7 @@
 Nothing here knows of the screen; nothing is computed here.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +30,7 @@ class Session:
     catalogs : catalogue files given with the command
     copied : what `paste` puts in, as text: items of a line, or clamped instruments
     standing : the environment that the line stands in
+    after_save : is given the path and the text of a file that has been saved
     added : the rows that the last change has put in
     followed : what the last change of the line made of labels that the file names elsewhere
 
@@ -58,6 +59,7 @@ class Session:
         self.followed: list[str] = []
         self.added: frozenset[Place] = frozenset()
         self.standing = Standing(self.history, environment)
+        self.after_save: Callable[[Path, str], object] | None = None
 
     @property
     def draft(self) -> Draft:
@@ -274,6 +276,8 @@ class Session:
         lost = self.file.save(self.draft.text)
         self.history.saved()
         self.file.forget()
+        if self.after_save is not None and self.file.path is not None:
+            self.after_save(self.file.path, self.draft.text)
         return lost
 
     def save_as(self, path: Path) -> str:

@@ -198,7 +198,7 @@ ROLES = {
 """What stands for a component in front of its row."""
 
 UNKNOWN_ROLE = "?"
-UNKNOWN_MARGIN = "?"
+UNKNOWN_USE = "?"
 CLAMP = "├"
 CURSOR = "▸"
 MARK = "*"

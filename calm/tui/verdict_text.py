@@ -55,21 +55,23 @@ def headline(view: View | None) -> Saying:
         return Saying(f"does not stand: {view.failure.status}", state=State.FAIL)
     if view.elsewhere:
         return Saying("environments that cannot be read", state=State.FAIL)
-    said = _judged(view.findings)
+    said = _judged((*view.findings, *view.tighter), view)
     if view.complete:
         return said
     outcome = said.text if said.state in (State.FAIL, State.WARN) else "nothing fails"
     return Saying(f"{outcome} so far", pending=True)
 
 
-def _judged(findings: Sequence[Finding]) -> Saying:
+def _judged(findings: Sequence[Finding], view: View) -> Saying:
     """The verdict in the words of `calm check`."""
-    from calm.report.check_tables import verdict_of
+    from calm.files.pieces import parts_of
+    from calm.report.open_items import verdict_of
 
     if not findings:
         return Saying("solved")
-    state, told = verdict_of(findings)
-    return Saying(told, state=state)
+    pieces = () if view.file is None else view.file.pieces
+    said = verdict_of(findings, {part.label: part.use for part in parts_of(pieces)})
+    return Saying(said.text, state=said.state)
 
 
 def sayings(view: View | None) -> Iterator[Saying]:
@@ -94,8 +96,8 @@ def sayings(view: View | None) -> Iterator[Saying]:
     for problem in view.elsewhere:
         yield Saying(problem.message, place_of(problem, view.path), State.FAIL)
     if len(view.stands) > 1:
-        yield from map(_stand, view.stands)
-    yield from _found(findings, pending=not view.complete)
+        yield from (_stand(stand, view) for stand in view.stands)
+    yield from _found(findings, tighter, pending=not view.complete)
     if view.result is not None:
         for text in view.result.warnings:
             yield Saying(text, state=State.WARN)
@@ -114,9 +116,10 @@ def _environment(name: str) -> str:
     return "own environment" if name == OWN else name
 
 
-def _stand(stand: MooringInEnvironment) -> Saying:
+def _stand(stand: MooringInEnvironment, view: View) -> Saying:
     """Return how the line does in one environment, in one line."""
-    said, result = _judged((*stand.findings, *stand.lacking)), stand.result
+    said = _judged((*stand.findings, *stand.tighter, *stand.lacking), view)
+    result = stand.result
     figures = ""
     if result is not None and result.type != "surface":
         figures = f"top at {say('depth', result.top.depth)}, "
@@ -148,7 +151,7 @@ def _mooring(result: LegResult, findings: Sequence[Finding], pending: bool) -> I
     from calm.checks.posture import knockdown, reserve
     from calm.checks.strength import anchor_weight
 
-    anchor, top = result.anchor, result.top
+    anchor, top = result.anchor_load, result.top
     pull = f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} off the vertical"
     yield Saying(pull, heading="Anchor")
     yield _holds(result, _worst(findings, anchor_weight), pending)
@@ -173,7 +176,9 @@ def _mooring(result: LegResult, findings: Sequence[Finding], pending: bool) -> I
 def _holds(result: LegResult, worst: Finding | None, pending: bool) -> Saying:
     """Return what the anchor is to weigh, and weighs; of a line without one the first alone."""
     if worst is None:
-        return Saying(f"needs {say('required_weight', result.anchor.required_weight)} in water")
+        return Saying(
+            f"needs {say('required_weight', result.anchor_load.required_weight)} in water"
+        )
     needs = f"needs {say('required_weight', worst.limit)}{_situation(worst)}"
     has = f"has {say('required_weight', worst.value)} in water"
     unsure = pending and worst.state is State.PASS
@@ -181,7 +186,7 @@ def _holds(result: LegResult, worst: Finding | None, pending: bool) -> Saying:
 
 
 def _worst(findings: Sequence[Finding], rule: Rule) -> Finding | None:
-    """The gravest finding of a rule; of equal ones that with the least margin."""
+    """The gravest finding of a rule; of equal ones that with the greatest use."""
     own = [each for each in findings if each.rule == rule.name]
     return min(own, key=lambda each: each.rank, default=None)
 
@@ -212,14 +217,20 @@ def _net(result: Result) -> Iterator[Saying]:
         yield Saying(f"{say('depth', node.depth)} deep", f"Node {node.name}")
 
 
-def _found(findings: Sequence[Finding], *, pending: bool) -> Iterator[Saying]:
-    """Failures and warnings with reason and remedy; what passes and is unknown in short.
+def _found(
+    findings: Sequence[Finding], tighter: Sequence[Finding], *, pending: bool
+) -> Iterator[Saying]:
+    """Failures and warnings with reason and remedy; what passes, with its greatest use, and what is
+    unknown in short.
 
     A rule passes where it is met for every component: of a figure that is missing it is not known.
     """
+    from calm.checks.finding import governing
     from calm.report.check_tables import grouped, named, named_components
 
-    for finding in sorted(findings, key=lambda each: each.rank):
+    governs = {(one.rule, one.place, one.state): one for one in (*findings, *tighter)}
+    told_of = dict.fromkeys(governs[one.rule, one.place, one.state] for one in findings)
+    for finding in sorted(told_of, key=lambda each: each.rank):
         if _graver(finding):
             yield _told(finding)
     unknown = [each for each in findings if each.state is State.UNKNOWN]
@@ -233,12 +244,30 @@ def _found(findings: Sequence[Finding], *, pending: bool) -> Iterator[Saying]:
     for own in grouped((each for each in unknown if each.missing is None), _title):
         text = f"not known of {named_components(own)}"
         yield Saying(text, _title(own[0]), State.UNKNOWN, places=_places(own))
-    other = {_title(each) for each in findings if _graver(each) or each.state is State.UNKNOWN}
-    passed = dict.fromkeys(_title(each) for each in findings if each.state is State.PASS)
-    kept = [each for each in passed if each not in other]
-    if kept:
-        heading = "Pass so far" if pending else "Pass"
-        yield Saying(", ".join(kept), heading, State.PASS, pending=pending)
+    met = (State.PASS, State.NOT_JUDGED)
+    other = {_title(each) for each in findings if each.state not in met}
+    for state, heading in (
+        (State.ACCEPTED, "Accepted"),
+        (State.ESTIMATED, "Estimated"),
+        (State.PASS, "Pass so far" if pending else "Pass"),
+    ):
+        those = [one for one in (*findings, *tighter) if one.state is state]
+        passes = state is State.PASS
+        rules = [
+            each for each in grouped(those, _title) if not passes or _title(each[0]) not in other
+        ]
+        if rules:
+            leads = sorted(map(governing, rules), key=lambda one: -(one.utilisation or 0.0))
+            text = ", ".join(map(_used, leads))
+            yield Saying(text, heading, state, pending=pending and passes)
+
+
+def _used(finding: Finding) -> str:
+    """The title of a rule, and how much its finding uses of the limit."""
+    from calm.report.open_items import percent_text
+
+    used = finding.utilisation
+    return _title(finding) if used is None else f"{_title(finding)} {percent_text(used)} %"
 
 
 def why(view: View, row: Place) -> list[Saying]:
@@ -249,7 +278,14 @@ def why(view: View, row: Place) -> list[Saying]:
 
 
 def _told(finding: Finding) -> Saying:
+    from calm.checks.assess import RULES
+    from calm.report.open_items import percent_text
+
     text = f"{finding.message} {finding.remedy or ''}".rstrip()
+    if finding.utilisation is not None:
+        sign = "≤" if finding.sense == "<=" else "≥"
+        limit = say(RULES[finding.rule].quantity, finding.limit)
+        text = f"{percent_text(finding.utilisation)} % of {sign} {limit}. {text}"
     heading = f"{_title(finding)}{_situation(finding)}"
     return Saying(text, heading, finding.state, places=_places([finding]))
 

@@ -13,7 +13,7 @@ from textual.events import DescendantFocus
 from textual.widget import Widget
 from textual.widgets import Static
 
-from calm.errors import CalmError, Problem
+from calm.errors import CalmError, Problem, unexpected
 from calm.files.editing import Draft, Value
 from calm.files.environment import CurrentFile
 from calm.records.delimited import CopiedTable
@@ -413,8 +413,7 @@ class WaterScreen(screen.DraftScreen):
         except CalmError as error:
             self.call_later(tell, str(error).partition("\n")[0], wrong=True)
         except Exception as error:  # the libraries that read NetCDF raise whatever they like
-            reason = f"{type(error).__name__}: {error}"
-            self.call_later(tell, f"{path} cannot be read: {reason}", wrong=True)
+            self.call_later(tell, f"{path} cannot be read: {unexpected(error)}", wrong=True)
         else:
             self.call_later(put, *table)
 

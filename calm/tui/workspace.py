@@ -69,6 +69,7 @@ class Workspace:
     view : what was last made of the file; None until it is
     good : the last one that stood
     is_late : whether the view has been that of an earlier draft for some time
+    papers_elsewhere : how to get reports and sheets if the builder cannot run a command for them
     """
 
     def __init__(
@@ -79,6 +80,7 @@ class Workspace:
         self.view: View | None = None
         self.good: View | None = None
         self.is_late = False
+        self.papers_elsewhere = ""
         self._catalogue: Catalogue | None = None
         self._defined: Any = None
 

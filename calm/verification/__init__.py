@@ -1,7 +1,7 @@
-"""Figures to reproduce, each with its source, its kind and how CALM comes to it: `calm verify`.
+"""Published and computed figures that CALM must reproduce, for `calm verify`.
 
-A `Source` holds the cases that come from one place; figures are inlined, so that nothing is read
-from a file. `calm.verification.published_case` defines a case.
+Each `Source` holds the cases of one publication or derivation. The figures are part of the code, so
+that no file is read.
 """
 
 from calm.verification import drag_and_sea_water
@@ -21,4 +21,4 @@ SOURCES: tuple[Source, ...] = (
     drag_and_sea_water.DRAG_CURVES, drag_and_sea_water.STRUMMING_FACTORS,
     drag_and_sea_water.SEA_WATER, ANCHOR_DROP, drag_and_sea_water.CALM_PAPER,
 )  # fmt: skip
-"""Every source, the solver's own first."""
+"""All sources, beginning with those about the solver itself."""

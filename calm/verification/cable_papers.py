@@ -1,7 +1,7 @@
-"""Compare with three papers on cables: Braconnot, Bourget & Marichal, Villain-Guillot.
+"""Verify CALM against three papers on cables: Braconnot, Bourget & Marichal, Villain-Guillot.
 
-Braconnot's charts of EDF give a buoy, towed cables and a point of the curve; the towed cable of
-Bourget & Marichal strums; Villain-Guillot solves a cable with linear drag in closed form.
+Braconnot's charts (EDF) give a buoy, towed cables and a point of the curve. Bourget & Marichal give
+a towed cable that strums. Villain-Guillot gives the closed form of a cable with linear drag.
 """
 
 from dataclasses import replace
@@ -43,15 +43,17 @@ _K = 2.4
 _BUOY_WEIGHT, _TOW_WEIGHT = 5.0, 0.5
 _BUOY_ANGLE, _BUOY_TENSION = radians(75.0), 350.0
 _BUOYANCY = 1000.0
-"""More than the buoy needs, so that it lies at the surface [N]."""
+"""Buoyancy of a buoy that remains at the surface [N]."""
 
 BUOY_LIFT = _BUOY_TENSION * sin(_BUOY_ANGLE)
-"""What the buoy's cable takes of its buoyancy [N]."""
+"""Vertical force of the cable on the buoy [N]."""
 
 
 @cache
 def _only(k: float, weight: float, **given: float) -> ChartSolution:
-    """Return the cable that three givens fix; the first of several does not dip below A."""
+    """Return the cable that three given quantities determine; if there are several, the first,
+    which does not dip below A.
+    """
     answer = chart_solve(k, weight, **given)
     if not answer.solutions:
         raise ArithmeticError(answer.message)
@@ -70,7 +72,9 @@ _below = partial(_only, _K, _TOW_WEIGHT)
 
 
 def buoy(buoyancy: float, depth: float) -> tuple[Line, Water]:
-    """Return the buoy with a buoyancy [N] at a depth [m]: K w = 12 N/m of drag at 1 m/s."""
+    """Return the buoy with a buoyancy [N] in water of a depth [m]; its drag at 1 m/s is K w = 12
+    N/m.
+    """
     cable = LinePiece(28.467, True, -_BUOY_WEIGHT, normal_drag=_K * _BUOY_WEIGHT)
     return line_of(point(buoyancy, _BUOY_TENSION * cos(_BUOY_ANGLE)), cable), stream(depth, 1.0)
 
@@ -82,7 +86,9 @@ def _afloat() -> Solution:
 
 @cache
 def _towed() -> Wake:
-    """Return the tow by the march: a body that pulls its cable as the printed T_A at φ_A does."""
+    """Return the tow as solved by the march: the body pulls the cable with the printed T_A at
+    φ_A.
+    """
     pull, angle = 63.401, radians(116.373)
     body = point(-pull * sin(angle), -pull * cos(angle))
     cable = LinePiece(100.0, True, -_TOW_WEIGHT, normal_drag=_K * _TOW_WEIGHT)
@@ -203,7 +209,7 @@ _LAW = BourgetMarichal()
 
 
 def _line(length: float, *others: LinePiece, strums: bool = True) -> Line:
-    """Return a length of the cable, and what it tows."""
+    """Return a length of the cable, and the pieces towed on it."""
     cable = LinePiece(length, True, -_WEIGHT, HALF_DENSITY * _DIAMETER * _LAW.rest)
     diameter = np.array([_DIAMETER] + [0.0] * len(others))
     return replace(
@@ -223,7 +229,7 @@ def _bare(speed: float) -> Wake:
 
 
 def _coefficient(angle: float) -> float:
-    """C* where the example's cable is at an angle [rad]."""
+    """C* of the example's cable at an angle of the cable [rad]."""
     return _LAW.coefficient(angle, radians(_example(True).angle))
 
 
@@ -233,7 +239,7 @@ def _at_the_sphere() -> float:
 
 
 def _amplitude(speed: float) -> float:
-    """a/D of the bare cable at the angle it tows at."""
+    """a/D of the bare cable at its towing angle."""
     return _LAW.amplitude(radians(_bare(speed).angle))
 
 
@@ -248,7 +254,7 @@ sphere of 100 mm and 1.47 kg, Cx 0.90, in fresh water. The whole cable strums at
 F = 0.166 V₀ sin φ_n/D with φ_n the angle at the ship; its amplitude is a/D = A₁ + B₁ φ + C₁ φ², its
 drag coefficient C* = C₀ f(λ), at most 3.0. The paper does not print A₁, B₁ and C₁. CALM's follow
 from three of its own figures: a/D = 0.5 at 90°, C* = 1.25 at the sphere, φ_n = 16.28°. So these
-three are met by construction; the frequency, the immersion, the greatest C* and the amplitudes of
+three are met by construction; the frequency, the immersion, the maximum C* and the amplitudes of
 the bare cable from 0.6 to 2.0 m/s, for which the paper prints 0.9 to 1.4, are not. The prefactor of
 f, printed 2/π on [0, π], must be 1/π: f(0) = 1.
 
@@ -261,7 +267,7 @@ The paper computes 3.56 Hz and measured 4.07 Hz; CALM's 3.559 Hz is the former, 
              lambda: _example(True).frequency, Kind.CLOSED_FORM),
         Case("strumming: immersion of the sphere", 1.6529, "m", 5.5e-5, _FITTED,
              lambda: _example(True).depth, Kind.INDEPENDENT),
-        Case("strumming: frequency, as the paper has it", 3.56, "Hz", 5.5e-3, PRINTED,
+        Case("strumming: frequency, as printed", 3.56, "Hz", 5.5e-3, PRINTED,
              lambda: _example(True).frequency, Kind.PUBLISHED),
         Case("strumming: C* at the sphere", 1.250, "", 1e-3, _FITTED, _at_the_sphere,
              Kind.BY_CONSTRUCTION),
@@ -272,7 +278,7 @@ The paper computes 3.56 Hz and measured 4.07 Hz; CALM's 3.559 Hz is the former, 
              Kind.BY_CONSTRUCTION),
         *(
             Case(f"bare cable, {speed} m/s: a/D", expected, "", 0.05,
-                 "Half a unit of the last digit that the paper prints.",
+                 "Half a unit of the last printed digit.",
                  partial(_amplitude, speed), Kind.PUBLISHED)
             for speed, expected in ((0.6, 0.9), (2.0, 1.4))
         ),
@@ -294,7 +300,7 @@ _LENGTH, _UNIT = 1.25, 0.5
 
 @cache
 def _cable(start: float, mean: float) -> Station:
-    """α₀ and α_d in degrees, unit load."""
+    """The cable with α₀ and α_d in degrees, under unit load."""
     angle = radians(mean)
     return linear_cable(_LENGTH, _UNIT, radians(start), sin(angle), cos(angle))
 

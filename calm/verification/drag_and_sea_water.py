@@ -1,7 +1,7 @@
-"""Compare the laws that lines are computed with: drag, strumming, sea water and gravity (C23).
+"""Verify the formulas of drag, strumming, sea water and gravity (C23).
 
-The drag coefficients are those of smooth cylinders and spheres against Reynolds number; three
-published fits say by how much strumming raises them; the last figures are those of the paper of
+Drag coefficients of smooth cylinders and spheres are compared over the Reynolds number. Three
+published fits give the increase of drag by strumming. The last figures are those of the paper on
 the original CALM.
 """
 
@@ -25,7 +25,7 @@ WIESELSBERGER = (
     (2.20e5, 1.06), (2.93e5, 0.910), (3.65e5, 0.726), (4.27e5, 0.547), (4.90e5, 0.337),
     (5.03e5, 0.302), (6.28e5, 0.318), (8.10e5, 0.355),
 )  # fmt: skip
-"""Reynolds number and Cn of a long cylinder, as measured."""
+"""Reynolds number and Cn of a long cylinder, measured (NACA report 121)."""
 
 DNV = (
     (2.1e5, 1.21), (2.31e5, 1.20), (2.72e5, 1.17), (2.97e5, 1.11), (3.25e5, 1.01),
@@ -33,13 +33,13 @@ DNV = (
     (6.38e5, 0.284), (7.44e5, 0.297), (1.07e6, 0.389), (1.39e6, 0.470), (1.83e6, 0.539),
     (2.26e6, 0.584), (2.90e6, 0.629), (3.66e6, 0.648), (4.94e6, 0.678),
 )  # fmt: skip
-"""Reynolds number and Cn of a long cylinder, as recommended."""
+"""Reynolds number and Cn of a long cylinder, recommended (DNV-RP-C205, figure 6-6)."""
 
 MORRISON = (
     (1.0, 24.673), (1e2, 1.0381), (1e3, 0.4838), (1e4, 0.3926), (1e5, 0.4257), (2e5, 0.4159),
     (3e5, 0.1734), (4e5, 0.0930), (1e6, 0.1296),
 )  # fmt: skip
-"""Reynolds number and Cx of a sphere."""
+"""Reynolds number and Cx of a sphere, by Morrison's correlation."""
 
 MEASURED_UP_TO = 1.61e5
 """Reynolds number up to which CALM's cylinder follows the measurements."""
@@ -54,7 +54,7 @@ _SHARE = 1e-9
 
 
 def cheng(reynolds: float) -> float:
-    """Cn of a smooth cylinder by Cheng's fit, below Re 2e5."""
+    """Cn of a smooth cylinder by Cheng's fit, for Reynolds numbers below 2e5."""
     creeping = 11.0 * pow(reynolds, -0.75)
     middle = 0.9 * (1.0 - exp(-1000.0 / reynolds))
     return creeping + middle + 1.2 * (1.0 - exp(-pow(reynolds / 4500.0, 0.7)))
@@ -145,10 +145,10 @@ _VISCOSITY = (
     (35, (1.9056, 1.6193, 1.3968, 1.2199, 1.0766, 0.9588, 0.8606)),
     (40, (1.9247, 1.6361, 1.4116, 1.2332, 1.0887, 0.9698, 0.8707)),
 )
-"""Salinity [g/kg]; dynamic viscosity [mPa s] at each temperature."""
+"""Salinities [g/kg], each with the dynamic viscosities at `_TEMPERATURES` [mPa s]."""
 
 _KINEMATIC = (1.8535, 1.5757, 1.3601, 1.1890, 1.0506, 0.9370, 0.8423)
-"""[1e-6 m²/s] at a salinity of 35 at each temperature."""
+"""Kinematic viscosity at a salinity of 35 g/kg and at `_TEMPERATURES` [1e-6 m²/s]."""
 
 _DENSITY = (
     (35.165, 10.0, 0, 1026.952), (35.2, 10.0, 500, 1029.237), (35.0, 5.0, 1000, 1032.160),
@@ -163,12 +163,12 @@ _LATITUDE = 30.0
 
 
 def _viscosity(temperature: float, salinity: float) -> float:
-    """[mPa s]"""
+    """Dynamic viscosity [mPa s]."""
     return 1e3 * float(seawater.dynamic_viscosity(temperature, salinity))
 
 
 def _kinematic(temperature: float) -> float:
-    """[1e-6 m²/s]"""
+    """Kinematic viscosity at 35 g/kg [1e-6 m²/s]."""
     density = float(seawater.density(temperature, 35.0, 0.0))
     return 1e6 * float(seawater.kinematic_viscosity(temperature, 35.0, density))
 
@@ -181,8 +181,8 @@ SEA_WATER = Source(
     "Sea water and gravity",
     """Viscosity by Sharqawy, Lienhard & Zubair (Desalination and Water Treatment 16, 2010,
 equations 22 and 23; themselves good to 1.5 %), density by TEOS-10 (at 30° of latitude), gravity by
-the international formula that TEOS-10 takes (C23). A regression of Dorsey's viscosities (1940),
-other measurements, and the accepted viscosity of pure water at 20 °C stand beside them.""",
+the international formula that TEOS-10 takes (C23). They are also compared with a regression of
+Dorsey's viscosities (1940), other measurements, and the viscosity of pure water at 20 °C.""",
     (
         *(
             Case(f"C23 dynamic viscosity, {temperature} °C, {salinity} g/kg", printed, "mPa s",
@@ -223,19 +223,19 @@ _PAPER_VISCOSITY = (
     (30, (1.88, 1.60, 1.38, 1.21, 1.07, 0.95, 0.86)),
     (35, (1.89, 1.61, 1.39, 1.22, 1.09, 0.96, 0.87)),
 )
-"""Salinity [g/kg]; dynamic viscosity [mPl, which is mPa s] at each temperature."""
+"""Salinities [g/kg], each with the dynamic viscosities at `_TEMPERATURES` [mPl = mPa s]."""
 
 _METER_SPEED = (0.51, 1.03, 1.54, 2.06, 2.57)
 _METER_DRAG = (1.03, 2.45, 4.98, 10.56, 20.60)
-"""Drag of an Aanderaa RCM4 or RCM5 [kgf] at those speeds [m/s], the maker's figures."""
+"""Drag of an Aanderaa RCM4 or RCM5 [kgf] at those speeds [m/s], as given by the manufacturer."""
 
 
 CALM_PAPER = Source(
-    "The paper of the original CALM",
-    """The original CALM's paper prints a table of dynamic viscosities (mPl, which is mPa s) and the
-drag of an Aanderaa RCM4/RCM5 at five speeds, with the rule K = Σ(F/V) / ΣV for what CALM makes of
-such pairs. It calls that K = 2.694 newtons; the figures are the maker's and in kilograms-force, as
-a plate of that instrument's size bears out, so that K is 26.4 N/(m/s)².""",
+    "Paper on the original CALM",
+    """The paper on the original CALM has a table of dynamic viscosities (in mPl, which is mPa s)
+and the drag of an Aanderaa RCM4/RCM5 at five speeds with the rule K = Σ(F/V) / ΣV, by which CALM
+derives a drag from such pairs. It gives K as 2.694 N. The manufacturer's figures are in
+kilograms-force, which the drag of a plate of that size confirms, so that K is 26.4 N/(m/s)².""",
     (
         *(
             Case(f"viscosity, {temperature} °C, {salinity} g/kg", printed, "mPa s",

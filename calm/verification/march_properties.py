@@ -1,4 +1,6 @@
-"""Check what must hold for every line (C20), and how the error falls with the angle step."""
+"""Verify properties that hold for every line (C20), and the order of convergence with the angle
+step.
+"""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -66,9 +68,9 @@ def _solved() -> Solution:
 
 
 def _apart(one: Solution, other: Solution) -> float:
-    """Return the worst difference at the ends of pieces.
+    """Return the largest difference between two solutions at the ends of pieces.
 
-    A position counts as a share of the depth, a tension as a share of the greatest.
+    Differences in position are divided by the depth, those in tension by the largest tension.
     """
     here, there = one.piece_nodes.ravel(), other.piece_nodes.ravel()
     place = np.abs(one.position[here] - other.position[there]).max() / one.water.depth
@@ -92,7 +94,9 @@ def _mirrored(east: float, north: float) -> float:
 
 
 def _deeper() -> float:
-    """Return the seabed and the current moved down by 100 m: the axes are moved up."""
+    """Compare with the mooring in water that is 100 m deeper, with the current moved down as
+    much.
+    """
     down = 100.0
     water = replace(_SEA, depth=_SEA.depth + down, level=_SEA.level + down)
     here, there = solve_mooring(_LINE, _SEA, FINE), solve_mooring(_LINE, water, FINE)
@@ -100,7 +104,9 @@ def _deeper() -> float:
 
 
 def _similar(length: float, force: float, speed: float) -> float:
-    """All lengths, forces and speeds in other units; drags follow."""
+    """Compare with the mooring in other units of length, force and speed; drags are scaled
+    accordingly.
+    """
     amount = force / np.where(_LINE.flexible, length, 1.0)
     line = replace(
         _LINE, length=_LINE.length * length, buoyancy=_LINE.buoyancy * amount,
@@ -122,7 +128,7 @@ def _similar(length: float, force: float, speed: float) -> float:
 
 
 def _split() -> float:
-    """S1000 with its cable in ten pieces, against the cable in one."""
+    """Compare S1000 with its cable divided into ten pieces to the same mooring undivided."""
     finest = Settings(radians(0.01), tolerance=1e-10)
     whole, split = (
         solve_mooring(solved_moorings.s1000_mooring(parts), solved_moorings.S1000_SEA, finest)
@@ -134,7 +140,7 @@ def _split() -> float:
 
 
 def _loads(solution: Solution) -> Floats:
-    """(3,) sum of the weights and drags on the elements, from where they came to lie [N]."""
+    """Sum of the weights and drags on all elements at their positions, shape (3,) [N]."""
     line, water = solution.line, solution.water
     piece, clamp = solution.element_piece, solution.element_clamp
     chord = np.diff(solution.position, axis=0)
@@ -173,7 +179,9 @@ def _reaction() -> float:
 
 
 def _tension_by_height() -> float:
-    """Worst |T_top − T_bottom − w Δz| of a cable without tangential drag, over its tension."""
+    """Largest |T_top − T_bottom − w Δz| of a cable without tangential drag, divided by its
+    tension.
+    """
     line = line_of(
         *(
             replace(piece, tangential_drag=0.0, compliance=0.0, volume=0.0, clamps=())
@@ -189,7 +197,7 @@ def _tension_by_height() -> float:
 
 
 def _tension_by_height_and_friction() -> float:
-    """|T_ship − T_body − w Δz − F s| of a tow whose friction is constant, over T_ship."""
+    """|T_ship − T_body − w Δz − F s| of a tow with constant friction, divided by T_ship."""
     weight, friction, length, pull = 2.5, 0.3, 300.0, 2000.0
     line = line_of(LinePiece(length, True, -weight, 8.0, friction), point(-pull, 0.0))
     wake = towed(replace(line, friction=Friction.CONSTANT), deep_water(), 1.0)
@@ -197,7 +205,9 @@ def _tension_by_height_and_friction() -> float:
 
 
 def _plumb() -> float:
-    """Worst of offset and tension of the line in still water, by the sum of what is above."""
+    """Largest error of offset and tension in still water, where the tension is the sum of the loads
+    above.
+    """
     water = replace(_SEA.still(), density=np.full(len(_SEA.level), REFERENCE_DENSITY))
     solution = solve_mooring(_LINE, water, _TIGHT)
     _, last = solution.piece_nodes.T
@@ -208,13 +218,13 @@ def _plumb() -> float:
 
 @cache
 def _undercurrent() -> Solution:
-    """Return a float of 500 N on 100 m of thread, and a current that sets in below it."""
+    """Return a float of 500 N on 100 m of thread, in a current that increases below the float."""
     line = line_of(point(500.0, 100.0), LinePiece(100.0, True, 0.0))
     return solve_mooring(line, profile(110.0, [(0.0, 0.2), (12.0, 0.2), (30.0, 3.0)]), _TIGHT)
 
 
 def _other_depth() -> float:
-    """Return the depth of its float in the other equilibrium; 0 if none was found."""
+    """Return the depth of the float in the other equilibrium; 0 if none was found."""
     other = _undercurrent().other
     return 0.0 if other is None else other.depth
 
@@ -232,7 +242,7 @@ INVARIANTS = Source(
 of wire with two clamps, an instrument that follows the line, 400 m of rope that stretches, four
 glass balls, a release, chain) stands in a current that veers, reverses and has an upward part, in
 water whose density grows with depth. Each difference is the largest over all positions, as a
-fraction of the depth, or over all tensions, as a fraction of the greatest.
+fraction of the depth, or over all tensions, as a fraction of the largest.
 
 Where the current grows with depth there may be more than one equilibrium: a float of 500 N and 100
 N of drag at 1 m/s on 100 m of thread in a current of 0.2 m/s that rises to 3 m/s between 12 and 30
@@ -271,7 +281,7 @@ returns the highest and reports the lowest; the one between them is unstable."""
 
 
 ANGLE_STEPS = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)
-"""[degrees]"""
+"""Angle steps [degrees]."""
 
 LENGTH = 1000.0
 _BUOYANCY, _WEIGHT = 4905.0, 2.0
@@ -279,8 +289,9 @@ _BUOYANCY, _WEIGHT = 4905.0, 2.0
 
 @cache
 def heavy_line_error(degrees: float) -> float:
-    """Miss of a heavy line's free end as marched, against its closed form [m], at an angle step
-    [degrees]."""
+    """Distance [m] between the free end of a heavy line as marched, at an angle step [degrees], and
+    its closed form.
+    """
     drag, rope = sphere_drag(1.0, 0.65), cable(LENGTH, 0.0127, _WEIGHT, 1.3, 0.01)
     line = line_of(point(_BUOYANCY, drag), rope)
     solution = solve_mooring(line, stream(1010.0, 1.0), Settings(radians(degrees), 1e-9))
@@ -311,7 +322,7 @@ are extrapolated from two such shapes, and err far less.""",
             for coarse, fine in ((2.0, 1.0), (1.0, 0.5), (0.5, 0.25))
         ),
         Case("C20 miss of the free end at 1°", 0.0, "m", 5e-5 * LENGTH,
-             "What CALM promises at its default angle step: 5e-5 of the depth.",
+             "CALM's stated accuracy at its default angle step: 5e-5 of the depth.",
              partial(heavy_line_error, 1.0), Kind.CLOSED_FORM),
     ),
     picture="verification-convergence",

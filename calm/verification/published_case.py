@@ -1,6 +1,7 @@
-"""Define a figure to reproduce, how CALM comes to it, and what a check of it finds.
+"""Define the cases of `calm verify`: expected figures, their computation by CALM, and the
+comparison.
 
-Lines and waters of published cases are put together without a mooring file, and their ends taken.
+Lines and waters of published cases are built here without a mooring file.
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ from calm.solve import Settings, Solution, Towing, solve_mooring, solve_tow
 Solved = TypeVar("Solved")
 
 PRINTED = "Half a unit of the last printed digit, plus a tenth."
-"""The reason for a tolerance where CALM is exact beside the figure as printed."""
+"""The reason for the tolerance of a printed figure that CALM computes to more digits."""
 
 
 class Kind(StrEnum):
-    """Tell where an expected figure comes from, and so how much its agreement proves."""
+    """Source of an expected figure, which determines the value of an agreement as evidence."""
 
     PUBLISHED = "published"
     CLOSED_FORM = "closed form"
@@ -35,18 +36,18 @@ class Kind(StrEnum):
 
     @property
     def meaning(self) -> str:
-        """The kind in a sentence."""
+        """The kind as a sentence."""
         return _MEANINGS[self]
 
     @property
     def verifies(self) -> bool:
-        """Tell whether agreement is evidence that CALM is right."""
+        """True if agreement is evidence that CALM is correct."""
         return self is not Kind.BY_CONSTRUCTION
 
 
 _MEANINGS = {
-    Kind.PUBLISHED: "Printed in a paper, a manual or a maker's data sheet.",
-    Kind.CLOSED_FORM: "The value of a formula or the root of one, evaluated without CALM.",
+    Kind.PUBLISHED: "Printed in a paper, a manual or a manufacturer's data sheet.",
+    Kind.CLOSED_FORM: "The value or the root of a formula, evaluated without CALM.",
     Kind.INDEPENDENT: "From an integration that shares no code with CALM: a quadrature, a solver "
     "of the differential equations, another program.",
     Kind.PROPERTY: "Holds for any line and needs no reference.",
@@ -80,7 +81,7 @@ class Case:
     kind: Kind
 
     def check(self) -> CaseOutcome:
-        """Compute the figure; never raises, but for what stops the whole program."""
+        """Compute the figure; an exception is returned as the reason for a missing figure."""
         try:
             return CaseOutcome(self, float(self.got()))
         except Exception as error:
@@ -89,7 +90,7 @@ class Case:
 
 @dataclass(frozen=True)
 class CaseOutcome:
-    """Hold what became of a case: CALM's figure, or NaN and the reason why there is none."""
+    """Result of a case: CALM's figure, or NaN and the reason why there is none."""
 
     case: Case
     got: float
@@ -102,21 +103,21 @@ class CaseOutcome:
 
     @property
     def within(self) -> bool:
-        """Tell whether the figure is met."""
+        """True if the figure agrees within the tolerance."""
         return abs(self.difference) <= self.case.tolerance
 
 
 @dataclass(frozen=True)
 class Source:
-    """Hold the figures that come from one place.
+    """The cases of one publication or derivation.
 
     Attributes
     ----------
-    title : a few words
-    text : who printed or derived the figures, what of CALM is held against them, and why a
-        published figure differs where one does; Markdown, a paragraph to each blank line
-    cases : the figures
-    picture : stem of the picture that shows them, empty where none does
+    title : title of the source, a few words
+    text : who printed or derived the figures, which part of CALM is compared, and why a
+        published figure differs if it does; Markdown, with blank lines between paragraphs
+    cases : the cases
+    picture : stem of the file name of a picture; empty if there is none
     """
 
     title: str
@@ -125,7 +126,9 @@ class Source:
     picture: str = ""
 
     def having(self, words: Iterable[str]) -> Source:
-        """Return the source with the cases whose name, or its title, has every word (or part)."""
+        """Return the source with only those cases whose name, or the title, contains all given
+        words or parts of words.
+        """
         wanted = [word.casefold() for word in words]
         chosen = tuple(
             case
@@ -141,9 +144,9 @@ class CaseColumn(Generic[Solved]):
 
     Attributes
     ----------
-    name, unit : of the figure
+    name, unit : name and unit of the figure
     tolerance : greatest difference allowed [unit], or as a share of the figure if `relative`
-    of : picks the figure out of CALM's answer
+    of : returns the figure from CALM's solution
     """
 
     name: str
@@ -164,7 +167,7 @@ def table(
     Parameters
     ----------
     figures : its columns
-    rows : the name of each row, what solves it, and its printed figures, one for each column
+    rows : for each row its name, the function that solves it, and its printed figures
     why : the reason for the tolerances
     kind : where the figures come from
     """
@@ -184,16 +187,16 @@ def table(
 
 
 GRAVITY = 9.81
-"""[m/s²] of every case that does not name another."""
+"""Gravitational acceleration of every case that gives no other [m/s²]."""
 
 HALF_DENSITY = REFERENCE_DENSITY / 2.0
 
 
 @dataclass(frozen=True)
 class LinePiece:
-    """One piece of a line; the names and units are those of `calm.physics.line.Line`.
+    """A piece of a line; names and units are those of `calm.physics.line.Line`.
 
-    `clamps` holds (distance from the piece's top, buoyancy, volume, drag) of each.
+    `clamps` are tuples of the distance from the piece's top, the buoyancy, the volume and the drag.
     """
 
     length: float
@@ -209,7 +212,7 @@ class LinePiece:
 
 
 def point(buoyancy: float, drag: float) -> LinePiece:
-    """Return a piece without length: buoyancy [N], drag at 1 m/s [N/(m/s)²]."""
+    """Return a piece without length, with a buoyancy [N] and a drag at 1 m/s [N/(m/s)²]."""
     return LinePiece(0.0, False, buoyancy, drag, drag, directional=False)
 
 
@@ -228,7 +231,7 @@ def cable(
     length, diameter : unstretched [m]
     weight : in water [N/m]
     cn, ct : drag coefficients on its diameter and on its surface π D
-    compliance : strain of a newton [1/N]
+    compliance : strain per newton [1/N]
     """
     normal, tangential = HALF_DENSITY * diameter * cn, HALF_DENSITY * pi * diameter * ct
     return LinePiece(
@@ -237,7 +240,7 @@ def cable(
 
 
 def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
-    """Return the arrays of a list of pieces, free end first."""
+    """Return the line of a list of pieces, the free end first."""
     held = [(owner, *clamp) for owner, piece in enumerate(pieces) for clamp in piece.clamps]
     clamps = np.array(held, dtype=np.float64).reshape(len(held), 5)
 
@@ -254,7 +257,7 @@ def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
         directional=column("directional").astype(bool),
         compliance=column("compliance"),
         thinning=column("thinning"),
-        clamp_piece=clamps[:, 0].astype(np.int64),
+        clamp_piece=clamps[:, 0].astype(np.intp),
         clamp_at=clamps[:, 1],
         clamp_buoyancy=clamps[:, 2],
         clamp_volume=clamps[:, 3],
@@ -266,7 +269,9 @@ def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
 def profile(
     depth: float, rows: Sequence[tuple[float, float]], density: float = REFERENCE_DENSITY
 ) -> Water:
-    """Water of a depth [m] and density [kg/m³] with an eastward current: rows of depth, speed."""
+    """Water of a depth [m] and density [kg/m³] with an eastward current, given by rows of depth and
+    speed.
+    """
     level, u = np.array(rows).T
     still = np.zeros_like(u)
     return Water(
@@ -280,22 +285,22 @@ def stream(depth: float, speed: float, density: float = REFERENCE_DENSITY) -> Wa
 
 
 def deep_water(density: float = REFERENCE_DENSITY) -> Water:
-    """Still water without a seabed, for tows: the ship makes the current."""
+    """Still water without a seabed, for tows, whose current comes from the ship's speed."""
     return stream(inf, 0.0, density)
 
 
 FINE = Settings(radians(0.1), tolerance=1e-9)
-"""For figures of seven digits: the march errs by some 4e-8 of the length at this angle step."""
+"""Settings for figures of seven digits: the error of the march is about 4e-8 of the length."""
 
 
 @dataclass(frozen=True)
 class Ends:
-    """Free end and lower end of a line in an eastward current.
+    """Positions and forces of a line's ends in an eastward current.
 
     Attributes
     ----------
-    x, z : the free end downstream of the lower end and above it [m]
-    horizontal, vertical : the pull at the lower end, downstream and up [N]
+    x, z : distances of the free end downstream of the lower end, and above it [m]
+    horizontal, vertical : components of the force at the lower end, downstream and up [N]
     """
 
     x: float
@@ -310,7 +315,7 @@ class Ends:
 
     @property
     def lean(self) -> float:
-        """Angle of the pull at the lower end from the vertical [degrees]."""
+        """Angle of the force at the lower end from the vertical [degrees]."""
         return degrees(atan2(self.horizontal, self.vertical))
 
 
@@ -323,20 +328,20 @@ def ends_of(solution: Solution) -> Ends:
 
 @cache
 def finely(made: Callable[..., tuple[Line, Water]], *given: float) -> Ends:
-    """Return the ends of a line that is made of some figures, solved at `FINE`."""
+    """Return the ends of the line that a function makes of the given figures, solved at `FINE`."""
     return ends_of(solve_mooring(*made(*given), FINE))
 
 
 @dataclass(frozen=True)
 class Wake:
-    """Represent a line towed to the east through still water.
+    """Shape and tension of a line towed east through still water.
 
     Attributes
     ----------
-    aft, depth : of the free end behind and below the tow point [m]
-    tension : at the tow point [N]
-    angle : of the line at the tow point from the horizontal [degrees]
-    frequency : of the cables that strum [Hz]
+    aft, depth : distances of the free end behind and below the tow point [m]
+    tension : tension at the tow point [N]
+    angle : angle of the line at the tow point from the horizontal [degrees]
+    frequency : frequency of the strumming [Hz]
     """
 
     aft: float
@@ -347,14 +352,14 @@ class Wake:
 
 
 def towed(line: Line, water: Water, speed: float, settings: Settings = FINE) -> Wake:
-    """Return the wake of a line that is towed.
+    """Return the shape of a towed line.
 
     Parameters
     ----------
-    line : listed from the ship
-    water : in which it is towed
-    speed : of the ship [m/s]
-    settings : of the march
+    line : the line, from the ship to the free end
+    water : the water in which it is towed
+    speed : speed of the ship [m/s]
+    settings : settings of the march
     """
     solution = solve_tow(line, water, Towing(speed, 0.0), settings)
     x, _, z = solution.position[0].tolist()

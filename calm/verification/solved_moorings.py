@@ -1,6 +1,7 @@
-"""Compare two moorings that others have solved: S1000, and CDMS-1 of Berteaux's manual (C16).
+"""Verify two moorings solved by others: S1000, and CDMS-1 of Berteaux's manual (C16).
 
-S1000 is 1000 m of stretchy cable in a sheared current; two other programs have solved CDMS-1.
+S1000 is a float on 1000 m of elastic cable in a sheared current. CDMS-1 was solved by two other
+programs.
 """
 
 from dataclasses import replace
@@ -17,13 +18,15 @@ from calm.verification.published_case import GRAVITY, Case, CaseColumn, Ends, Ki
 S1000_SEA = published_case.profile(1100.0, [(0.0, 1.0), (200.0, 0.6), (500.0, 0.2), (1100.0, 0.05)])
 
 DEPTH, OFFSET, TENSION, KNOCKDOWN = 131.4256, 237.3218, 2068.154, 32.1756
-"""Of the float [m], of the float [m], at the anchor [N], of the float [m]."""
+"""Expected depth and offset of the float [m], tension at the anchor [N], and knockdown of the float
+[m].
+"""
 
 _FINEST = 0.02
 
 
 def s1000_mooring(parts: int = 1) -> Line:
-    """Return the line, its cable in equal parts."""
+    """Return the line, with its cable divided into equal parts."""
     part = published_case.cable(1000.0 / parts, 0.01, 2.0, 1.3, 0.01, 1.0 / 4e6)
     return published_case.line_of(
         published_case.point(4000.0, published_case.HALF_DENSITY * 0.6), *[part] * parts
@@ -32,7 +35,7 @@ def s1000_mooring(parts: int = 1) -> Line:
 
 @cache
 def solved_s1000(degrees: float) -> Solution:
-    """Return the mooring at an angle step [degrees]."""
+    """Return the solution at an angle step [degrees]."""
     return solve_mooring(s1000_mooring(), S1000_SEA, Settings(radians(degrees), tolerance=1e-9))
 
 
@@ -56,7 +59,7 @@ def _figures(place: float, tension: float) -> tuple[CaseColumn[Solution], ...]:
 
 
 def _order(coarse: float, fine: float) -> float:
-    """Order at which the depth of the float as marched converges to the known one."""
+    """Order of convergence of the float's depth as marched, between two angle steps."""
     errors = [
         abs(float_depth(solved_s1000(degrees).as_marched) - DEPTH) for degrees in (coarse, fine)
     ]
@@ -76,7 +79,7 @@ a second independent integration.""",
         *table(
             _figures(5e-5 * 1100.0, 2e-4 * TENSION),
             [("S1000 at 1°", lambda: solved_s1000(1.0), _EXPECTED)],
-            "What CALM promises at its default angle step: 5e-5 of the water depth, 2e-4 of the "
+            "CALM's stated accuracy at its default angle step: 5e-5 of the depth, 2e-4 of the "
             "tension.", Kind.INDEPENDENT),
         *table(
             _figures(1e-4, 1e-3),
@@ -112,7 +115,7 @@ def _rope(length: float, diameter: float, weight: float, modulus: float, ct: flo
 
 
 def cdms_1_mooring(ct: float = 0.0) -> Line:
-    """Return the line, its cables with a Ct on their surface."""
+    """Return the line, with a tangential drag coefficient of its cables."""
     meter = LinePiece(2.0, False, -20.0 * GRAVITY, published_case.HALF_DENSITY * 1.2 * 0.2 * 2.0)
     kevlar = [_rope(length, 0.007, 0.009, 6.9e10, ct) for length in (98.0, 98.0, 212.9)]
     return published_case.line_of(
@@ -128,7 +131,7 @@ def cdms_1_mooring(ct: float = 0.0) -> Line:
 
 @cache
 def solved_cdms_1() -> Solution:
-    """CALM's answer at its default settings; the anchor is at the origin."""
+    """CALM's solution at default settings, with the anchor at the origin."""
     return solve_mooring(cdms_1_mooring(), CDMS_1_SEA)
 
 
@@ -142,7 +145,9 @@ def height_at(solution: Solution, node: int) -> float:
 
 
 def nodes_of_tensions(solution: Solution) -> list[int]:
-    """Return the nodes of printed tensions: below sphere and third meter, and at the anchor."""
+    """Return the nodes with a printed tension: below the sphere, below the third meter, and at the
+    anchor.
+    """
     last: list[int] = solution.piece_nodes[[0, _THIRD_METER, -1], 1].tolist()
     return last
 
@@ -187,8 +192,9 @@ PROGRAMS = {
     "MD&D": (432.07, 75.5, 682.9, 631.7, 827.2),
     "independent": (431.82, 76.81, 682.9, 621.3, 815.06),
 }
-"""Height and offset of the sphere [m]; tension below it, below the third meter, at the anchor
-[kgf], as printed."""
+"""Printed results: height and offset of the sphere [m]; tensions below the sphere, below the third
+meter and at the anchor [kgf].
+"""
 
 _PROGRAM = (
     "Heights 1 m and tensions 2 %: the two programs err by 1 to 4 % themselves and differ from "
@@ -245,7 +251,7 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
             )
         ),
         Case("C16 printed: height of the first glass ball", 12.03, "m", 0.01,
-             "Printed to the centimetre; the line below it hardly leans.",
+             "Printed to the centimetre; the line below it is almost vertical.",
              lambda: _centre(_FIRST_GLASS, solved_cdms_1())[1], Kind.PUBLISHED),
         Case("C16 printed: 98 m of Kevlar under load", 98.24, "m", 0.011,
              "Printed to the centimetre, plus 2 % of the stretch for its tension.",

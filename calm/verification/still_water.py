@@ -1,6 +1,7 @@
-"""Compare lines in still water: catenaries (C12 to C14), stretched, slack, and as they fall.
+"""Verify lines in still water: catenaries (C12 to C14), an elastic rope, a slack line, an anchor
+drop.
 
-The rope (C15) hangs from its load and its own weight; the slack mooring (C22) has a watch circle.
+The rope (C15) hangs under its own weight and a load. The slack mooring (C22) has a watch circle.
 """
 
 import re
@@ -49,7 +50,7 @@ _TAUT = 86912.281, 77703.619
 _TOUCHDOWN = 0.763277, 3.424639
 _DEPTH = 2.65
 _BUOYANCY = 10.0
-"""More than the touchdown case needs, so that the float lies at the surface [N]."""
+"""Buoyancy of a float that remains at the surface in the touchdown case [N]."""
 
 
 def _number(field: ArrayLike) -> float:
@@ -57,7 +58,7 @@ def _number(field: ArrayLike) -> float:
 
 
 def _pulled(pull: tuple[float, float], length: float, weight: float, stiffness: float) -> Line:
-    """Return a line without drag below a float that pulls sideways and up at 1 m/s."""
+    """Return a line without drag below a float whose force at 1 m/s is horizontal and upward."""
     horizontal, vertical = pull
     return line_of(
         point(vertical, horizontal), LinePiece(length, True, -weight, compliance=1.0 / stiffness)
@@ -202,7 +203,7 @@ _SLACK_DEPTH, _SCOPE = 540.0, 2.0
 
 
 def _radius() -> float:
-    """Return the radius reported with the refusal of a line that has no unique shape [m]."""
+    """Return the watch-circle radius reported when a line without a unique shape is refused [m]."""
     rope = cable(_SCOPE * _SLACK_DEPTH, 0.02, 1.0, 1.3, 0.0)
     try:
         solve_mooring(line_of(point(20_000.0, 100.0), rope), stream(_SLACK_DEPTH, 0.0))
@@ -235,7 +236,7 @@ _DROPPED = FallingAnchor(weight=8896.0, drag=sphere_drag(0.81, 1.0))
 
 _INERTIA = (
     "3 % of a time or a tension, 8 % of the fall-back: the error that neglecting inertia may "
-    "cause. The same program without inertia differs by 0.4 and 1.1 % from that with it."
+    "cause. The same program without inertia differs from it by 0.4 and 1.1 %."
 )
 
 
@@ -269,7 +270,7 @@ _PLUMB_WIRE, _PLUMB_ANCHOR = 150.0, FallingAnchor(weight=8896.0, drag=400.0)
 
 @cache
 def _plumb() -> float:
-    """Speed of a plumb line 3000 m down [m/s]."""
+    """Terminal speed of a vertical line, 3000 m down [m/s]."""
     water = replace(_SEA, depth=3000.0)
     line = replace(_wire_below_a_sphere().with_length(1, _PLUMB_WIRE), floating=None)
     start = towed(line, water, _PLUMB_ANCHOR, Ship(0.0, 1.0), _FINE)
@@ -278,7 +279,7 @@ def _plumb() -> float:
 
 @cache
 def _alone() -> float:
-    """Speed of a heavy sphere below a thread of nothing and a cork [m/s]."""
+    """Terminal speed of a heavy sphere below a light thread and a cork [m/s]."""
     line = line_of(
         LinePiece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)
     )
@@ -298,14 +299,14 @@ _PLUMB = sqrt(
         + 0.5 * REFERENCE_DENSITY * pi * 0.01 * 0.01 * _PLUMB_WIRE
     )
 )
-"""√(net weight/sum of the drags) of the plumb line [m/s]."""
+"""√(net weight/sum of the drags) of the vertical line [m/s]."""
 _ALONE = sqrt(10_000.0 / (100.0 * _DENSITY / REFERENCE_DENSITY))
 _THREAD = "The drag of the thread and the cork, and the last bend of the line."
 
 ANCHOR_DROP = Source(
     "Anchor drop",
     """The deployment example of WHOI Cable (J. Gobat & M. Grosenbaugh): 1050 m of wire between a
-sphere of 1.5 m at the surface and an anchor of 8896 N in water, let go at 2 knots in 1000 m of
+sphere of 1.5 m at the surface and an anchor of 8896 N in water, released at 2 knots in 1000 m of
 still water. The expected figures come from a program with inertia and added mass, with drag on the
 end bodies by |V|V, as in CALM. WHOI Cable 3.12 takes their drag axis by axis and finds 233 to 234 s
 and 107.9 m; the other program with that drag finds 232.6 s and 108.3 m. The distance streamed is
@@ -321,9 +322,9 @@ sphere.""",
              lambda: -float(_fall().states[-1].node[-1, 1]), Kind.INDEPENDENT),
         Case("way of the float", 431.0, "m", 0.03 * 431.0, _INERTIA,
              lambda: float(_fall().states[-1].node[0, 1] - _start().node[0, 1]), Kind.INDEPENDENT),
-        Case("greatest tension at the anchor", 6245.0, "N", 0.03 * 6245.0, _INERTIA,
+        Case("maximum tension at the anchor", 6245.0, "N", 0.03 * 6245.0, _INERTIA,
              lambda: _pull(-1, 1), Kind.INDEPENDENT),
-        Case("greatest tension below the float", 7432.0, "N", 0.03 * 7432.0, _INERTIA,
+        Case("maximum tension below the float", 7432.0, "N", 0.03 * 7432.0, _INERTIA,
              lambda: _pull(1, 0), Kind.INDEPENDENT),
         Case("speed of a plumb line", _PLUMB, "m/s", 1e-4,
              "After 2850 m the line is straight; the stretch of the wire, 0.1 %, costs 3e-5 m/s.",

@@ -1,7 +1,7 @@
-"""Compare lines and towed cables in a uniform current with closed forms and quadratures.
+"""Verify lines and towed cables in a uniform current against closed forms and quadratures.
 
-C1 to C5 are a float on a thread, a neutral line and a heavy line; C7 and C8 a bare cable at its
-critical angle and a cable that tows a body; C6 is Pode's cable functions and their identities.
+C1 to C5 are a float on a thread, a neutral line and a heavy line. C7 and C8 are a bare cable at its
+critical angle and a cable that tows a body. C6 is Pode's cable functions and their identities.
 """
 
 from collections.abc import Callable, Iterable
@@ -47,24 +47,24 @@ _SEVEN_DIGITS = (
 
 
 def float_on_a_thread(speed: float) -> tuple[Line, Water]:
-    """C1 at a speed [m/s]."""
+    """Return case C1 at a speed [m/s]."""
     return line_of(_FLOAT, LinePiece(100.0, True, 0.0)), stream(110.0, speed)
 
 
 def ball_on_a_thread() -> tuple[Line, Water]:
-    """C2."""
+    """Return case C2."""
     ball = point(0.337612, sphere_drag(0.04, 1.0))
     return line_of(ball, LinePiece(0.5, True, 0.0)), stream(1.0, 0.5, density=1027.0)
 
 
 def float_on_a_rope(weight: float, ct: float, speed: float) -> tuple[Line, Water]:
-    """C3 to C5, of a weight [N/m] and a Ct, at a speed [m/s].
+    """Return the line and the water of case C3, C4 or C5.
 
     Parameters
     ----------
-    weight : of the rope in water [N/m]
-    ct : on the surface of the rope
-    speed : of the current [m/s]
+    weight : weight of the rope in water [N/m]
+    ct : tangential drag coefficient of the rope
+    speed : speed of the current [m/s]
     """
     return line_of(_FLOAT, cable(_LENGTH, 0.0127, weight, 1.3, ct)), stream(1010.0, speed)
 
@@ -91,7 +91,7 @@ def _identity(speed: float) -> Case:
 
 
 def _thread(length: float, force: float, place: float, angle: float) -> list[CaseColumn[Ends]]:
-    """Return the figures printed of a float on a thread, with their tolerances."""
+    """Return the columns of a float on a thread, with their tolerances."""
     return [
         CaseColumn("drag", "N", force, lambda ends: ends.horizontal),
         CaseColumn("tension", "N", force, lambda ends: ends.tension),
@@ -104,7 +104,7 @@ def _thread(length: float, force: float, place: float, angle: float) -> list[Cas
 def _by_speed(
     name: str, solve: Callable[[float], Solved], rows: Iterable[tuple[float, ...]]
 ) -> list[tuple[str, Callable[[], Solved], list[float]]]:
-    """Return the rows of a table from those of a speed [m/s] and the figures at it."""
+    """Return the rows of a table with the speed [m/s] as first column."""
     return [(f"{name}, {v} m/s", partial(solve, v), figures) for v, *figures in rows]
 
 
@@ -127,7 +127,7 @@ C1 and C2 are elementary: tan θ = D/B, T² = B² + D². C3 is a catenary on its
 R s/T at constant T. C4 and C5 follow from T′ = w sin φ + F, T φ′ = w cos φ − R sin² φ by quadrature
 (relative error 1e-10), without CALM. In C4 the tension differs between two points by w times their
 difference in height. C5 shows the sign of the tangential drag. All cases use g = 9.81 m/s² and,
-except C2, ρ = 1025 kg/m³; CALM's march is compared with them at an angle step of 0.1°.""",
+except C2, ρ = 1025 kg/m³; the march is compared at an angle step of 0.1°.""",
     (
         *table(
             _thread(100.0, 5.5e-5, 5.5e-6, 5.5e-6),
@@ -199,7 +199,7 @@ TOWED_CABLES = Source(
 φc = √(1 + p²/4) − p/2, where p is its weight over its drag square to the stream. In the second case
 (C8) 300 m of it tow a body of 2000 N in water and 0.05 m² of drag area, with a friction of ½ρ
 0.02 D V² cos² φ along the cable; it is solved by quadrature of the differential equations (relative
-error 1e-10) without CALM. CALM's march is compared with both, at an angle step of 0.1° in C8.""",
+error 1e-10) without CALM. The march is compared with both; its angle step is 0.1° in C8.""",
     (
         *table(
             [CaseColumn[Wake](_AT_THE_SHIP, "°", 5.5e-5, lambda wake: wake.angle)],
@@ -244,16 +244,16 @@ _TABLE = (
     (60, 0.00, 80, 1.357894, 0.240017, 0.023141, 0.238596),
     (60, 0.02, 70, 2.218338, 0.825827, 0.183732, 0.801214),
 )
-"""φc [degrees], f, φ [degrees], τ, σ, ξ, η."""
+"""Columns: φc [degrees], f, φ [degrees], τ, σ, ξ, η."""
 
 _CRITICAL = (
     (0.05, 12.7578), (0.1, 17.9642), (0.2, 25.1784), (0.5, 38.6683), (1.0, 51.8273),
     (2.0, 65.5302), (5.0, 78.8965), (10.0, 84.3173),
 )  # fmt: skip
-"""p, φc [degrees]."""
+"""Columns: p, φc [degrees]."""
 
 _PULL = 100.0
-"""Of the body that the march tows [N]."""
+"""Force of the towed body [N]."""
 
 
 @cache
@@ -264,7 +264,9 @@ def _functions(critical: float, friction: float, angle: float) -> uniform.CableF
 
 @cache
 def _march(critical: float, friction: float, arc: float) -> Wake:
-    """Return a body of 100 N without drag on a cable whose normal drag is 1 N/m at 1 m/s."""
+    """Return the march of a body of 100 N without drag on a cable with a normal drag of 1 N/m at 1
+    m/s.
+    """
     weight = float(uniform.critical_weight_ratio(radians(critical)))
     rope = LinePiece(_PULL * arc, True, -weight, 1.0, friction)
     line = replace(line_of(rope, point(-_PULL, 0.0)), friction=Friction.CONSTANT)
@@ -276,7 +278,7 @@ def _name(critical: float, friction: float, angle: float) -> str:
 
 
 def _identity_missed() -> float:
-    """Return the worst |τ − 1 − p η − f σ| of the table."""
+    """Return the largest |τ − 1 − p η − f σ| of the table."""
     misses = []
     for critical, friction, angle, *_ in _TABLE:
         tau, sigma, _, eta = _functions(critical, friction, angle)
@@ -297,7 +299,7 @@ def _tension(critical: float, angle: float, tau: float) -> Case:
 
 
 def _critical_angle(ratio: float) -> float:
-    """[degrees]"""
+    """Critical angle [degrees]."""
     return degrees(float(uniform.critical_angle(ratio)))
 
 
@@ -334,8 +336,8 @@ p²/4) − p/2, is also given by E. E. Zajac (Bell System Technical Journal 36, 
             "The cable is cut to σ, printed to 5e-7; the march errs by 1e-7 of its length, some "
             "1e-6, at an angle step of 0.1°.", Kind.INDEPENDENT),
         *(_tension(critical, angle, tau) for critical, f, angle, tau, *_ in _TABLE if f == 0.0),
-        Case("C6 all rows: greatest |τ − 1 − p η − f σ|", 0.0, "", 1e-11,
-             "Exact; the quadratures are good to 1e-12.", _identity_missed, Kind.PROPERTY),
+        Case("C6 all rows: maximum |τ − 1 − p η − f σ|", 0.0, "", 1e-11,
+             "Exact; the quadratures have an error of 1e-12.", _identity_missed, Kind.PROPERTY),
         *(
             Case(f"critical angle, p {ratio:g}", expected, "°", 5.5e-5, PRINTED,
                  partial(_critical_angle, ratio), Kind.CLOSED_FORM)

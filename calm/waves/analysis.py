@@ -1,4 +1,6 @@
-"""Tensions and motions of a mooring in sea states, each settled and with its own accuracy."""
+"""Tensions and motions of a mooring in sea states, converged, with an estimate of their
+accuracy.
+"""
 
 from __future__ import annotations
 
@@ -23,28 +25,33 @@ if TYPE_CHECKING:
     from calm.solve import Solution
 
 SHALLOWEST = 0.6
-"""Significant height over the depth of the water where a sea breaks (Thornton and Guza 1983, 0.42
-as the root mean square height)."""
+"""Significant height over water depth at which a sea breaks (Thornton and Guza 1983, who give 0.42
+for the root mean square height).
+"""
 
 CONVERGED, SLACK = "converged", "slack-in-waves"
 
 SETTLED = 0.01
-"""Change of the standard deviations of tension and pitch with twice the elements or frequencies
-below which there are enough of them."""
+"""Relative change of the standard deviations of tension and pitch, for twice the elements or
+frequencies, at which the number of elements or frequencies suffices.
+"""
 
 COARSEST, FEWEST, MOST_HALVINGS = 1.0 / 50.0, 32, 4
-"""Elements as a share of the depth, frequencies, and how often both are refined."""
+"""Coarsest elements as a share of the depth, smallest number of frequencies, and largest number of
+joint refinements.
+"""
 
 SMALL = 0.05
-"""Of the greatest standard deviation: below it a change is not looked at."""
+"""Share of the largest standard deviation below which changes are ignored."""
 
 
 @dataclass(frozen=True)
 class WaveAccuracy:
-    """Hold how much the deviations of tension, and of the float's pitch, change, as shares.
+    """Relative changes of the standard deviations of tension and float pitch.
 
-    `mesh` and `frequencies`: with twice as many elements or frequencies. `linearisation`: with a
-    fifth less of the linearised drag, of which they are a measure of the share.
+    `mesh` and `frequencies` are the changes for twice the number of elements or frequencies.
+    `linearisation` is the change if the linearised drag is reduced by a fifth; it shows the
+    contribution of drag.
     """
 
     mesh: float
@@ -54,16 +61,17 @@ class WaveAccuracy:
 
 @dataclass(frozen=True)
 class WaveAnalysis:
-    """Hold what waves do to a mooring.
+    """Results for a mooring in waves.
 
     Attributes
     ----------
-    name : of the mooring
-    states : in the order given
-    accuracy : in the highest and in the shortest of them
-    fatigue : of each piece, by the shares of the seas; a single one lasts all the year
-    warnings : what rests on assumptions
-    pitch_unknown : why the pitch of the float is not computed; None where it is
+    name : name of the mooring
+    states : results for each sea state, in the given order
+    accuracy : accuracy in the highest and in the shortest sea
+    fatigue : fatigue of each piece, with the seas weighted by their shares of time; a single sea
+        lasts all year
+    warnings : warnings about assumptions
+    pitch_unknown : why the pitch of the float is not computed; None if it is computed
     """
 
     name: str
@@ -75,11 +83,11 @@ class WaveAnalysis:
 
     @property
     def status(self) -> str:
-        """Return "slack-in-waves" where a piece falls slack in a sea, else "converged"."""
+        """ "slack-in-waves" if a piece becomes slack in a sea, else "converged"."""
         return SLACK if any(state.slack for state in self.states) else CONVERGED
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON object of the result: SI units and degrees."""
+        """Return the JSON object of the results, in SI units and degrees."""
         from calm.version import __version__
 
         return {
@@ -96,7 +104,7 @@ class WaveAnalysis:
 
 @dataclass(frozen=True)
 class _Setting:
-    """Hold what is solved: the line, its float, the water, and how many frequencies of each sea."""
+    """Line, float and water of a computation, and the number of frequencies of each sea."""
 
     line: LumpedLine
     buoy: Buoy | None
@@ -109,14 +117,17 @@ class _Setting:
     def respond(
         self, sea: SeaState, first: Floats | None = None, *, once: bool = False, drag: float = 1.0
     ) -> tuple[WaveResponse, Floats]:
-        """Return the response to a sea, and the flow past its nodes; `first` of one like it."""
+        """Return the response to a sea and the flow past its nodes; `first` is the flow in a
+        similar sea.
+        """
         waves = self.waves(sea)
         return respond(self.line, self.buoy, waves, sea, drag_factor=drag, first=first, once=once)
 
     def cut_offs(self, sea: SeaState, response: WaveResponse, flow: Floats) -> CutOffs:
-        """Return responses to half and to twice the waves of a response, with its drag.
+        """Return the responses to half and to twice the cut-off frequency, with the drag of a
+        response.
 
-        The higher frequencies are as close to each other as those of the response.
+        The spacing of the additional frequencies is that of the response.
         """
         last = float(response.omega[-1])
         count = int(np.ceil(np.log(2.0) / np.log(last / float(response.omega[-2])))) + 1
@@ -125,7 +136,7 @@ class _Setting:
         return CutOffs(response, response.below(0.5 * last), response.joined(beyond))
 
     def below_a_follower(self, sea: SeaState, flow: Floats) -> float | None:
-        """Return the deviation of the tension below a float that follows every wave [N]."""
+        """Standard deviation of the tension below a float that follows every wave [N]."""
         if self.buoy is None:
             return None
         following = replace(self, buoy=replace(self.buoy, follows=True))
@@ -134,9 +145,10 @@ class _Setting:
     def deviations(
         self, seas: Sequence[SeaState], first: Sequence[Floats | None], **how: Any
     ) -> tuple[tuple[Floats, Floats], list[Floats]]:
-        """Return the deviations of tension (seas, pieces) [N], 0 on the seabed, and the flows.
+        """Return standard deviations of tension (seas, pieces) [N], 0 on the seabed, and the flows.
 
-        Beside those of tension stand those of the float's pitch (seas, 1), 0 where it is not known.
+        Next to the tensions are the standard deviations of the float's pitch (seas, 1), 0 if
+        unknown.
         """
         found = [self.respond(sea, flow, **how) for sea, flow in zip(seas, first, strict=True)]
         tensions = np.array([_by_piece(self.line, response) for response, _ in found])
@@ -151,31 +163,32 @@ def analyse(
     duration: float = 10_800.0,
     watched: Callable[[Sequence[SeaState]], Iterable[SeaState]] = iter,
 ) -> WaveAnalysis:
-    """Return the tensions and motions of a mooring in sea states.
+    """Compute tensions and motions of a mooring in sea states.
 
-    The line is lumped masses about its equilibrium in the mean current, the waves are linear and
-    long-crested, the drag is linearised to what it dissipates. Elements and frequencies are refined
-    in the highest and in the shortest sea until the deviations of tension settle to 1 %.
+    The line is represented by lumped masses about its equilibrium in the mean current. Waves are
+    linear and long-crested, and drag is linearised with equal dissipation. Elements and frequencies
+    are refined in the highest and in the shortest sea until the standard deviations of tension
+    converge to 1 %.
 
     Parameters
     ----------
-    seas : one or more
-    toward : where the waves run [degrees], clockwise from north
-    duration : for the greatest and the least tension [s]
-    watched : hands on the seas one by one, such as to show how many are done
+    seas : one or more sea states
+    toward : direction towards which the waves travel [degrees], clockwise from north
+    duration : duration for the maximum and minimum tension [s]
+    watched : wrapper that yields the seas one by one, for instance to show progress
 
     Raises
     ------
     NoEquilibrium
-        The mooring does not stand.
+        The mooring has no equilibrium.
     UsageError
-        The float at the surface has no hull, or no mass; a sea breaks in this depth.
+        The float at the surface has no hull, or no mass, or a sea breaks at this depth.
     """
     for sea in seas:
         if sea.significant_height > SHALLOWEST * leg.water.depth:
             raise UsageError(
                 f"a sea of {sea.significant_height:g} m breaks in {leg.water.depth:g} m of "
-                f"water, where it is {SHALLOWEST * leg.water.depth:.1f} m high at most"
+                f"water; the largest significant height is {SHALLOWEST * leg.water.depth:.1f} m"
             )
     solution = leg.equilibrium(leg.water)
     highest = max(seas, key=lambda sea: sea.significant_height)
@@ -192,8 +205,7 @@ def analyse(
         line, buoy = setting.line, setting.buoy
         states.append(mooring_in_sea(leg, solution, line, buoy, sea, responses, duration, follower))
     warnings = [
-        f"{label} gives no `stiffness` and is taken as inextensible: its tensions are "
-        "overestimated."
+        f"{label} has no `stiffness` and is assumed inextensible: its tensions are overestimated."
         for label in setting.line.inextensible
     ]
     fatigue = tuple(
@@ -201,14 +213,16 @@ def analyse(
     )
     missing = None
     if setting.buoy is not None and setting.buoy.profile is None:
-        missing = "it takes its `hull`, `centre_of_mass` and `radius_of_gyration`"
+        missing = "it requires `hull`, `centre_of_mass` and `radius_of_gyration`"
     elif getattr(leg.file.pieces[0].component, "centre_of_mass", None) and not setting.buoy:
-        missing = "it stands below the surface"
+        missing = "the float is below the surface"
     return WaveAnalysis(leg.file.name, tuple(states), fatigue, accuracy, tuple(warnings), missing)
 
 
 def _fatigue(piece: Piece, states: Sequence[MooringInSea]) -> PieceFatigue:
-    """Return the fatigue of a piece, with its lives by half and by twice the cut-off frequency."""
+    """Return the fatigue of a piece, with its lives for half and for twice the cut-off
+    frequency.
+    """
     found, half, twice = (
         fatigue_of(
             piece.component, piece.index, piece.label,
@@ -222,9 +236,10 @@ def _fatigue(piece: Piece, states: Sequence[MooringInSea]) -> PieceFatigue:
 def _settled(
     leg: Leg, solution: Solution, seas: Sequence[SeaState], toward: float
 ) -> tuple[_Setting, Floats, WaveAccuracy]:
-    """Return elements and frequencies that are enough for seas, and what twice as many change.
+    """Refine elements and frequencies until they suffice for the seas, and estimate the remaining
+    error.
 
-    Between them stands the flow past the nodes in the first of them.
+    The second result is the flow past the nodes in the first sea.
     """
     density = leg.water.density_at(np.array(0.0))
     water = Waves(np.zeros(0), toward, leg.water.depth, float(density), leg.water.gravity)
@@ -253,7 +268,7 @@ def _settled(
 
 
 def _carried(line: LumpedLine, finer: LumpedLine, flow: Floats) -> Floats:
-    """Return the flow past the nodes of a line at those of a finer one of the same shape."""
+    """Interpolate the flow past the nodes of a line to a finer line of the same shape."""
     along, at = (np.concatenate([[0.0], each.span.cumsum()]) for each in (line, finer))
     nodes = np.column_stack([np.interp(at, along, values) for values in flow[:-1].T])
     return np.vstack([nodes, flow[-1:]])

@@ -1,9 +1,9 @@
-"""A float at the surface in waves: what lifts it, what it weighs and what it radiates."""
+"""A float at the surface in waves: wave forces, inertia and radiation."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
+from math import factorial, pi
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -19,56 +19,62 @@ if TYPE_CHECKING:
     from calm.solve import Solution
 
 DISC_ADDED = 4.0 / 3.0
-"""Added mass of a disc at the surface over ρR³: half of that of one deep down, 8/3 (Lamb 1932)."""
+"""Added mass of a disc at the surface over ρR³: half that of a deeply submerged disc, 8/3 (Lamb
+1932).
+"""
 
 DISC_CD = 1.17
-"""Drag coefficient of a disc across the flow (Hoerner 1965, 3-15)."""
+"""Drag coefficient of a disc normal to the flow (Hoerner 1965, 3-15)."""
 
 SIDEWAYS_ADDED = 0.5
-"""Added mass in surge over the displaced water, of a short hull."""
+"""Added mass in surge over displaced mass, for a short hull."""
 
 DISC_TURNED = 8.0 / 45.0
-"""Added inertia of a disc at the surface over ρR⁵: half of that of one deep down (Lamb 1932)."""
+"""Added moment of inertia of a disc at the surface over ρR⁵: half that of a deeply submerged disc
+(Lamb 1932).
+"""
 
 END_LOSS = 0.42
-"""How far above its keel water flows round a hull that moves sideways, over its radius: the share
-1 - e^(-h/0.42R) of a section's water is added to it. So cylinders of a draft of 0.6 to 10 radii
-have the added mass that panels give (Capytaine 3), within 4 %."""
+"""Length over the radius in which flow round the keel reduces the added mass of a hull in surge:
+the sectional added mass is multiplied by 1 - e^(-h/0.42R) at height h above the keel. With this
+factor, cylinders with a draft of 0.6 to 10 radii have the added mass of a panel method (Capytaine
+3) within 4 %.
+"""
 
 SECTIONS = 46
-"""Of a hull, from its keel up."""
+"""Number of sections of a hull, from its keel up."""
 
 PANELS_ROUND = 28
-"""Panels round a hull; up its side they reach from every fifth section to the next."""
+"""Number of panels round a hull, which extend along its side over five sections each."""
 
 PANEL_FREQUENCIES = (0.1, *(0.5 + 0.25 * each for each in range(15)), 5.0, 7.0, 10.0)
-"""Between which what panels give is interpolated [rad/s]."""
+"""Frequencies of the panel method, between which its results are interpolated [rad/s]."""
 
-FOLLOWING = 1e10
-"""Stiffness that holds a float to a given motion [N/m]."""
+PRESCRIBED_STIFFNESS = 1e10
+"""Stiffness that forces a prescribed motion of a float [N/m]."""
 
 
 @dataclass(frozen=True)
 class Buoy:
-    """Hold a hull afloat.
+    """A hull at the surface.
 
     Attributes
     ----------
-    mass : of the float and what stands on it [kg]
-    displaced : water it displaces [kg]
-    radius : of its waterplane [m]
-    draft : [m]
-    drag, heave_drag : K of its drag in the current, and as it heaves [N/(m/s)²]
-    rao : angular frequency [rad/s], and of the heave over the elevation amplitude [-] and phase
-        [degrees]; where it is given, of the pitch amplitude [degrees/m] and phase [degrees]
-    follows : whether it heaves, and pitches, as the water does
-    panels : (12, f) of a panel method: frequency [rad/s]; added mass and radiation of heave, surge,
-        surge with pitch and pitch about the surface; what pushes per metre of elevation as it
-        heaves, and over ω², with which it grows, as it surges and pitches; None by the formulas
+    mass : mass of the float and of the pieces on it [kg]
+    displaced : displaced mass of water [kg]
+    radius : radius of its waterplane [m]
+    draft : draft [m]
+    drag, heave_drag : K of its drag in the current, and in heave [N/(m/s)²]
+    rao : angular frequency [rad/s], amplitude [-] and phase of heave over elevation
+        [degrees]; optionally amplitude [degrees/m] and phase [degrees] of pitch
+    follows : whether its heave and pitch follow the water
+    panels : (12, f) results of a panel method: frequency [rad/s]; added mass and radiation of
+        heave, surge, surge with pitch, and pitch about the surface; exciting force per metre of
+        elevation in heave, and, divided by ω², in surge and pitch; None uses the formulas
     profile : (s, 2) radius and height above the surface of its sections [m], the keel first; None
-        where its pitch is not known
-    centre, bail : heights above the surface of the centre of mass, of the float and all it carries,
-        and of where the line pulls [m]
+        if its pitch is not computed
+    centre, bail : heights above the surface of the centre of mass of the float with all pieces on
+        it and of the attachment point of the line [m]
     gyration : radius of gyration about a horizontal axis through the centre of mass [m]
     """
 
@@ -98,23 +104,26 @@ class Buoy:
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return what resists heave, per metre of it, and what lifts, per metre of elevation [N/m].
+        """Return the dynamic stiffness in heave, and the exciting force per metre of elevation
+        [N/m].
 
         Froude-Krylov force of a disc at its draft, ρgA e^(-kT) 2 J1(kR)/(kR); added mass
-        `DISC_ADDED`, of the water as it moves there; radiation by Haskind's relation,
-        k ω |X|² / (2 ρ g²) in deep water (Newman 1977, 6.18).
+        `DISC_ADDED`, excited by the acceleration of the water at this draft; radiation by Haskind's
+        relation, k ω |X|² / (2 ρ g²) in deep water (Newman 1977, 6.18).
 
         Parameters
         ----------
         omega, number : (f,) angular frequencies [rad/s] and wave numbers [1/m]
-        density, gravity : of the water [kg/m³], [m/s²]
+        density, gravity : density of the water and gravity [kg/m³], [m/s²]
         """
-        from scipy.special import j1
-
         if self.follows:
-            return np.full(omega.shape, FOLLOWING + 0j), np.full(omega.shape, FOLLOWING + 0j)
+            return np.full(omega.shape, PRESCRIBED_STIFFNESS + 0j), np.full(
+                omega.shape, PRESCRIBED_STIFFNESS + 0j
+            )
         if self.rao:
-            return np.full(omega.shape, FOLLOWING + 0j), FOLLOWING * self._given(omega, 1)
+            return np.full(
+                omega.shape, PRESCRIBED_STIFFNESS + 0j
+            ), PRESCRIBED_STIFFNESS * self._given(omega, 1)
         spring = density * gravity * pi * self.radius**2
         if self.panels is not None:
             rows = [np.interp(omega, self.panels[0].real, one) for one in self.panels]
@@ -122,7 +131,7 @@ class Buoy:
             return spring - omega**2 * inertia + 1j * omega * rows[2].real, rows[9]
         added = DISC_ADDED * density * self.radius**3
         across = number * self.radius
-        smith = np.exp(-number * self.draft) * 2.0 * j1(across) / np.maximum(across, 1e-12)
+        smith = np.exp(-number * self.draft) * 2.0 * bessel(1, across) / np.maximum(across, 1e-12)
         lifting = (spring - omega**2 * added) * smith
         radiated = number * omega * lifting**2 / (2.0 * density * gravity**2)
         resisting = spring - omega**2 * (self.mass + added) + 1j * omega * radiated
@@ -131,14 +140,16 @@ class Buoy:
     def pitch(
         self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return what resists surge and pitch and what pushes, per metre of them and of elevation.
+        """Return the dynamic stiffness in surge and pitch, and the exciting forces per metre of
+        elevation.
 
-        About the point of the axis in the surface, a pitch that moves forward what is above it
-        being positive: (3, f) in surge [N/m], surge with pitch [N] and pitch [N m], and (2, f).
+        Both refer to the point of the axis at the surface; pitch is positive if it moves the part
+        above forward. Stiffness (3, f): surge [N/m], surge with pitch [N] and pitch [N m]; forces
+        (2, f).
 
         Parameters
         ----------
-        profile : as above
+        profile : as in `Buoy`
         omega, number, density, gravity : as in `heave`
         """
         if self.panels is None:
@@ -153,21 +164,23 @@ class Buoy:
         held[2] += self.righting(profile, density, gravity)
         if self.follows or (self.rao and len(self.rao[0]) > 3):
             given = 1j * number if self.follows else self._given(omega, 3) * pi / 180.0
-            held[2] += FOLLOWING
-            pushing[1] += FOLLOWING * given
+            held[2] += PRESCRIBED_STIFFNESS
+            pushing[1] += PRESCRIBED_STIFFNESS * given
         return held, pushing
 
     def _given(self, omega: Floats, column: int) -> Complexes:
-        """Return the response of `rao` with its amplitude in a column, its phase in the next."""
+        """Interpolate the response in `rao`, with the amplitude in a column and the phase in the
+        next.
+        """
         at, amplitude, phase = np.array(self.rao).T[[0, column, column + 1]]
         turned = np.interp(omega, at, np.unwrap(np.radians(phase)))
         return np.asarray(np.interp(omega, at, amplitude) * np.exp(1j * turned))
 
     def righting(self, profile: Floats, density: float, gravity: float) -> float:
-        """Return the moment that rights the float, per radian of pitch [N m].
+        """Return the righting moment of the float per radian of pitch [N m].
 
-        That of waterplane, centre of buoyancy and weight, which of a free float is its weight times
-        the metacentric height, and of the line, which pulls down at the bail.
+        Sum of the moments of waterplane, centre of buoyancy and weight (for a free float, its
+        weight times the metacentric height) and of the line, which pulls down at the bail.
         """
         radius, height = profile.T
         buoyancy = float(np.trapezoid(radius**2 * height) / np.trapezoid(radius**2))
@@ -179,14 +192,13 @@ class Buoy:
     def _of_sections(
         self, profile: Floats, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Floats, Floats, Complexes]:
-        """Return added mass (3, f), radiation (3, f) and what pushes (2, f), as `pitch` has them.
+        """Return added mass (3, f), radiation (3, f) and exciting forces (2, f), as in `pitch`.
 
-        The pressure of the waves on the hull itself; added mass of its sections by `END_LOSS`, of
-        its bottom by `DISC_TURNED`, and both pushed by the water as it moves there; radiation by
-        Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water (Newman 1977, 6.18).
+        Exciting forces include the wave pressure on the hull, the added mass of its sections from
+        `END_LOSS` and that of its bottom from `DISC_TURNED`, with the local acceleration of the
+        water. Radiation follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water (Newman
+        1977, 6.18).
         """
-        from scipy.special import j1, jv
-
         radius, height = profile.T
         area = pi * radius**2
         area *= self.displaced / (density * np.trapezoid(area, height))
@@ -198,8 +210,8 @@ class Buoy:
 
         k = number[:, None]
         across = np.maximum(k * radius, 1e-9)
-        smith = np.exp(k * height) * 2.0 * j1(across) / across
-        lean = 8.0 * jv(2, across) / across**2
+        smith = np.exp(k * height) * 2.0 * bessel(1, across) / across
+        lean = 8.0 * bessel(2, across) / across**2
         surging = (1.0 + share) * area * smith
         lifted = 0.25 * k * area * radius**2 * np.exp(k * height) * lean
         turning = np.trapezoid(surging * height - lifted, height)
@@ -219,17 +231,38 @@ class Buoy:
         return added, radiated, pushing
 
 
+def bessel(order: int, x: Floats) -> Floats:
+    """Bessel function of the first kind, of an integer order from 0 on.
+
+    Its power series below 4 (Abramowitz and Stegun 9.1.10), which keeps its relative accuracy at
+    small x. Above, the mean of cos(nθ − x sin θ) over a circle (9.1.21), in equal steps: exact to
+    rounding once there are well over |x| + n of them.
+    """
+    small = np.minimum(np.abs(x), 4.0) * np.sign(x)
+    term = (0.5 * small) ** order / factorial(order)
+    series = term.copy()
+    for k in range(1, 24):
+        term = term * (-0.25 * small**2 / (k * (order + k)))
+        series += term
+    far = np.abs(x) >= 4.0
+    if far.any():
+        steps = 64 + 2 * int(np.abs(x).max())
+        around = 2.0 * pi / steps * np.arange(steps)
+        series[far] = np.cos(order * around - x[far, None] * np.sin(around)).mean(-1)
+    return np.asarray(series)
+
+
 def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
-    """Return the float at the surface; None of a line below it.
+    """Return the float at the surface, or None for a line below the surface.
 
     Parameters
     ----------
-    follows : heaves with the water, whatever its hull
+    follows : whether its heave follows the water, for any hull
 
     Raises
     ------
     UsageError
-        Its hull is not known.
+        Its hull is unknown, or it would capsize.
     """
     if not solution.afloat:
         return None
@@ -238,7 +271,7 @@ def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
     above = leg.file.pieces[: index + 1]
     riding, component = solution.riding, piece.component
     if not isinstance(component, Rigid):
-        raise UsageError(f"{piece.label}, a {component.kind}, floats at the surface, and no float")
+        raise UsageError(f"{piece.label} at the surface is a {component.kind}, not a float")
     given = component.rao or ()
     follows = follows or component.heave == "follows"
     draft = 0.0 if riding is None or np.isnan(riding.draft) else riding.draft
@@ -247,12 +280,12 @@ def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
     known = radius > 0.0 if component.heave != "panels" else profile is not None
     if not (known or follows or (given and component.heave != "panels")):
         raise UsageError(
-            f"{piece.label} has no hull, which decides how it heaves: give its `hull`, or "
+            f"{piece.label} has no hull, which is needed for its heave: set its `hull`, or "
             "`heave: follows`"
         )
     masses = [each.component.mass for each in above]
     if any(mass is None for mass in masses):
-        raise UsageError(f"{piece.label} gives no `mass`, which decides how it heaves")
+        raise UsageError(f"{piece.label} has no `mass`, which is needed for its heave")
     density = leg.water.density_at(np.array(0.0))
     panels = None
     if component.heave == "panels" and profile is not None and not follows:
@@ -282,14 +315,16 @@ def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
         if righted <= 0.0:
             raise UsageError(
                 f"{piece.label} does not float upright: its `centre_of_mass` is {centre:g} m above "
-                f"the keel, its draft {draft:.2f} m; {-righted:.0f} N m per radian turn it over"
+                f"the keel, its draft {draft:.2f} m; a moment of {-righted:.0f} N m per radian "
+                "capsizes it"
             )
     return buoy
 
 
 def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
-    """Return the radius of a hull's waterplane [m], and (s, 2) radius and height above the surface
-    of its sections [m], the keel first; 0 and None where they are not known."""
+    """Radius of a hull's waterplane [m], and radius and height above the surface of its sections
+    (s, 2) [m] from the keel up; 0 and None if they are unknown.
+    """
     if hull is None or draft <= 0.0:
         return (0.5 * hull.area / hull.height if hull and hull.form == SPAR else 0.0), None
     up = np.linspace(0.0, draft, SECTIONS)
@@ -307,12 +342,13 @@ def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
 
 
 def panel_response(profile: Floats, density: float, gravity: float) -> Complexes:
-    """Return what panels give of a round hull in deep water, as `Buoy.panels`; by Capytaine.
+    """Return added mass, radiation and exciting forces of an axisymmetric hull in deep water, as in
+    `Buoy.panels`, computed by Capytaine.
 
     Parameters
     ----------
-    profile : (n, 2) radius and height over the surface, the keel first [m]
-    density, gravity : of the water [kg/m³], [m/s²]
+    profile : (n, 2) radius and height above the surface, from the keel up [m]
+    density, gravity : density of the water and gravity [kg/m³], [m/s²]
 
     Raises
     ------
@@ -326,7 +362,7 @@ def panel_response(profile: Floats, density: float, gravity: float) -> Complexes
         from_profile = capytaine.RotationSymmetricMesh.from_profile_points
     except (ImportError, AttributeError):
         raise UsageError(
-            "`heave: panels` needs Capytaine 3: pip install capytaine; or leave `heave` out"
+            "`heave: panels` requires Capytaine 3: pip install capytaine; or remove `heave`"
         ) from None
     capytaine.set_logging("ERROR")
     keel, bottom = profile[0]

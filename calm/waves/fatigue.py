@@ -1,4 +1,4 @@
-"""Extremes of a Gaussian tension, and the fatigue it does: cycles by Dirlik, damage by Miner."""
+"""Extremes and fatigue of a Gaussian tension: cycles by Dirlik, damage by Miner."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,15 +13,16 @@ from calm.physics.materials import fibre_of, materials_in
 
 
 def greatest_of(deviation: float, period: float, duration: float) -> float:
-    """Return the most probable greatest departure of a Gaussian process from its mean.
+    """Most probable maximum of a Gaussian process, as distance from the mean.
 
-    σ √(2 ln N) of N = duration / zero-crossing period (Longuet-Higgins 1952); 0 where it is still.
+    σ √(2 ln N) with N = duration / zero-crossing period (Longuet-Higgins 1952); 0 for a constant
+    process.
 
     Parameters
     ----------
     deviation : standard deviation σ, in the unit of the result
-    period : between upward crossings of the mean [s]
-    duration : [s]
+    period : time between upward crossings of the mean [s]
+    duration : duration [s]
     """
     if not deviation > 0.0 or isnan(period):
         return 0.0
@@ -29,14 +30,15 @@ def greatest_of(deviation: float, period: float, duration: float) -> float:
 
 
 def passing_probability(margin: float, deviation: float, period: float, duration: float) -> float:
-    """Return how probable it is that a Gaussian process passes a margin from its mean in a time.
+    """Probability that a Gaussian process deviates by more than a margin from its mean in a
+    duration.
 
-    1 - exp(-N exp(-½ (margin/σ)²)), N as in `greatest_of` (Rice 1945).
+    1 - exp(-N exp(-½ (margin/σ)²)), with N as in `greatest_of` (Rice 1945).
 
     Parameters
     ----------
-    margin, deviation : from the mean, and the standard deviation, in one unit
-    period, duration : [s]
+    margin, deviation : margin from the mean, and standard deviation, in the same unit
+    period, duration : as in `greatest_of` [s]
     """
     if deviation <= 0.0:
         return 0.0 if margin > 0.0 else 1.0
@@ -46,24 +48,25 @@ def passing_probability(margin: float, deviation: float, period: float, duration
 
 
 YEAR = 365.25 * 86_400.0
-"""[s]"""
+"""Length of a year [s]."""
 
 BAND = 0.15
-"""Change of the deviations of tension for `life_low` and `life_high`, as a share; the band of
-tensions measured at sea is wider (`calm.waves.measured`)."""
+"""Relative change of the standard deviations of tension for `life_low` and `life_high`; the band of
+tensions measured at sea is wider (`calm.waves.measured`).
+"""
 
 
 @dataclass(frozen=True)
 class FatigueCurve:
-    """Represent how many cycles of a tension range a piece bears: N = K R^-slope.
+    """Number of cycles of a tension range to failure: N = K R^-slope.
 
     Attributes
     ----------
     slope : m of the curve
     logarithm : log10 of K
-    by_mean : log10 of K falls by this times the mean tension over the breaking load
-    range : whether R is the stress in the steel [MPa], or a share of the breaking load
-    source : who prints it
+    by_mean : decrease of log10 K per mean tension over breaking load
+    range : meaning of R: stress in the steel [MPa], or share of the breaking load
+    source : publication
     """
 
     slope: float
@@ -91,20 +94,22 @@ CURVES = {
     "sots-link": FatigueCurve(3.8, 3.8 * log(3.4, 10), 0.0, "share", _SOTS),
     "sots-wire": FatigueCurve(4.6, 4.6 * log(4.8, 10), 0.0, "share", _SOTS),
 }
-"""Published curves by name; those of DNV and API two standard deviations below the mean of the
-tests, their constants as secondary texts print them: the standards themselves were not read. Those
-of `_SOTS` are printed as amplitudes that break at the first cycle: 1.5, 2.25, 1.7 and 2.4 times the
-breaking load, half the range here; how far below the mean they are is not said.
+"""Published curves by name.
+
+The curves of DNV and API are two standard deviations below the mean of the tests; their constants
+are from secondary texts, since the standards themselves were not available. The curves of `_SOTS`
+are published as amplitudes that break at the first cycle: 1.5, 2.25, 1.7 and 2.4 times the breaking
+load, half the range used here; their distance from the mean is not stated.
 """
 
 
 @dataclass(frozen=True)
 class PieceFatigue:
-    """Hold what fatigue does to a piece; without a curve, or a figure it needs, None.
+    """Fatigue of a piece; values are None without a curve or if a required parameter is unknown.
 
-    `life` is in years to a damage of 1; `life_low` and `life_high` with deviations of tension
-    greater and less by `BAND`; `life_half_cut_off` and `life_twice_cut_off` with half and with
-    twice the cut-off frequency of the waves. `unknown` says what is missing.
+    `life` is in years to a damage of 1. `life_low` and `life_high` are for standard deviations of
+    tension larger and smaller by `BAND`, `life_half_cut_off` and `life_twice_cut_off` for half and
+    twice the cut-off frequency of the waves. `unknown` names the missing parameter.
     """
 
     index: int
@@ -121,22 +126,22 @@ class PieceFatigue:
 
 
 def moments_of(omega: Floats, spectral: Floats) -> Floats:
-    """Return the moments m0, m1, m2 and m4 of variances (f, …) at frequencies (f,) [rad/s]."""
+    """Moments m0, m1, m2 and m4 of variances (f, …) at frequencies (f,) [rad/s]."""
     shape = (-1,) + (1,) * (spectral.ndim - 1)
     powers = [(spectral * omega.reshape(shape) ** power).sum(0) for power in (0, 1, 2, 4)]
     return np.array(powers)
 
 
 def dirlik(moments: Sequence[float], slope: float) -> float:
-    """Return the sum of ranges to a power, per second, that rainflow counts in a Gaussian process.
+    """Rate of rainflow ranges of a Gaussian process, raised to a power and summed, per second.
 
-    Dirlik 1985, Application of computers in fatigue analysis (University of Warwick): ranges are
-    an exponential and two Rayleigh distributions, fitted to simulations.
+    Dirlik 1985, Application of computers in fatigue analysis (University of Warwick): the ranges
+    have one exponential and two Rayleigh distributions, fitted to simulations.
 
     Parameters
     ----------
-    moments : m0, m1, m2, m4 by angular frequency
-    slope : the power
+    moments : m0, m1, m2, m4 for angular frequencies
+    slope : exponent
     """
     zeroth, first, second, fourth = moments
     if not zeroth > 0.0:
@@ -158,9 +163,9 @@ def dirlik(moments: Sequence[float], slope: float) -> float:
 
 
 def narrow_band(moments: Sequence[float], slope: float) -> float:
-    """Return the same of a narrow band, whose ranges are Rayleigh's: ν0 (2 √(2 m0))^m Γ(1 + m/2).
+    """As `dirlik`, for a narrow-band process with Rayleigh ranges: ν0 (2 √(2 m0))^m Γ(1 + m/2).
 
-    It is not passed by a process of the same moments m0 and m2 (Rychlik 1993).
+    It is an upper bound for processes with the same moments m0 and m2 (Rychlik 1993).
     """
     zeroth, _, second, _ = moments
     if not zeroth > 0.0:
@@ -171,7 +176,7 @@ def narrow_band(moments: Sequence[float], slope: float) -> float:
 
 
 def curve_of(component: Component) -> str | None:
-    """Return the name of the curve of a component: its own, or by what it is; None unknown."""
+    """Name of a component's curve: its own, or by its type and material; None if unknown."""
     if component.fatigue is not None and component.fatigue.curve is not None:
         return component.fatigue.curve
     if isinstance(component, Chain):
@@ -187,13 +192,13 @@ def curve_of(component: Component) -> str | None:
 def fatigue_of(
     component: Component, index: int, label: str, seas: Sequence[tuple[float, float, Floats]]
 ) -> PieceFatigue:
-    """Return the damage of a year, the seas' shares added up as Miner does.
+    """Damage per year of a piece, summed over the seas by Miner's rule.
 
     Parameters
     ----------
-    component, index, label : of the piece; corrosion is off its diameter, and by its square off its
-        strength
-    seas : share of the time, mean tension [N] and the moments of the tension of each
+    component, index, label : component, index and label of the piece; corrosion reduces its
+        diameter, and quadratically its strength
+    seas : share of time, mean tension [N] and moments of the tension in each sea
     """
     name, strength = curve_of(component), component.breaking_load
     size = getattr(component, "diameter", None)
@@ -203,19 +208,19 @@ def fatigue_of(
     curve = None if name is None else CURVES[name]
     unknown = None
     if curve is None:
-        unknown = "no curve is published for it: give its `fatigue`"
+        unknown = "no published curve applies: set its `fatigue`"
     elif curve.range == "share" and strength is None:
-        unknown = "its breaking load is not known"
+        unknown = "its breaking load is unknown"
     elif curve.range == "stress" and bar is None:
-        unknown = "the stress in it is not known: it is not a chain"
+        unknown = "its stress is unknown, since it is not a chain"
     elif lost and not size:
-        unknown = "its diameter, which corrosion reduces, is not known"
+        unknown = "its diameter, which corrosion reduces, is unknown"
     elif not left > 0.0:
         unknown = "corrosion leaves nothing of its diameter"
     source = None if curve is None else curve.source
     if unknown is not None or curve is None:
         return PieceFatigue(index, label, None, None, None, None, name, source, unknown)
-    # a stress is that in both bars of a link, in mm²
+    # a stress refers to both bars of a link, in mm²
     by_load = curve.range == "share"
     unit = (
         (strength or 0.0) * left**2 if by_load else 2.0 * pi / 4.0 * (1e3 * (bar or 0.0)) ** 2

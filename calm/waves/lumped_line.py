@@ -1,4 +1,4 @@
-"""The standing line as lumped masses between springs, for small motions about its equilibrium."""
+"""A line in equilibrium as lumped masses and springs, for small motions about the equilibrium."""
 
 from __future__ import annotations
 
@@ -21,43 +21,47 @@ if TYPE_CHECKING:
 Complexes = NDArray[np.complex128]
 
 SHORTEST = 0.05
-"""Elements below it are no springs of their own: what they weigh hangs at the node [m]."""
+"""Length below which elements are not springs; their mass is lumped at the node [m]."""
 
 RIGID = 1e9
-"""Stiffness EA of what does not stretch [N]."""
+"""Stiffness EA of inextensible elements [N]."""
 
 CHAIN_STIFFNESS = 0.854e11
-"""EA of studless chain over the square of its bar [N/m²]; catenary tables of OrcaFlex."""
+"""EA of studless chain over the squared bar diameter [N/m²], from the catenary tables of
+OrcaFlex.
+"""
 
 CYLINDER_ADDED, SPHERE_ADDED, BODY_ADDED = 1.0, 0.5, 1.0
-"""Added mass over displaced water: across a cylinder, of a sphere, of a body of any shape
-(DNV-RP-C205, appendix D)."""
+"""Added mass over displaced mass: normal to a cylinder, for a sphere, and for other bodies
+(DNV-RP-C205, appendix D).
+"""
 
 
 @dataclass(frozen=True)
 class LumpedLine:
-    """Hold n nodes from the free end down, and n - 1 springs between them; the last node is fixed.
+    """Lumped line: n nodes from the free end down, and n - 1 springs; the last node is fixed.
 
     Attributes
     ----------
     position : (n, 3) east, north and up from the surface [m]
-    mass : (n,) [kg]
-    added_across, added_along : (n,) added mass across and along the line [kg]
-    water_across, water_along : (n,) displaced water that the pressure of waves pushes [kg]
-    across_drag, along_drag, any_drag : (n,) K of K|v|v, by the part of the flow across and along
-        the line, and whatever the direction [N/(m/s)²]
+    mass : (n,) mass [kg]
+    added_across, added_along : (n,) added mass normal and tangential to the line [kg]
+    water_across, water_along : (n,) displaced mass on which the wave pressure acts [kg]
+    across_drag, along_drag, any_drag : (n,) K of K|v|v, for the flow normal and tangential to
+        the line, and independent of direction [N/(m/s)²]
     tangent : (n, 3) unit vectors down the line
-    tension : (n-1,) in equilibrium [N]
-    stiffness : (n-1,) dT/d(length) [N/m]
+    tension : (n-1,) tension in equilibrium [N]
+    stiffness : (n-1,) spring stiffness dT/d(length) [N/m]
     spring : (n-1, 3) unit vectors down the springs
-    span : (n-1,) their stretched lengths [m]
-    current : (n, 3) [m/s]
-    piece_spring : (pieces,) the spring below the upper end of each piece, of those at the top below
-        their lower end; -1 where there is none
-    piece_below : (pieces,) the next one of the same piece; where there is none the same one
-    piece_node : (pieces,) the node at the upper end of each piece; -1 on the seabed
-    top_pieces : how many pieces are the float at the top and what it carries above the surface
-    inextensible : labels of cables whose stiffness is not known
+    span : (n-1,) stretched lengths of the springs [m]
+    current : (n, 3) current [m/s]
+    piece_spring : (pieces,) index of the spring below the upper end of each piece, for pieces of
+        the top float below their lower end; -1 without a spring
+    piece_below : (pieces,) next spring of the same piece, or the same spring if there is no other
+    piece_node : (pieces,) node at the upper end of each piece; -1 on the seabed
+    top_pieces : number of pieces of the top float, including the pieces that it carries above the
+        surface
+    inextensible : labels of cables with unknown stiffness
     """
 
     position: Floats
@@ -82,14 +86,16 @@ class LumpedLine:
     inextensible: tuple[str, ...]
 
     def turned(self, motion: Complexes) -> Complexes:
-        """Return the turn (f, n-1, 3) of the springs, across them, by a motion (f, n, 3) [rad]."""
+        """Rotation (f, n-1, 3) of the springs, normal to their axes, for a motion (f, n, 3)
+        [rad].
+        """
         turn = np.diff(motion, axis=1) / self.span[:, None]
         return np.asarray(turn - (turn * self.spring).sum(2, keepdims=True) * self.spring)
 
     def upper_ends(self, middle: Complexes) -> Complexes:
-        """Return what of figures (f, n-1, …) in the middle of springs is at upper ends of pieces.
+        """Extrapolate values (f, n-1, …) at the midpoints of springs to the upper ends of pieces.
 
-        It goes on above the middle of the first spring as it does below it.
+        Above the midpoint of the first spring of a piece, the values continue linearly.
         """
         first, next_one = self.piece_spring, self.piece_below
         share = self.span[first] / (self.span[first] + self.span[next_one])
@@ -99,15 +105,15 @@ class LumpedLine:
 
 
 def lumped_line(leg: Leg, solution: Solution, longest: float) -> LumpedLine:
-    """Return the line of a solution as lumped masses.
+    """Convert the line of a solution to lumped masses.
 
-    Half the mass and the drag of an element is lumped at each of its ends. What lies on the seabed
-    does not move.
+    Half the mass and the drag of an element is lumped at each of its ends. Parts on the seabed do
+    not move.
 
     Parameters
     ----------
-    leg : that was solved
-    longest : length of an element [m]
+    leg : leg that was solved
+    longest : largest length of an element [m]
     """
     pieces = leg.file.pieces
     carried = solution.carried
@@ -201,7 +207,7 @@ _NODE_FIGURES = (
 def _element_figures(
     component: Component, carried: Line, piece: int, cut: float
 ) -> dict[str, float]:
-    """Return masses and drag of an element: a rigid piece, or this length [m] of a flexible one."""
+    """Masses and drag of an element: a rigid piece, or a length [m] of a flexible piece."""
     flexible = isinstance(component, Flexible)
     share, length = (cut, 1.0) if flexible else (1.0, _length_of(component))
     across, along = float(carried.normal_drag[piece]), float(carried.tangential_drag[piece])
@@ -217,9 +223,9 @@ def _length_of(component: Component) -> float:
 
 
 def _figures_of(component: Component, length: float) -> dict[str, float]:
-    """Return masses of a component, per metre where it is flexible [kg, kg/m].
+    """Masses of a component, per metre for a flexible one [kg, kg/m].
 
-    Without a mass it is taken from its net force and the water that its size displaces.
+    An unknown mass follows from the net buoyancy and the displacement for its size.
     """
     water = REFERENCE_DENSITY * _volume(component, length)
     mass = mass_in_air(component)
@@ -239,7 +245,7 @@ def _figures_of(component: Component, length: float) -> dict[str, float]:
 
 
 def _volume(component: Component, length: float) -> float:
-    """Return the volume displaced, by the outer size where it is not given [m³, m³/m]."""
+    """Displaced volume, estimated from the outer size if it is not specified [m³, m³/m]."""
     diameter = float(getattr(component, "diameter", 0.0) or 0.0)
     if isinstance(component, Cable):
         return pi * diameter**2 / 4.0
@@ -256,7 +262,7 @@ def _volume(component: Component, length: float) -> float:
 
 
 def _axial(component: Component, tension: float) -> float:
-    """Return the tangent stiffness EA at a tension [N]."""
+    """Tangent stiffness EA at a tension [N]."""
     if isinstance(component, Chain):
         return component.stiffness or CHAIN_STIFFNESS * component.diameter**2
     if isinstance(component, Cable):

@@ -3,9 +3,9 @@
 The Southern Ocean Flux Station (SOFS, 47° S, 4600 m of water, disc buoys of 2.7 m on inverse
 catenaries) had a load cell below its buoy. Five of its lines are described well enough to be
 computed: SOFS-1 and SOFS-3 to SOFS-6. Standard deviations of the tension are compared by bins of
-significant height, 1.5 to 9.5 m. The peak periods are those that the load cases of the station pair
-with these heights. Nothing is fitted. The comparison is in `tests/validation/test_sofs.py`; source
-of the measurements: petejan/sots-cable-model.
+significant height, 1.5 to 9.5 m. The peak periods are from the load cases of the station for these
+heights. No parameter was fitted. The comparison is in `tests/validation/test_sofs.py`; source of
+the measurements: petejan/sots-cable-model.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 HIGHEST_LOW_SEA = 5.0
-"""Significant height up to which a sea is low here [m]: between two bins."""
+"""Significant height up to which a sea is low in this comparison [m], between two bins."""
 
 COMPARED = 1.0, 10.0
-"""Significant heights between which tensions were compared [m]."""
+"""Range of significant heights in which tensions were compared [m]."""
 
 
 @dataclass(frozen=True)
@@ -38,22 +38,23 @@ _BY_HEAVE = {
     "panels": ((0.54, 0.9), (0.7, 1.05)),
     "follows": ((0.44, 0.7), (0.6, 0.9)),
 }
-"""Bands in low and in high seas for each way to compute the heave. They hold the ratios of computed
-to measured that were found: `filtered` 1.04 to 1.71 in low and 0.93 to 1.34 in high seas, `panels`
-1.13 to 1.81 and 0.96 to 1.40, `follows` 1.44 to 2.24 and 1.12 to 1.66."""
+"""Bands in low and in high seas for each method to compute the heave. They contain the ratios of
+computed to measured tension that were found: `filtered` 1.04 to 1.71 in low and 0.93 to 1.34 in
+high seas, `panels` 1.13 to 1.81 and 0.96 to 1.40, `follows` 1.44 to 2.24 and 1.12 to 1.66.
+"""
 
 
 def measured_band(
     significant_height: float, heave: Literal["filtered", "panels", "follows"]
 ) -> MeasuredBand:
-    """Return the band of a sea for the line below a float at the surface.
+    """Return the band of measured tensions for a sea, for the line below a float at the surface.
 
-    Seas outside the heights compared get the band of the nearest height.
+    Seas outside the range of the comparison get the band of the nearest height.
 
     Parameters
     ----------
-    significant_height : [m]
-    heave : how the heave of the float is computed
+    significant_height : significant wave height [m]
+    heave : method that computes the heave of the float
     """
     low, high = _BY_HEAVE[heave]
     if significant_height <= HIGHEST_LOW_SEA:

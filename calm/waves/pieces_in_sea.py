@@ -1,4 +1,6 @@
-"""Tensions and motions of a mooring in one sea, with other cut-offs and the measured band."""
+"""Tensions and motions of a mooring in one sea, also for other cut-offs and for the measured
+band.
+"""
 
 from __future__ import annotations
 
@@ -26,8 +28,8 @@ class PieceLoads:
     """Tensions of a piece in a sea [N].
 
     `tension_max` and `tension_min` are the most probable extremes of the duration at the upper end,
-    `greatest` and `least` those anywhere along the piece. `slack_probability` is the probability
-    that the upper end falls slack in the duration.
+    `greatest` and `least` the extremes over the whole piece. `slack_probability` is the probability
+    that the upper end becomes slack in the duration.
     """
 
     tension_std: float
@@ -69,11 +71,12 @@ class PieceInWaves:
 
 PieceMoments = tuple[tuple[float, Floats], ...]
 """Mean tension [N] and spectral moments m0, m1, m2, m4 of each piece, at the spring with the
-greatest deviation."""
+largest standard deviation.
+"""
 
 
 class CutOffs(NamedTuple):
-    """Responses to a sea up to its cut-off frequency, to half and to twice that frequency."""
+    """Responses to a sea up to its cut-off frequency, and up to half and twice that frequency."""
 
     full: WaveResponse
     half: WaveResponse
@@ -82,19 +85,19 @@ class CutOffs(NamedTuple):
 
 @dataclass(frozen=True)
 class MooringInSea:
-    """A mooring in a sea: its pieces down the line, and the labels of those that fall slack.
+    """A mooring in a sea: its pieces down the line, and the labels of pieces that become slack.
 
     Attributes
     ----------
-    cut_off : frequency above which there are no waves [rad/s]
-    band : measured over computed standard deviations of tension; None for a line below the surface
-        and for a float whose response is given
+    cut_off : cut-off frequency of the waves [rad/s]
+    band : band of measured over computed standard deviations of tension; None for a line below the
+        surface and for a float with a prescribed response
     follower_std : standard deviation of the tension below a float that follows every wave [N], only
         in the highest of several seas; None for a line below the surface
-    pitch_std : standard deviation of the pitch of the float [degrees]; None if it is not known
-    moments : of the pieces, with the cut-off frequency, with half and with twice of it
-    spectrum : of the tension at the top, N² s/rad at rad/s
-    along : depth [m], mean, standard deviation and greatest tension down the line [N]
+    pitch_std : standard deviation of the pitch of the float [degrees]; None if unknown
+    moments : moments of the pieces, for the cut-off frequency, half and twice of it
+    spectrum : spectrum of the tension at the top, N² s/rad at rad/s
+    along : depth [m], mean, standard deviation and maximum tension down the line [N]
     """
 
     sea: SeaState
@@ -109,7 +112,7 @@ class MooringInSea:
     along: tuple[Floats, Floats, Floats, Floats]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON object of the sea: SI units and degrees."""
+        """Return the JSON object of the sea, in SI units and degrees."""
         return {
             "significant_wave_height": self.sea.significant_height,
             "peak_period": self.sea.peak_period,
@@ -124,7 +127,7 @@ class MooringInSea:
 
 
 class _Tensions:
-    """Statistics of the tension in a line: along its springs, and at the upper ends of pieces."""
+    """Statistics of the tension in a line: in its springs, and at the upper ends of pieces."""
 
     def __init__(self, line: LumpedLine, response: WaveResponse, duration: float) -> None:
         spectral = np.abs(response.pull) ** 2 * response.weight[:, None]
@@ -136,7 +139,9 @@ class _Tensions:
         self.mean, self.duration = line.tension, duration
 
     def loads(self, piece: int, mean: float, own: slice, factor: float = 1.0) -> PieceLoads:
-        """Return the tensions of a piece with these springs, its deviations times a factor."""
+        """Tensions of a piece with the given springs, with standard deviations multiplied by a
+        factor.
+        """
         deviation, apart = factor * float(self.at_ends[piece]), float(self.periods[piece])
         most = greatest_of(deviation, apart, self.duration)
         departs = factor * self.departs[own]
@@ -150,7 +155,7 @@ class _Tensions:
         )
 
     def most_moved(self, mean: float, own: slice) -> tuple[float, Floats]:
-        """Return mean and moments at the spring with the greatest deviation, 0 on the seabed."""
+        """Mean and moments at the spring with the largest standard deviation; 0 on the seabed."""
         if own == slice(0):
             return mean, np.zeros(4)
         at = own.start + int(self.deviation[own].argmax())
@@ -167,11 +172,11 @@ def mooring_in_sea(
     duration: float,
     follower: float | None,
 ) -> MooringInSea:
-    """Return tensions and motions of the pieces of a mooring from its responses to a sea.
+    """Compute tensions and motions of the pieces of a mooring from its responses to a sea.
 
     Parameters
     ----------
-    duration : for the greatest and the least tension [s]
+    duration : duration for the maximum and the minimum tension [s]
     follower : `follower_std` of the result
     """
     response = responses.full
@@ -187,7 +192,7 @@ def mooring_in_sea(
     moments: list[list[tuple[float, Floats]]] = [[] for _ in cases]
     for piece in leg.file.pieces[:-1]:
         at, node = piece.index, int(line.piece_node[piece.index])
-        # nothing pulls at the upper end of what floats on top
+        # the upper end of pieces on top of the float carries no tension
         on_top = at < line.top_pieces
         end = (line.top_pieces - 1, 1) if on_top else (at, 0)
         mean, own = float(solution.tension[int(solution.piece_nodes[end])]), _springs(line, at)
@@ -206,7 +211,7 @@ def mooring_in_sea(
                 twice_cut_off=twice.loads(at, mean, own),
                 measured_low=full.loads(at, mean, own, band.low) if band else None,
                 measured_high=full.loads(at, mean, own, band.high) if band else None,
-                **asdict(full.loads(at, mean, own)),
+                **vars(full.loads(at, mean, own)),
             )
         )
     depth = -0.5 * (line.position[1:, 2] + line.position[:-1, 2])
@@ -225,7 +230,7 @@ def mooring_in_sea(
 
 
 def _springs(line: LumpedLine, piece: int) -> slice:
-    """Return the springs of a piece, an empty slice on the seabed."""
+    """Springs of a piece, an empty slice on the seabed."""
     first = int(line.piece_spring[piece])
     if first < 0:
         return slice(0)

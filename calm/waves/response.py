@@ -1,8 +1,11 @@
-"""Linear response of a line to waves: drag linearised to what it dissipates, all frequencies."""
+"""Linear response of a line to waves at all frequencies, with drag linearised at equal
+dissipation.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from importlib.util import find_spec
 from math import erf, exp, pi, radians, sqrt
 from typing import NamedTuple
 
@@ -10,20 +13,22 @@ import numpy as np
 
 from calm.physics.line import Floats
 from calm.records.sea_states import SeaState
+from calm.solve.block_tridiagonal import solve_blocks
 from calm.waves.buoy import SIDEWAYS_ADDED, Buoy
 from calm.waves.lumped_line import Complexes, LumpedLine
 
 SETTLED = 5e-3
-"""Change of the flow past the nodes, over the greatest, below which drag is linearised well enough:
-that of the tension is a twentieth of it."""
+"""Relative change of the flow past the nodes at which the linearisation of drag has converged. The
+relative change of tension is twenty times smaller.
+"""
 
 STILL = 1e-12
-"""Flow past a node that nothing moves, against division by nothing [m/s]."""
+"""Smallest flow past a node, to avoid division by zero [m/s]."""
 
 MOST_ITERATIONS = 40
 
 RELAXATION = 0.8
-"""Share of the way to the new flow that an iteration goes."""
+"""Under-relaxation of the iteration: applied share of the change in flow."""
 
 _POINTS, _WEIGHTS = np.polynomial.hermite_e.hermegauss(7)
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
@@ -31,15 +36,15 @@ _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 
 @dataclass(frozen=True)
 class WaveResponse:
-    """Hold the response of a line to waves of unit elevation, and to a sea.
+    """Transfer functions of a line for waves of unit elevation, and their weights in a sea.
 
     Attributes
     ----------
-    omega : (f,) [rad/s]
-    weight : (f,) variance of the elevation that each stands for [m²]
-    motion : (f, n, 3) of the nodes [m/m]
+    omega : (f,) angular frequency [rad/s]
+    weight : (f,) variance of the elevation that each frequency represents [m²]
+    motion : (f, n, 3) motion of the nodes [m/m]
     pull : (f, n-1) tension in the springs [N/m]
-    pitch : (f,) of the float, toward where the waves run [rad/m]
+    pitch : (f,) pitch of the float, towards the direction of wave travel [rad/m]
     """
 
     omega: Floats
@@ -49,7 +54,7 @@ class WaveResponse:
     pitch: Complexes
 
     def moments(self, transfer: Complexes) -> tuple[Floats, Floats]:
-        """Return standard deviation and zero-crossing period [s] of transfers (f, …)."""
+        """Standard deviation and zero-crossing period [s] of transfer functions (f, …)."""
         shape = (-1,) + (1,) * (transfer.ndim - 1)
         spectral = np.abs(transfer) ** 2 * self.weight.reshape(shape)
         zeroth = spectral.sum(0)
@@ -61,7 +66,7 @@ class WaveResponse:
     def below(self, limit: float) -> WaveResponse:
         """Return the response without the waves above a frequency [rad/s].
 
-        Each frequency stands for the waves to the middle between it and its neighbours.
+        Each frequency represents the waves to the midpoints between it and its neighbours.
         """
         middle = 0.5 * (self.omega[1:] + self.omega[:-1])
         edges = np.concatenate([self.omega[:1], middle, self.omega[-1:]])
@@ -69,7 +74,7 @@ class WaveResponse:
         return replace(self, weight=self.weight * np.clip(share, 0.0, 1.0))
 
     def joined(self, other: WaveResponse) -> WaveResponse:
-        """Return the response to the waves of both."""
+        """Return the combined response to the waves of both responses."""
         names = [each.name for each in fields(self)]
         both = ((getattr(self, name), getattr(other, name)) for name in names)
         return WaveResponse(*(np.concatenate(pair) for pair in both))
@@ -77,13 +82,13 @@ class WaveResponse:
 
 @dataclass(frozen=True)
 class Waves:
-    """Hold long-crested waves over a depth of water.
+    """Long-crested waves in water of finite depth.
 
     Attributes
     ----------
-    omega : (f,) [rad/s]
-    toward : [degrees] clockwise from north
-    depth, density, gravity : of the water [m], [kg/m³], [m/s²]
+    omega : (f,) angular frequency [rad/s]
+    toward : direction of travel [degrees], clockwise from north
+    depth, density, gravity : depth, density and gravity [m], [kg/m³], [m/s²]
     """
 
     omega: Floats
@@ -94,18 +99,18 @@ class Waves:
 
     @property
     def number(self) -> Floats:
-        """Return the wave numbers [1/m]."""
+        """Wave numbers [1/m]."""
         return wave_numbers(self.omega, self.depth, self.gravity)
 
     @property
     def ahead(self) -> Floats:
-        """Return the unit vector of where they run, (3,)."""
+        """Unit vector of the direction of travel, (3,)."""
         return np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
 
     def velocity(self, position: Floats) -> Complexes:
-        """Return the velocity of the water at (n, 3) places, per metre of elevation: (f, n, 3).
+        """Velocity of the water at positions (n, 3), per metre of elevation: (f, n, 3).
 
-        Linear waves, elevation Re e^(i(ωt - ks)), s toward where they run.
+        Linear waves with elevation Re e^(i(ωt - ks)), s in the direction of travel.
         """
         k, omega = self.number[:, None], self.omega[:, None]
         ahead, height = self.ahead, np.minimum(position[:, 2], 0.0)[None, :]
@@ -121,11 +126,13 @@ class Waves:
 
 
 class _Afloat(NamedTuple):
-    """Tell what holds a float and what pushes it, by its bail's three ways and its pitch.
+    """Dynamic stiffness of a float and its exciting forces, in the three translations of its bail
+    and in pitch.
 
-    `held` (f, 4, 4) and `pushed` (f, 4) per metre of elevation, without drag. Drag acts where
-    `ways` (p, 3, 4) says how that moves, in water of these velocities (f, p, 3), and by `turning`,
-    K of its bottom, on its turn beside the `slope` (f,) of the waves.
+    `held` (f, 4, 4) is the stiffness and `pushed` (f, 4) the force per metre of elevation, both
+    without drag. Drag acts at p points whose motion is given by `ways` (p, 3, 4), in water of
+    velocities `water` (f, p, 3). The bottom also has a rotational drag `turning` (K), relative to
+    the `slope` (f,) of the waves.
     """
 
     held: Complexes
@@ -147,7 +154,7 @@ class _Afloat(NamedTuple):
             pushing = 1j * omega * moved * (middle @ ahead)
         else:
             (surge, both, turn), (pushing, turning) = buoy.pitch(hull, *medium)
-            # two points stand for a drag that is the same all over the draft
+            # two points represent a drag that is uniform over the draft
             deep, heights = -buoy.bail, buoy.draft * (-0.5 + np.array([-1.0, 1.0]) / sqrt(12.0))
         held = np.zeros((len(omega), 4, 4), complex)
         pushed = pushing[:, None] * np.array([*ahead, deep], complex)
@@ -161,13 +168,14 @@ class _Afloat(NamedTuple):
         arms = np.zeros(1) if hull is None else heights + deep
         ways = np.stack([np.column_stack([np.eye(3), arm * ahead]) for arm in arms])
         elevation = np.exp(-1j * number * float(place @ ahead))
-        # of the bottom: the drag of its heave, by the third power of the distance from the axis
+        # rotational drag of the bottom: its heave drag, weighted by the third power of the distance
+        # from the axis
         drag = 0.0 if hull is None else buoy.heave_drag * 8.0 * buoy.radius**3 / (15.0 * pi)
         slope = 1j * number * np.exp(-number * buoy.draft) * elevation
         return cls(held, pushed * elevation[:, None], ways, waves.velocity(at), drag, slope)
 
     def dragged(self, omega: Floats, drag: Floats, turning: float) -> tuple[Complexes, Complexes]:
-        """Return what holds and what pushes with the linear drag (3, 3) and that of its turn."""
+        """Return stiffness and exciting forces including linear drag (3, 3) and rotational drag."""
         each = drag / len(self.ways)
         whole = np.einsum("pca,cd,pdb->ab", self.ways, each, self.ways)
         held = self.held + 1j * omega[:, None, None] * whole
@@ -187,18 +195,19 @@ def respond(
     first: Floats | None = None,
     once: bool = False,
 ) -> tuple[WaveResponse, Floats]:
-    """Return the response to a sea, and the flow (n, 3) past the nodes that it was found with.
+    """Compute the response to a sea, and the flow (n, 3) past the nodes for which drag is
+    linearised.
 
-    The drag of each node is replaced by the linear one that does most of what it does on the
-    average over a Gaussian motion about the mean current: E[F v'] / E[v'²], found anew until the
-    motions settle. The flow is its standard deviations along the axes of each node [m/s].
+    The drag of each node is replaced by the linear drag that is equivalent, on average, over a
+    Gaussian motion about the mean current: E[F v'] / E[v'²]. It is updated until the motions
+    converge. The flow is given as standard deviations along the axes of each node [m/s].
 
     Parameters
     ----------
-    waves, sea : the waves, and how much of them there is
-    drag_factor : on the damping, to see what rests on it
-    first : the flow to begin with, such as that of a sea like it
-    once : keep that flow
+    waves, sea : the waves, and their spectrum
+    drag_factor : factor on the damping, for a sensitivity test
+    first : initial flow, such as that of a similar sea
+    once : use this flow without iteration
     """
     omega = waves.omega
     steps = np.diff(omega, prepend=omega[0], append=omega[-1])
@@ -210,7 +219,7 @@ def respond(
     afloat = None if buoy is None else _Afloat.of(line.position[0], buoy, waves)
     axes, rate = _axes(line), 1j * omega[:, None, None]
     pitch, held = np.zeros(len(omega), complex), None
-    undamped = _undamped(line, omega)
+    undamped = _undamped(line)
     for _ in range(MOST_ITERATIONS):
         damping = drag_factor * _linearised(line, buoy, flow[:-1])
         if afloat is not None:
@@ -241,7 +250,9 @@ def respond(
 
 
 def _axes(line: LumpedLine) -> Floats:
-    """Return (n, 3, 3) unit vectors: along the line, along the mean flow across it, and third."""
+    """(n, 3, 3) unit vectors: along the line, along the mean normal flow, and normal to the first
+    two.
+    """
     t = line.tangent
     across = line.current - (line.current * t).sum(1, keepdims=True) * t
     size = np.linalg.norm(across, axis=1, keepdims=True)
@@ -253,13 +264,13 @@ def _axes(line: LumpedLine) -> Floats:
 
 
 def _deviations(axes: Floats, relative: Complexes, weight: Floats) -> Floats:
-    """Return (n, 3) standard deviations of the flow past nodes, along their axes [m/s]."""
-    own = np.einsum("nac,fnc->fna", axes, relative)
+    """(n, 3) standard deviations of the flow past nodes, along their axes [m/s]."""
+    own = _times(axes, relative)
     return np.asarray(np.sqrt((np.abs(own) ** 2 * weight[:, None, None]).sum(0)) + STILL)
 
 
 def _linearised(line: LumpedLine, buoy: Buoy | None, deviation: Floats) -> Floats:
-    """Return (n, 3, 3) damping of the nodes for a flow of these deviations [N/(m/s)]."""
+    """(n, 3, 3) damping of the nodes for a flow with given standard deviations [N/(m/s)]."""
     axes = _axes(line)
     mean = np.einsum("nac,nc->na", axes, line.current)
     along = np.array([_slope(u, s) for u, s in zip(mean[:, 0], deviation[:, 0], strict=True)])
@@ -302,7 +313,7 @@ def _slope(mean: float, deviation: float) -> float:
 
 
 def _inertia_force(line: LumpedLine, waves: Waves, water: Complexes) -> Complexes:
-    """Return (f, n, 3) forces of the accelerated water, per metre of elevation [N/m]."""
+    """(f, n, 3) forces of the accelerated water, per metre of elevation [N/m]."""
     across = line.water_across + line.added_across
     along = line.water_along + line.added_along
     t = line.tangent
@@ -311,12 +322,14 @@ def _inertia_force(line: LumpedLine, waves: Waves, water: Complexes) -> Complexe
     return np.asarray(1j * waves.omega[:, None, None] * accelerated)
 
 
-_BAND = 5
-"""Diagonals beside the main one: a node of three directions is held by its neighbours."""
+TOGETHER = 16
+"""Number of frequencies solved at once: their matrices fit into the processor's cache."""
 
 
-def _undamped(line: LumpedLine, omega: Floats) -> Floats:
-    """Return the banded matrix of springs and masses (f, 3n-3, 16), of each frequency."""
+def _undamped(line: LumpedLine) -> tuple[Floats, Floats, Floats]:
+    """Blocks (n-1, 3, 3) of springs and of masses at the nodes, and blocks (n-2, 3, 3) of the
+    springs between neighbours.
+    """
     eye, t, s = np.eye(3), line.tangent, line.spring
     outer = t[:, :, None] * t[:, None, :]
     mass = line.mass[:, None, None] * eye + line.added_across[:, None, None] * (eye - outer)
@@ -326,66 +339,120 @@ def _undamped(line: LumpedLine, omega: Floats) -> Floats:
     springs = line.stiffness[:, None, None] * axial + sideways[:, None, None] * (eye - axial)
     held = springs.copy()
     held[1:] += springs[:-1]
-    inertia = _banded(mass[:-1], None)
-    return np.asarray(_banded(held, springs) - omega[:, None, None] ** 2 * inertia)
+    return held, mass[:-1], -springs[:-1]
 
 
 def _solved(
-    undamped: Floats,
+    undamped: tuple[Floats, Floats, Floats],
     top: tuple[Complexes, Complexes] | None,
     omega: Floats,
     water: Complexes,
     forced: Complexes,
     damping: Floats,
 ) -> Complexes:
-    """Return the motion (f, n, 3) of the nodes, of each frequency by a banded matrix.
+    """Solve for the motion (f, n, 3) of the nodes, by a block-tridiagonal matrix per frequency.
 
-    `top` are what holds the first node, (f, 3, 3), and what pushes it, (f, 3), beside the line.
+    SciPy solves it faster, but is not available in a web page.
+
+    `top` holds the stiffness (f, 3, 3) and the force (f, 3) of the float at the first node.
     """
-    from scipy.linalg.lapack import zgbsv
-
-    matrix = np.empty(undamped.shape, complex)
-    matrix.real = undamped
-    matrix.imag = omega[:, None, None] * _banded(damping[:-1], None)
-    push = forced + np.einsum("ncd,fnd->fnc", damping, water)
+    push = forced + _times(damping, water)
     if top is not None:
         push[:, 0] += top[1]
-        for row, column in np.ndindex(3, 3):
-            matrix[:, column, 2 * _BAND + row - column] += top[0][:, row, column]
     motion = np.zeros(push.shape, complex)
-    for one, each in enumerate(matrix):
-        pushed = push[one, :-1].ravel()
-        *_, found, singular = zgbsv(_BAND, _BAND, each.T, pushed, overwrite_ab=True)
-        motion[one, :-1] = np.nan if singular else found.reshape(-1, 3)
+    by = _by_blocks if find_spec("scipy") is None else _by_bands
+    motion[:, :-1] = by(undamped, top, omega, damping[:-1], push[:, :-1])
     return motion
 
 
-def _banded(blocks: Floats, springs: Floats | None) -> Floats:
-    """Return the columns of the banded matrix of (n, 3, 3) blocks, springs between neighbours."""
+def _by_blocks(
+    undamped: tuple[Floats, Floats, Floats],
+    top: tuple[Complexes, Complexes] | None,
+    omega: Floats,
+    damping: Floats,
+    push: Complexes,
+) -> Complexes:
+    """Solve by NumPy alone, which takes twice as long as `_by_bands`."""
+    held, masses, between = undamped
+    beside, motion = between.astype(complex), np.empty_like(push)
+    for first in range(0, len(omega), TOGETHER):
+        part = slice(first, first + TOGETHER)
+        rate = omega[part, None, None, None]
+        diagonal = held - rate**2 * masses + 1j * rate * damping
+        if top is not None:
+            diagonal[:, 0] += top[0][part]
+        others = np.broadcast_to(beside, (len(diagonal), *beside.shape))
+        motion[part] = solve_blocks(diagonal, others, others, push[part, ..., None])[..., 0]
+    return motion
+
+
+_BAND = 5
+"""Number of diagonals on each side of the main diagonal: a node has three directions and two
+neighbours.
+"""
+
+_ENTRIES = [(row, column) for row in range(3) for column in range(3)]
+"""Rows and columns of a block of the matrix."""
+
+
+def _by_bands(
+    undamped: tuple[Floats, Floats, Floats],
+    top: tuple[Complexes, Complexes] | None,
+    omega: Floats,
+    damping: Floats,
+    push: Complexes,
+) -> Complexes:
+    """Solve by LAPACK's banded solver. All frequencies share one matrix, which fits into the cache
+    of the processor.
+    """
+    from scipy.linalg.lapack import zgbsv
+
+    held, masses, between = undamped
+    springs, inertia, damped = _banded(held, between), _banded(masses), _banded(damping)
+    matrix, motion = np.empty(springs.shape, complex), np.empty_like(push)
+    for one, rate in enumerate(omega):
+        np.subtract(springs, rate**2 * inertia, out=matrix.real)
+        np.multiply(rate, damped, out=matrix.imag)
+        if top is not None:
+            for row, column in _ENTRIES:
+                matrix[column, 2 * _BAND + row - column] += top[0][one, row, column]
+        pushed = push[one].ravel()
+        *_, found, singular = zgbsv(_BAND, _BAND, matrix.T, pushed, overwrite_ab=True)
+        motion[one] = np.nan if singular else found.reshape(-1, 3)
+    return motion
+
+
+def _banded(blocks: Floats, between: Floats | None = None) -> Floats:
+    """Columns (3n, 16) of the banded matrix of blocks (n, 3, 3), and of those between nodes."""
     columns = np.zeros((len(blocks), 3, 3 * _BAND + 1))
-    for row, column in np.ndindex(3, 3):
+    for row, column in _ENTRIES:
         at = 2 * _BAND + row - column
         columns[:, column, at] = blocks[:, row, column]
-        if springs is not None:
-            columns[1:, column, at - 3] = -springs[:-1, row, column]
-            columns[:-1, column, at + 3] = -springs[:-1, row, column]
+        if between is not None:
+            columns[1:, column, at - 3] = between[:, row, column]
+            columns[:-1, column, at + 3] = between[:, row, column]
     return columns.reshape(-1, 3 * _BAND + 1)
 
 
+def _times(matrices: Floats, vectors: Complexes) -> Complexes:
+    """Products (f, n, 3) of real matrices (n, 3, 3) with vectors (f, n, 3)."""
+    return np.asarray(sum(matrices[:, :, i] * vectors[:, :, i, None] for i in range(3)))
+
+
 def _pull(line: LumpedLine, motion: Complexes) -> Complexes:
-    """Return (f, n-1) tension in the springs beyond that of equilibrium [N/m]."""
+    """(f, n-1) change of tension in the springs from equilibrium [N/m]."""
     stretched = ((motion[:, 1:] - motion[:, :-1]) * line.spring).sum(2)
     return np.asarray(line.stiffness * stretched)
 
 
 def wave_numbers(omega: Floats, depth: float, gravity: float) -> Floats:
-    """Return the wave numbers of linear waves [1/m]: ω² = g k tanh(k h), by Newton's method.
+    """Wave numbers of linear waves [1/m] from ω² = g k tanh(k h), by Newton's method.
 
     Parameters
     ----------
     omega : (f,) angular frequencies [rad/s]
-    depth : of the water [m]
-    gravity : [m/s²]
+    depth : water depth [m]
+    gravity : acceleration of gravity [m/s²]
     """
     deep = omega**2 / gravity
     k = deep / np.sqrt(np.tanh(np.minimum(deep * depth, 50.0)))

@@ -253,7 +253,7 @@ def test_without_a_folder_to_write_it_works_and_says_so(
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert "compiling the solver" in done.stderr
-    assert "no writable folder was found" in done.stderr
+    assert "no writable cache folder was found" in done.stderr
     assert "compiled in " in done.stderr
 
 
@@ -270,8 +270,14 @@ def test_statistics_that_fail_leave_the_result_and_say_so(
     assert "cannot gather the statistics" in done.err and "No space left" in done.err
     assert (folder / "r.nc").exists()
     done = calm("batch", "m.yaml", "--currents", record, "-o", "r.nc")
-    assert (done.code, done.err) == (0, "")
-    assert (folder / "r.summary.json").exists()
+    assert done.code == 0 and "read as" in done.err
+    (read,) = json.loads((folder / "r.summary.json").read_text())["read"]
+    assert read["file"] == record and read["step"] > 0.0 and read["gaps"] == []
+    assert set(read["variables"]) == {"east", "north", "depth", "time"}
+    with xarray.open_dataset(folder / "r.nc", engine="h5netcdf") as result:
+        assert f"read {record}: east: u [m/s]: " in result.attrs["history"]
+        assert json.loads(result.attrs["read"]) == [read]
+    assert f"{record}</h" in (folder / "r.summary.html").read_text()
 
 
 def test_without_statistics_there_is_the_result_alone(calm, write_mooring, record, folder):

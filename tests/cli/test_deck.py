@@ -5,6 +5,7 @@ import io
 import json
 import math
 import re
+import shutil
 from functools import partial
 
 import openpyxl
@@ -165,8 +166,10 @@ def test_the_anchor_drop_is_planned_for_the_ship(deck):
     plans = []
     text = text.replace("line:", "position: {latitude: 48 deg, longitude: -5 deg}\nline:", 1)
     given = ("--ship-speed", "1.5 m/s", "--streamed", "50 m", "--course", "90 deg")
-    for words in ((), (*given, "--deck-time", "3 min")):
-        out, _ = deck(text, *words)
+    roles = ", ".join(f"{role}: 3 min" for role in ("float", "instrument", "release", "line"))
+    timed = text.replace("author: A. Nobody", f"author: A. Nobody, deck_time: {{{roles}}}")
+    for written, words in ((text, ()), (timed, given)):
+        out, _ = deck(written, *words)
         plans.append(json.loads((out / "plan.json").read_text()))
         assert packed("Anchor drop plan") in "".join(pages_of((out / "deck.pdf").read_bytes())[0])
     assert [plan["ship_speed"] for plan in plans] == [1.0, 1.5]
@@ -186,6 +189,9 @@ def test_the_anchor_drop_is_planned_for_the_ship(deck):
         1.5 * plans[1]["start"]["time"] - plans[1]["tow_past"]
     )
     assert plans[1]["verdict"]["state"] in ("unknown", "fail")
+    assert {"verdict", "fails", "unknown", "warns", "accepted", "estimated"} <= set(
+        plans[1]["verdict"]
+    )
     assert {"fall_time", "fall_back", "fall_back_band", "tow_past", "run_in", "path"} <= set(
         plans[0]
     )
@@ -357,3 +363,19 @@ def test_a_line_that_still_water_leaves_slack_is_dropped_all_the_same(deck):
     plan = json.loads((out / "plan.json").read_text())
     assert plan["rest_difference"] is None
     assert 0.0 < plan["fall_back"] < plan["streamed"]
+
+
+def test_the_verdict_is_that_of_calm_check(calm, folder):
+    """On standard error, in `plan.json` and at the head of the sheets, with what is accepted."""
+    shutil.copy(shipped_folder("lines") / "upward-adcp-300m.yaml", "m.yaml")
+    checked = json.loads(calm("check", "m.yaml", "--json", "-").out)
+    head = calm("check", "m.yaml").out.splitlines()[1]
+    done = calm("deck", "m.yaml", "-o", "sheets")
+    counts = head.split("DRAFT")[1].strip()
+    told = f"passes by acceptance: {counts}"
+    assert f"m.yaml: ~ {told}: calm check m.yaml" in done.err
+    verdict = json.loads((folder / "sheets" / "plan.json").read_text())["verdict"]
+    assert verdict["verdict"] == checked["verdict"] == "passes-by-acceptance"
+    assert (verdict["fails"], verdict["accepted"]) == (0, 1)
+    pages, _, _ = pages_of((folder / "sheets" / "deck.pdf").read_bytes())
+    assert packed(told) in "".join(pages)

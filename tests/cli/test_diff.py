@@ -63,16 +63,15 @@ def test_what_it_does_is_what_each_run_says(calm, two):
     assert figures["greatest_tension"] == pytest.approx(greatest)
 
 
-def test_a_margin_is_the_least_of_any_situation(calm, two):
+def test_a_utilisation_is_the_greatest_of_any_situation(calm, two):
     figures = json.loads(calm("diff", *two, "--json", "-").out)["figures"]
-    (margin,) = [one for one in figures if one["name"] == "margin.anchor-weight"]
+    (use,) = [one for one in figures if one["name"] == "utilisation.anchor-weight"]
     checked = [json.loads(calm("check", file, "--json", "-").out) for file in two]
-    least = [
-        min(one["margin"] for one in found["findings"] + found["tighter"]
-            if one["rule"] == "anchor-weight")
+    most = [
+        max(one["utilisation"] for one in found["findings"] if one["rule"] == "anchor-weight")
         for found in checked
-    ]  # fmt: skip
-    assert [margin["from"], margin["to"]] == pytest.approx(least)
+    ]
+    assert [use["from"], use["to"]] == pytest.approx(most)
 
 
 def test_the_table(calm, two):
@@ -80,7 +79,7 @@ def test_the_table(calm, two):
     assert out.splitlines()[0] == "a.yaml → b.yaml"
     assert "changed  rope.length         60 m    65 m" in out
     assert "added    tail" in out
-    for words in ("What it does", "knockdown of the top", "Margins of the design check", "+5.00"):
+    for words in ("What it does", "knockdown of the top", "Design check: what governs", "+5.00"):
         assert words in out
     assert max(map(len, out.splitlines())) <= 80
 

@@ -1,8 +1,10 @@
 """`calm grid` as a user runs it: depths and values of known instruments, onto levels."""
 
+import json
 import sys
 from pathlib import Path
 
+import gsw
 import numpy as np
 import pytest
 import xarray
@@ -120,9 +122,95 @@ def test_what_archives_ask_for_is_there(calm, depths, monkeypatch):
     assert said["time_coverage_duration"] == "P2DT11H"
     assert said["geospatial_vertical_max"] == 300.0
     assert said["geospatial_lat_min"] == 48.0
-    first, last = said["history"].split("\n")
+    first, made, read = said["history"].split("\n")
     assert first == "calm motion"
-    assert "depths.nc sha256:" in last and "v.nc sha256:" in last
+    assert "depths.nc sha256:" in made and "v.nc sha256:" in made
+    assert read.startswith("read v.nc: temperature: temperature [degree_Celsius]: ")
+
+
+def one_file(name, values, standard, unit, called, **more):
+    """The series of one instrument, which calls itself by an attribute."""
+    time = START + np.arange(HOURS) * np.timedelta64(3600, "s")
+    variables = {name: ("time", values, {"standard_name": standard, "units": unit})}
+    variables |= {other: ("time", one, about) for other, (one, about) in more.items()}
+    xarray.Dataset(variables, {"time": time}, {"instrument": called}).to_netcdf(
+        f"{called}.nc", engine="h5netcdf"
+    )
+
+
+WATER = ("sea_water_temperature", "degree_Celsius")
+
+
+def both(calm, depths, make, *words):
+    for j, label in enumerate(LABELS[:2]):
+        make(label, profile(depths[:, j]))
+    given = [f"{label}={label}.nc" for label in LABELS[:2]]
+    return calm("grid", "depths.nc", *given, "-o", "out.nc", "--levels", "100:25:300", *words)
+
+
+@pytest.mark.parametrize(("unit", "told", "likely"), [
+    (lambda t: t + 273.15, "median 28", "K"),
+    (lambda t: 1.8 * t + 42.0, "of 60 values are no", "degF"),
+    (lambda t: 1e3 * t, "°C, their median", "0.001 degC"),
+])  # fmt: skip
+def test_temperatures_of_another_unit_are_refused(calm, depths, unit, told, likely):
+    run = both(calm, depths, lambda label, t: one_file("TEMP", unit(t), *WATER, label))
+    assert run.code == 2 and told in run.err and f"is it in {likely}?" in run.err
+
+
+def test_units_are_converted_and_other_quantities_refused(calm, depths):
+    kelvin = ("sea_water_temperature", "K")
+    run = both(calm, depths, lambda label, t: one_file("TEMP", t + 273.15, *kelvin, label))
+    assert run.code == 0, run.err
+    with xarray.open_dataset("out.nc", engine="h5netcdf") as result:
+        assert abs(float(result["temperature"].median()) - 14.0) < 5.0
+    air = ("air_temperature", "degree_Celsius")
+    run = both(calm, depths, lambda label, t: one_file("TEMP", t, *air, label))
+    assert run.code == 2 and "`TEMP` is air_temperature, which is not" in run.err
+
+
+def test_what_is_doubtful_is_said_with_a_count(calm, depths):
+    run = both(calm, depths, lambda label, t: one_file("TEMP", 0.0 * t, *WATER, label))
+    assert run.code == 2 and "all 60 values are 0, and are left out" in run.err
+    fresh = ("sea_water_practical_salinity", "1")
+    run = both(calm, depths, lambda label, t: one_file("PSAL", 0.0345 + 1e-4 * t, *fresh, label))
+    assert "60 of 60 values are below 0.05, their median 0.03" in run.err and "kg/kg?" in run.err
+
+    def exchanged(label, t):
+        pressure = {"PRES": (0.0 * t + 900.0, {"units": "dbar"})}
+        one_file("TEMP", t, *WATER, label, **pressure)
+
+    run = both(calm, depths, exchanged)
+    assert "the median of its pressures is 900 dbar, where `" in run.err
+    for label in LABELS[:2]:
+        other = LABELS[1 - LABELS.index(label)]
+        one_file("TEMP", profile(depths[:, 0]), *WATER, label)
+        with xarray.open_dataset(f"{label}.nc", engine="h5netcdf") as file:
+            file.load().assign_attrs(instrument=other).to_netcdf(f"x{label}.nc", engine="h5netcdf")
+    run = calm("grid", "depths.nc", *(f"{one}=x{one}.nc" for one in LABELS[:2]), "-o", "out.nc",
+               "--levels", "100:25:300")  # fmt: skip
+    assert f"given as `{LABELS[0]}`, and calls itself `{LABELS[1]}`" in run.err
+
+
+def test_salinity_is_computed_where_a_file_holds_none(calm, depths):
+    def cell(label, t):
+        pressure = 0.0 * t + 150.0
+        more = {
+            "CNDC": (gsw.C_from_SP(35.2, t, pressure) / 10.0, {"units": "S m-1"}),
+            "PRES": (pressure, {"units": "dbar"}),
+        }
+        one_file("TEMP", t, *WATER, label, **more)
+
+    run = both(calm, depths, cell, "--json", "grid.json")
+    assert run.code == 0, run.err
+    assert "salinity is computed from conductivity, temperature and pressure" in run.err
+    with xarray.open_dataset("out.nc", engine="h5netcdf") as result:
+        assert float(abs(result["salinity"] - 35.2).max()) < 1e-6
+    said = json.loads(Path("grid.json").read_text())
+    assert set(said["quantities"]) == {"temperature", "salinity"}
+    assert set(said["read"][0]["variables"]) == {
+        "temperature", "conductivity", "pressure", "time"
+    }  # fmt: skip
 
 
 def test_capitals_as_oceansites_has_them(calm, depths):
@@ -212,9 +300,11 @@ def test_bad_inputs_are_refused(calm, depths, folder):
     err = refused(calm, "depths.nc", "other.nc")
     assert "no instrument is a part of the line" in err and "did you mean `upper`?" in err
     write_values("unit.nc", depths, unit="dbar")
-    assert "its unit, `dbar`, is not degree_Celsius or K" in refused(calm, "depths.nc", "unit.nc")
+    assert "its unit, `dbar`, is not degC, or a unit of that kind" in refused(
+        calm, "depths.nc", "unit.nc"
+    )
     write_values("none.nc", depths, unit="")
-    assert "is missing: degree_Celsius or K" in refused(calm, "depths.nc", "none.nc")
+    assert "its unit is missing, such as degC" in refused(calm, "depths.nc", "none.nc")
     (folder / "empty.nc").write_bytes(b"")
     assert "is not NetCDF, RODB, .cnv or RBR's table" in refused(calm, "depths.nc", "empty.nc")
     assert "no such file" in refused(calm, "depths.nc", "absent.nc")
@@ -251,5 +341,5 @@ def test_without_matplotlib_a_report_names_the_command_that_installs_it(calm, de
     write_values("v.nc", depths)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     said = refused(calm, "depths.nc", "v.nc", "--report", "page")
-    assert "calm grid --report needs matplotlib: pip install 'calm-mooring[plot]'" in said
+    assert "this needs matplotlib: pip install 'calm-mooring[plot]'" in said
     assert not Path("out.nc").exists()

@@ -60,7 +60,7 @@ def test_it_is_written_into_the_mooring_and_nothing_else_changes(
     calm, ranges, write_mooring, folder
 ):
     write_mooring("m.yaml")
-    text = (folder / "m.yaml").read_text() + (
+    text = (folder / "m.yaml").read_text().replace("depth: 100 m", "depth: 1990 m") + (
         "deployed:   # by the mate\n  date: 2027-03-02   # a Tuesday\n"
         "  depth: 12 m\n  items: [{label: rope, remark: remade}]\n"
     )
@@ -94,9 +94,9 @@ def test_it_is_compared_with_the_plan(calm, ranges, write_mooring, folder):
     done = located("latitude: 48.4 deg, longitude: -5.2 deg", depth=1500)
     assert done.code == 1
     assert "deployed" not in (folder / "m.yaml").read_text()
-    assert "m.yaml is not written: the place is 11.1 km from the planned position" in done.err
+    assert "m.yaml is not written: the depth, 1997 m, is far from the planned 1500 m; " in done.err
+    assert "; the place is 11.1 km from the planned position. --accept" in done.err
     assert "that is far from the planned position" in done.err
-    assert "the depth is far from the planned one" in done.err
     done = located("latitude: -5.2 deg, longitude: 48.3 deg")
     assert done.code == 2
     assert "latitude and longitude are exchanged" in done.err
@@ -165,6 +165,67 @@ def test_of_two_places_the_one_near_the_plan_is_taken(calm, ranges, write_moorin
         assert (other["latitude"] - 48.3) * side < 0.0
 
 
+@pytest.mark.parametrize(("depth", "code"), [(1968, 0), (2028, 0), (1930, 1), (2065, 1)])
+def test_a_depth_far_from_the_plan_is_not_written(calm, ranges, write_mooring, folder, depth, code):
+    write_mooring("m.yaml")  # found 1996.7 m deep: 3 % of the plan are 59 to 62 m
+    text = (folder / "m.yaml").read_text().replace("depth: 100 m", f"depth: {depth} m")
+    (folder / "m.yaml").write_text(text)
+    done = calm("locate", ranges(), "--update", "m.yaml")
+    assert done.code == code
+    assert ("deployed" in (folder / "m.yaml").read_text()) == (code == 0)
+    assert calm("locate", ranges(), "--update", "m.yaml", "--accept").code == 0
+
+
+NEARLY_ON_ONE_COURSE = """\
+latitude,longitude,range[m]
+48.3140,-5.1860,2893.5
+48.3002,-5.2005,1961.0
+48.2860,-5.2140,2548.7
+"""
+"""Of an anchor at 48.2919 N, 5.1879 W, 1500 m deep, each range off by 10 to 35 m: a place 2520 m
+away, on the other side of the course, fits all of them to 4 m."""
+
+
+def test_three_ranges_on_one_course_have_two_places(calm, ranges, write_mooring, folder):
+    name, given = ranges(NEARLY_ON_ONE_COURSE), ["--depth", "1500 m"]
+    done = calm("locate", name, *given, "--json", "-")
+    alone = json.loads(done.out)
+    assert done.code == 1 and alone["longitude"] == pytest.approx(-5.214, abs=0.003)
+    assert alone["second"]["distance"] == pytest.approx(2520.0, rel=0.05)
+    write_mooring("m.yaml")
+    text = (folder / "m.yaml").read_text().replace("depth: 100 m", "depth: 1500 m")
+    plan = "position: {latitude: 48.2919 deg, longitude: -5.1879 deg}\n"
+    (folder / "m.yaml").write_text(plan + text)
+    done = calm("locate", name, *given, "--json", "-", "--update", "m.yaml")
+    document = json.loads(done.out)
+    assert done.code == 1
+    assert document["latitude"] == pytest.approx(48.2919, abs=1e-3)
+    assert document["longitude"] == pytest.approx(-5.1879, abs=1e-3)
+    assert document["second"]["distance"] == pytest.approx(2520.0, rel=0.05)
+    assert re.search(r"two places remain, at \d+ and 25\d\d m from the plan: the nearer", done.err)
+    assert "deployed" not in (folder / "m.yaml").read_text()
+    done = calm("locate", name, "--update", "m.yaml", "--json", "-")  # of unknown depth
+    assert done.code == 1 and "two places remain" in done.err
+    assert json.loads(done.out)["second"]["distance"] > 1900.0
+    assert "deployed" not in (folder / "m.yaml").read_text()
+    assert calm("locate", name, *given, "--update", "m.yaml", "--accept").code == 0
+
+
+@pytest.mark.parametrize(("hemisphere", "place"), [
+    ("S,W", (-48.3, -5.2)), ("S", (-48.3, 5.2)), ("W,N", (48.3, -5.2)), ("N,E", (48.3, 5.2)),
+])  # fmt: skip
+def test_positions_without_letters_have_those_that_are_given(calm, ranges, hemisphere, place):
+    text = RANGES.replace(",-5", ",5")
+    done = calm("locate", ranges(text), "--hemisphere", hemisphere, "--json", "-")
+    found = json.loads(done.out)
+    assert (found["latitude"], found["longitude"]) == pytest.approx(place, abs=1e-4)
+    signed = calm("locate", ranges(RANGES), "--hemisphere", hemisphere, "--json", "-")
+    assert json.loads(signed.out)["longitude"] == pytest.approx(-5.2, abs=1e-4)
+    for wrong in ("S,S", "X", "S,N"):
+        done = calm("locate", ranges(text), "--hemisphere", wrong)
+        assert done.code == 2 and "is no pair such as S,W" in done.err
+
+
 def test_degrees_and_minutes_written_as_decimals_are_named(calm, ranges, write_mooring, folder):
     write_mooring("m.yaml")
     text = (folder / "m.yaml").read_text().replace("depth: 100 m", "depth: 2000 m")
@@ -198,11 +259,11 @@ def test_what_scatters_more_than_ranging_does_is_not_written(calm, ranges, write
 def test_a_file_that_cannot_take_it_is_refused_before_anything_is_written(
     calm, ranges, broken, folder
 ):
-    done = calm("locate", ranges(), "-o", "broken.yaml", "--plot", "circles.svg")
+    done = calm("locate", ranges(), "--update", "broken.yaml", "--plot", "circles.svg")
     assert done.code == 2
     assert done.out == ""
     assert not (folder / "circles.svg").exists()
-    assert calm("locate", ranges(), "-o", "none.yaml").code == 2
+    assert calm("locate", ranges(), "--update", "none.yaml").code == 2
 
 
 def test_the_plot(calm, ranges, folder):

@@ -172,7 +172,13 @@ def test_netcdf_with_flags_and_one_file_for_a_sensor(calm, given, truth, folder)
     done = calm(*COMMAND, "--pressures", "p.nc", "lower=one.nc", "-o", "d.nc", "--json", "-")
     assert done.code == 0, done.err
     assert "upper: 2 pressures left out for their flag" in done.err
-    assert [one["n"] for one in json.loads(done.out)["sensors"]] == [46, 48, 48]
+    said = json.loads(done.out)
+    assert [one["n"] for one in said["sensors"]] == [46, 48, 48]
+    files = [one["file"] for one in said["read"]]
+    assert files[-2:] == ["p.nc", "one.nc"] and "p.nc: read as" in done.err
+    with xarray.open_dataset("d.nc", engine="h5netcdf") as result:
+        assert json.loads(result.attrs["read"]) == said["read"]
+        assert result.attrs["history"].count("\nread ") == len(files)
 
 
 def test_what_cannot_be_used_is_refused_and_nothing_is_written(calm, given, truth, folder):

@@ -50,7 +50,7 @@ def test_a_target_that_cannot_be_met(calm, write_mooring):
     done = calm("size", write_mooring(), *words)
     assert done.code == 3
     assert done.out == ""
-    assert done.err.startswith("m.yaml: knockdown(top) <= 1 mm is not met. The nearest is ")
+    assert done.err.startswith("m.yaml: knockdown(top) <= 1 mm is not met. The closest is ")
     assert "anchor-lifts" in done.err
     assert len(done.err.splitlines()) == 1
     document = json.loads(calm("size", "m.yaml", *words, "--json", "-").out)
@@ -74,7 +74,7 @@ def test_range_and_environment(calm, write_mooring, folder):
 def test_new_warnings_are_shown(calm, write_mooring):
     done = calm("size", write_mooring(), "--target", "tilt(rope) <= 1.3 deg", *TARGET[2:])
     assert done.code == 0
-    assert "! The anchor weighs 5000 N in water; " in done.out
+    assert "! Anchor weight in water is 5000 N; " in done.out
 
 
 def test_all_mistakes_at_once(calm, write_mooring, folder):
@@ -85,7 +85,7 @@ def test_all_mistakes_at_once(calm, write_mooring, folder):
         "calm: --target: `2 m` is a length; an angle (deg, rad) is needed",
         "  tilt(rope) <= 2 m",
         "                ^",
-        "--change: no part of the line is called `rop`; did you mean `rope`?",
+        "--change: no part of the line has the label `rop`; did you mean `rope`?",
         "  rop.length",
         "  ^",
     ]

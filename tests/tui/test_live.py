@@ -84,13 +84,14 @@ def test_findings_are_those_of_check(name: str) -> None:
     assert judge_fully(fully) is fully
 
 
-def test_a_row_has_the_gravest_state_and_the_least_margin_of_its_findings() -> None:
+def test_a_row_has_the_gravest_state_and_the_greatest_use_of_its_findings() -> None:
     view = judge(text_of("deep-current-meters"))
     for row in view.rows:
         own = [finding for finding in view.findings if finding.component == row.label]
         assert row.state == max((f.state for f in own), key=lambda s: s.severity, default=None)
-        assert row.margin == min((f.share for f in own if f.share is not None), default=None)
-    assert any(row.state is State.PASS and row.margin is not None for row in view.rows)
+        uses = [f.utilisation for f in own if f.utilisation is not None]
+        assert row.use == max(uses, default=None)
+    assert any(row.state is State.PASS and row.use is not None for row in view.rows)
     assert any(row.state is None for row in view.rows) or len(view.findings) > len(view.rows)
 
 

@@ -1,10 +1,13 @@
 """The figures that are not known, as a form: what is asked for, and where it is written."""
 
 import pytest
+import yaml
 
 from calm.checks.finding import State
+from calm.checks.missing import alternatives
 from calm.files.editing import Draft
-from calm.tui.live import judge
+from calm.report.missing_block import missing_block
+from calm.tui.live import judge, judge_fully
 from calm.tui.mooring_sheet import figures_sheet, missing_figures, with_figures
 from tests.tui.conftest import MOORING
 
@@ -18,11 +21,11 @@ def asked(text):
 def test_each_component_is_asked_for_once_with_the_rows_that_use_it():
     found = asked(UNKNOWN)
     assert [field.key for field in found["ball"].fields] == ["depth_rating"]
-    keys = ["depth_rating", "working_load", "breaking_load"]
-    assert [field.key for field in found["releaser"].fields][:3] == keys
+    keys = ["depth_rating", "working_load", "breaking_load", "max_tilt"]
+    assert {field.key for field in found["releaser"].fields} == set(keys)
     assert list(found["releaser"].labels) == ["releaser"]
     targets = found["releaser"].targets
-    assert [list(targets[key]) for key in keys] == [[("components", "releaser")]] * 3
+    assert [list(targets[key]) for key in keys] == [[("components", "releaser")]] * 4
     assert list(found["logger"].labels) == ["logger", "deep logger"]
     assert set(found) == {"ball", "logger", "releaser"}  # the anchor is pulled at one end only
 
@@ -116,3 +119,29 @@ def test_the_form_shows_the_class_estimate_of_a_figure():
     assert found.estimates == {"working_load": "estimated: 1 N at least, 20000 N likely"}
     takes = {each.key: each.takes for each in figures_sheet([found])._asked}
     assert takes["releaser.working_load"] == "estimated: 1 N at least, 20000 N likely"
+
+
+def test_the_form_asks_for_what_the_block_asks_for():
+    """Both name the figure that is missing and those that would do in its place."""
+    view = judge_fully(judge(UNKNOWN))
+    block = yaml.safe_load(missing_block(view.findings))["components"]
+    asked = {each.use: each for each in missing_figures(view, Draft(UNKNOWN))}
+    assert asked.keys() == block.keys()
+    for use, keys in block.items():
+        assert {field.key for field in asked[use].fields} == {
+            instead for key in keys for instead in alternatives(key)
+        }
+
+
+def test_a_part_of_an_assembly_gets_its_figure_in_the_row_of_that():
+    recorder = "aanderaa-thermistor-recorder"
+    frame = f"  frame: {{kind: assembly, parts: [{{use: {recorder}, label: recorder}}]}}\n"
+    text = MOORING.replace("  - {use: weight}", "  - {use: frame}\n  - {use: weight}") + frame
+    missing = missing_figures(judge(text), Draft(text))
+    (found,) = (one for one in missing if one.use == recorder)
+    assert list(found.targets["depth_rating"]) == [("line", 3)]
+    made = with_figures(Draft(text), missing, {f"{recorder}.depth_rating": "500 m"}, "sheet 7")
+    assert "- {use: frame, depth_rating: 500 m, sources: {depth_rating: sheet 7}}" in made.text
+    found = next(each.component for each in judge(made.text).file.pieces if each.use == recorder)
+    assert found.depth_rating == pytest.approx(500.0)
+    assert found.sources["depth_rating"] == "sheet 7"

@@ -31,9 +31,9 @@ def the(told, begin):
 
 @pytest.mark.parametrize(
     "anchor, needs, state",
-    # as given 720 N, and more as the cable strums; what it only may do is a warning
+    # as given 720 N, and more as the cable strums: a failure if it fails as given, too
     [
-        ("700 N", "needs 720 N, has", State.FAIL),
+        ("700 N", "needs 949 N (strumming), has", State.FAIL),
         ("800 N", "needs 949 N (strumming), has", State.WARN),
         ("1000 N", "needs 949 N (strumming), has", State.PASS),
     ],
@@ -50,7 +50,7 @@ def test_the_anchor_needs_what_the_worst_finding_says(anchor, needs, state):
 
 def test_the_reserve_is_that_of_the_worst_finding():
     told = said(BUOY.replace("buoyancy: 1000 N", "buoyancy: 550 N"))
-    head, below = the(told, "212 N"), the(told, "24 % of the float's buoyancy is left")
+    head, below = the(told, "212 N"), the(told, "127 % of ≥ 0.300. 24 % of the float's buoyancy")
     assert head.heading == "Reserve" and head.state is below.state is State.WARN
     assert head.text.endswith("61% of the float's buoyancy in use; 76% at worst (strumming)")
     assert below.heading == "Reserve of buoyancy (strumming)"
@@ -60,17 +60,18 @@ def test_the_knockdown_is_that_of_the_worst_finding():
     text = without_checks("s1000")
     told = said(text + "checks: {maximum_knockdown: 35 m}\n")
     head = next(each for each in told if each.heading == "Knockdown" and "top at" in each.text)
-    below = the(told, "The top is knocked down")
+    below = next(each for each in told if "The top is knocked down" in each.text)
     worst = re.search(r"by ([\d.]+ m)", below.text)[1]
+    assert re.match(r"\d+ % of ≤ 35.0 m\. The top", below.text)
     assert head.text.endswith(f"; {worst} at worst (strumming)") and head.state is below.state
 
 
-def test_the_margin_of_a_row_is_the_least_of_any_situation():
+def test_the_use_of_a_row_is_the_greatest_of_any_situation():
     view = judge_fully(judge(BUOY))
     block = view.rows[-1]
     tighter = [each for each in view.tighter if each.component == block.label]
-    assert tighter and block.margin == min(each.share for each in tighter)
-    assert block.margin == pytest.approx(1000.0 / 949.2 - 1.0, abs=2e-3)  # as it strums
+    assert tighter and block.use == max(each.utilisation for each in tighter)
+    assert block.use == pytest.approx(949.2 / 1000.0, abs=2e-3)  # as it strums
     assert block.state is State.UNKNOWN  # its strength is not given
 
 
@@ -95,10 +96,10 @@ def test_what_is_unknown_does_not_pass():
     assert "unknown" in head.text and head.sign == "?"
 
 
-def test_the_margin_of_unknown_strength_is_a_question():
+def test_the_use_of_unknown_strength_is_a_question():
     view = judge_fully(judge(BUOY))
     rows = table_rows(Draft(BUOY), view, None)
-    lacking = [row.texts.get("margin") for row in rows if row.spot.item == 1]
+    lacking = [row.texts.get("use") for row in rows if row.spot.item == 1]
     assert lacking == ["?"]
     assert view.rows[1].lacks_strength
 

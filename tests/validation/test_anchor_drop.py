@@ -12,7 +12,7 @@ from calm.drop import drop_plan, plan
 from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Ship, fall, settle, towed
 from calm.drop.fall_record import rest_difference
-from calm.drop.launch import IN_SHORT, launch_of
+from calm.drop.launch import CHECK_FINENESS, launch_of
 from calm.drop.motion import ChainState, FallingAnchor
 from calm.errors import UsageError
 from calm.shipped import shipped_folder
@@ -198,7 +198,7 @@ components:
 def test_the_design_check_and_the_plan_tell_of_one_fall(name):
     """A line that lands before it is plumb, and one whose float is at the surface."""
     mooring = calm.load(shipped_folder("lines") / f"{name}.yaml")
-    launch, told = launch_of(mooring.leg), drop_plan(mooring, fineness=IN_SHORT)
+    launch, told = launch_of(mooring.leg), drop_plan(mooring, fineness=CHECK_FINENESS)
     assert told.touchdown_speed == pytest.approx(launch.fall_speed, rel=1e-12)
     pulls = [pull.tension for pull in told.pulls]
     given = np.maximum(launch.tension_top, launch.tension_bottom)
@@ -401,3 +401,13 @@ def test_the_drag_of_an_anchor_that_gives_none_is_that_of_a_cube(loaded):
     volume = 8000.0 / ((7850.0 - 1025.0) * 9.80665)
     assert plan.anchor_drag == pytest.approx(0.5 * 1025.0 * 1.05 * volume ** (2 / 3))
     assert not plan.drag_known
+
+
+def test_the_ship_is_given_in_si_or_with_units(loaded):
+    mooring = loaded(LEAN.format(depth=200, length=120, current=0.0))
+    told = drop_plan(mooring, "2 knot", "130 m", "90 deg", fineness=FEW)
+    plain = drop_plan(mooring, 2.0 * 1852.0 / 3600.0, 130.0, 90.0, fineness=FEW)
+    assert (told.ship_speed, told.course, told.streamed) == pytest.approx(
+        (plain.ship_speed, plain.course, plain.streamed)
+    )
+    assert told.touchdown_speed == pytest.approx(plain.touchdown_speed)

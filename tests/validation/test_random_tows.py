@@ -64,9 +64,9 @@ def test_calm_agrees_with_the_referee(block) -> None:
 @pytest.mark.parametrize(
     ("number", "status", "why"),
     [
-        (997, "no-equilibrium", "weighs nothing and has no drag along it"),
-        (2942, "no-equilibrium", "It would ride half out of the water"),
-        (4555, "no-equilibrium", "It would ride half out of the water"),
+        (997, "no-equilibrium", "has neither weight nor tangential drag"),
+        (2942, "no-equilibrium", "It would be half out of the water"),
+        (4555, "no-equilibrium", "It would be half out of the water"),
         (652, "no-equilibrium", "with piece 12 in the water"),
         (2079, "no-equilibrium", "with piece 9 in the water"),
     ],

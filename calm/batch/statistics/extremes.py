@@ -1,8 +1,8 @@
-"""Return levels: the value that a response exceeds once in so many years on average.
+"""Return levels: the value that a response exceeds once in a number of years on average.
 
-Two ways to estimate them, each with its own rules, which are reported with the levels:
+There are two methods, each with its own rules, which are reported with the levels:
 
-- GEV: the generalised extreme value distribution of the maxima of years (Coles 2001, chapter 3).
+- GEV: the generalised extreme value distribution of annual maxima (Coles 2001, chapter 3).
 - POT: the generalised Pareto distribution of independent peaks over a threshold (chapter 4).
 """
 
@@ -23,28 +23,34 @@ PERIODS = (2, 10, 50, 100)
 """Return periods [years]."""
 
 EXTRAPOLATION = 4.0
-"""Times the length of a record beyond which no return level is reported. Our choice: thirty
-years give the level of a hundred, and a year none beyond two."""
+"""Longest return period, in record lengths, that is reported. Our choice: thirty years allow the
+level of a hundred years, and one year none above two.
+"""
 
 LEAST_MAXIMA = 10
-"""Whole years that a GEV asks for. Our choice, because three parameters are fitted: ten
-values are few for that, as their wide intervals show."""
+"""Number of whole years required for GEV. Our choice: three parameters are fitted, for which ten
+values are few, as their wide intervals show.
+"""
 
 LEAST_YEARS = 1.0
-"""Years of solved profiles that POT asks for. Our choice, because the year has a stormy season."""
+"""Years of solved profiles required for POT. Our choice, because the year has a stormy season."""
 
 LEAST_PEAKS = 30
-"""Independent peaks that POT asks for. Our choice, because the intervals are those of many
-peaks, and with fewer they hold the true level less often than they say."""
+"""Independent peaks required for POT. Our choice: the intervals are valid for many peaks; with
+fewer peaks they contain the true level less often than stated.
+"""
 
 THRESHOLDS = (99.0, 98.0, 97.0, 96.0, 95.0, 94.0, 93.0, 92.0, 91.0, 90.0)
-"""Percentiles tried as the threshold of POT, the first that leaves enough peaks taken. Our choice,
-because a generalised Pareto distribution holds for high thresholds only (Coles 2001, §4.3.1)."""
+"""Percentiles tried as the threshold of POT; the first that leaves enough peaks is used. Our
+choice, because a generalised Pareto distribution is valid for high thresholds only (Coles 2001,
+§4.3.1).
+"""
 
-_FEW_GAPS = 1e-3  # our choice: a share of the record, nine hours a year, that is not worth a word
+# our choice: a share of the record (nine hours a year) that is not worth reporting
+_FEW_GAPS = 1e-3
 
 METHODS = {"gev": "GEV of annual maxima", "pot": "POT, generalised Pareto"}
-"""The two ways, by their name in files."""
+"""The two methods, by their names in files."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +62,7 @@ class Level:
     period : T [years]; by GEV one year in T has a maximum above the level, by POT there is a peak
         above it once in T years on average
     level : the estimate
-    low, high : ends of its interval; None for one that the data do not set
+    low, high : ends of its interval; None if the data do not determine it
     """
 
     period: int
@@ -73,10 +79,10 @@ class Fit:
     ----------
     method : a key of `METHODS`
     location, scale, shape : μ, σ, ξ; the location of POT is its threshold
-    count : maxima or peaks that were fitted
-    rate : maxima or peaks a year
-    rules : how the maxima or peaks were chosen, in words
-    levels : for those of `PERIODS` that the record is long enough for
+    count : number of fitted maxima or peaks
+    rate : number of maxima or peaks per year
+    rules : description of the selection of maxima or peaks
+    levels : return levels for the `PERIODS` that the record allows
     """
 
     method: str
@@ -91,7 +97,7 @@ class Fit:
 
 @dataclass(frozen=True)
 class LevelsRefused:
-    """Describe why there are no return levels by one of the `METHODS`."""
+    """Reason why there are no return levels by one of the `METHODS`."""
 
     method: str
     reason: str
@@ -100,19 +106,20 @@ class LevelsRefused:
 def return_levels(
     time: Times, values: Column, statuses: Mapping[str, int], step: np.timedelta64 | None = None
 ) -> tuple[Fit | LevelsRefused, Fit | LevelsRefused]:
-    """Return levels by GEV and by POT, each with 95 % intervals or refused with a reason.
+    """Compute return levels by GEV and by POT, each with 95 % intervals or a reason for their
+    absence.
 
-    They are refused, too, where profiles with a current were not solved: the line most often
-    fails to stand in the strongest currents, and levels from what is left would be too low.
+    They are also refused if profiles with a current were not solved: solutions are most often
+    missing in the strongest currents, and levels from the remaining profiles would be too low.
 
     Parameters
     ----------
-    time : (n,) ascending, as evenly as a record with gaps is
-    values : (n,) NaN where there is none
-    statuses : profiles by their status, as `calm.batch.finished.statuses_of` counts them; of
-        those that were not solved, only `calm.batch.statuses.IN_WEAK_CURRENT` and profiles
-        without data are passed over
-    step : `median_step` of the times, where it is known already
+    time : (n,) ascending and evenly spaced, except for gaps
+    values : (n,) NaN for missing values
+    statuses : profiles by their status, as `calm.batch.finished.statuses_of` counts them; of those
+        that were not solved, only `calm.batch.statuses.IN_WEAK_CURRENT` and profiles without data
+        are ignored
+    step : `median_step` of the times, if already known
     """
     refusal = _censored(statuses) or _unfit(time, values)
     if refusal:
@@ -129,20 +136,20 @@ def return_levels(
 
 
 def _censored(statuses: Mapping[str, int]) -> str:
-    """Return why the extremes may be among the profiles that were not solved, or nothing."""
+    """Reason why the extremes may be among the unsolved profiles, or an empty string."""
     ended = {ending: 0 for ending in (Ending.NO_EQUILIBRIUM, Ending.NOT_CONVERGED)}
     for status, count in statuses.items():
         if ending_of(status) in ended and status not in IN_WEAK_CURRENT:
             ended[ending_of(status)] += count
     said = " and ".join(f"{count} {ending.value}" for ending, count in ended.items() if count)
     return said and (
-        f"of the profiles with a current {said}: the greatest values may be among them, and "
-        "levels from the others would be too low"
+        f"of the profiles with a current {said}: the largest values may be among these, and "
+        "levels from the remaining profiles would be too low"
     )
 
 
 def _unfit(time: Times, values: Column) -> str:
-    """Return why nothing can be fitted, or nothing."""
+    """Reason why no distribution can be fitted, or an empty string."""
     count = int(np.count_nonzero(np.isfinite(values)))
     if count < 2:
         return f"there are {count} values"
@@ -212,14 +219,14 @@ def _over(
 
 
 def _gaps(time: Times, values: Column, step: np.timedelta64) -> str:
-    """Return what is reported of the share of a record that is missing."""
+    """Report on the missing share of a record, or an empty string."""
     room = 1.0 + float((time[-1] - time[0]) / step)
     missing = 1.0 - int(np.count_nonzero(np.isfinite(values))) / room
     if missing < _FEW_GAPS:
         return ""
     return (
         f"; {100 * missing:.1f} % of the time between the first and the last profile is "
-        "missing, and the intervals do not allow for what happened then"
+        "missing, which the intervals do not take into account"
     )
 
 
@@ -228,7 +235,9 @@ def _periods(years: float) -> list[int]:
 
 
 def _told(method: str, tail: tails.Tail, rate: float, rules: str, growths: dict[int, float]) -> Fit:
-    """The levels; without intervals where the theory of the likelihood does not hold."""
+    """Return the fit with its levels, without intervals if the theory of the likelihood is not
+    valid.
+    """
     nothing = (None, None)
     sure = tail.shape > LEAST_SHAPE
     rules += (
@@ -246,35 +255,36 @@ def _told(method: str, tail: tails.Tail, rate: float, rules: str, growths: dict[
 
 
 WHOLE = 0.9
-"""Share of its profiles that a whole year has at least. Our choice, because five weeks that are
-missing seldom hide the maximum of a year; a season often does."""
+"""Smallest share of profiles in a whole year. Our choice: five missing weeks seldom hide the annual
+maximum, but a missing season may.
+"""
 
 YEAR = np.timedelta64(31_557_600, "s")
-"""365.25 days."""
+"""Length of a year, 365.25 days."""
 
 
 def years_of(step: np.timedelta64, count: int) -> float:
-    """Years that some profiles of a record stand for, each as long as the median step."""
+    """Years represented by a number of profiles, each as long as the median step."""
     return count * float(step / YEAR)
 
 
 def median_step(time: Times) -> np.timedelta64:
-    """Median time between profiles, which gaps do not lengthen; nothing of a single profile."""
+    """Median time between profiles, which gaps do not lengthen, or zero for a single profile."""
     if len(time) < 2:
         return np.timedelta64(0, "ns")
     steps = np.diff(time).astype("timedelta64[ns]", copy=False).view(np.int64)
     middle = len(steps) // 2
-    steps.partition(middle)  # in its place: a record may be long
+    steps.partition(middle)  # in place, since a record may be long
     return np.timedelta64(int(steps[middle]), "ns")
 
 
 def annual_maxima(
     time: Times, values: Column, step: np.timedelta64
 ) -> tuple[NDArray[np.float64], int]:
-    """The greatest value of every whole year, and how many years there are, whole or not.
+    """Find the maximum of every whole year, and the number of years, whole or not.
 
-    The years are of 365.25 days from the first profile on; one is whole if it has `WHOLE` of the
-    values that it has room for. The maximum of a whole year with gaps is that of the rest.
+    Years have 365.25 days from the first profile. A year is whole if it has at least `WHOLE` of the
+    possible values. The maximum of a whole year with gaps is that of the existing values.
     """
     years = int((time[-1] - time[0]) // YEAR) + 1
     starts = np.searchsorted(time, time[0] + np.arange(years + 1) * YEAR)
@@ -287,13 +297,13 @@ def annual_maxima(
 def peaks_over(
     time: Times, values: Column, threshold: float, step: np.timedelta64
 ) -> NDArray[np.float64]:
-    """The greatest value of every cluster of exceedances of a threshold.
+    """Find the maximum of each cluster of threshold exceedances.
 
-    The extremal index θ comes from the intervals T between the N exceedances, in steps: with
-    every T ≤ 2, θ = 2 (ΣT)²/((N-1) ΣT²), else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)), 1 at most. The
-    θN - 1 longest intervals part the clusters (Ferro and Segers 2003, eq. 6 and section 3), but
-    never exceedances that follow one another, since in a record of a single storm all intervals
-    are alike. An interval across a gap counts in full, as if nothing had been exceeded in it.
+    The extremal index θ is computed from the intervals T between the N exceedances, in steps: θ = 2
+    (ΣT)²/((N-1) ΣT²) if all T ≤ 2, else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)), at most 1. The θN - 1
+    longest intervals separate the clusters (Ferro and Segers 2003, eq. 6 and section 3), but
+    successive exceedances are never separated, since in a record of a single storm all intervals
+    are equal. An interval across a gap counts in full, as if it contained no exceedance.
     """
     over = np.flatnonzero(values > threshold)
     if len(over) < 2:
@@ -307,10 +317,10 @@ def peaks_over(
 
 
 def extremal_index(intervals: NDArray[np.float64]) -> float:
-    """θ, the share of exceedances that are independent of those before them.
+    """Extremal index θ, the share of exceedances that are independent of previous exceedances.
 
-    The intervals between exceedances, (N - 1,), are 1 step or more; the form of the estimate
-    changes where one of them is beyond 2.
+    The intervals between exceedances, (N - 1,), are at least 1 step; the estimator depends on
+    whether one of them exceeds 2.
     """
     one, two = (1.0, 2.0) if intervals.max() > 2.0 else (0.0, 0.0)
     below = float(((intervals - one) * (intervals - two)).sum())

@@ -1,4 +1,6 @@
-"""The criteria of the design check in every profile of a batch, and how often each is broken."""
+"""Criteria of the design check in every profile of a batch, and the share of profiles that violate
+each.
+"""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -12,11 +14,12 @@ from calm.batch.statuses import Ending
 from calm.case import Design
 from calm.case.leg import Leg
 from calm.checks.assess import RULES, is_judged
+from calm.checks.assessment import estimated
 from calm.checks.criterion import AT_SURFACE, Criterion, JudgedPart
 from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.situations import equilibrium
-from calm.files.pieces import STAND_IN
+from calm.files.pieces import STAND_IN, parts_of
 from calm.files.rule_texts import RULES as TEXTS
 from calm.physics.seabed import required_weight
 
@@ -25,33 +28,36 @@ NOT_JUDGED = {
     for name, rule in RULES.items()
     if rule.criteria is None and name != "equilibrium"
 }
-"""Rules that no profile can be judged by, and why."""
+"""Rules that cannot be evaluated per profile, with the reason."""
 
 
 @dataclass(frozen=True)
 class CountedLimit:
-    """A criterion of a rule, and its values in a batch.
+    """A criterion of a rule, with its values in a batch.
 
     Attributes
     ----------
-    rule : of the design check, whose quantity the values are
-    criterion : what it asks
-    leg : of what
-    seats : where one of several has its columns
+    rule : rule of the design check
+    criterion : criterion of the rule
+    leg : leg that it applies to, with the lower bounds of estimates for missing figures
+    seats : columns of the leg, if there are several legs
+    on_estimate : whether the limit is the lower bound of an estimate, beyond which a failure is not
+        certain
     """
 
     rule: Rule
     criterion: Criterion
     leg: Leg
     seats: LegSeats | None = None
+    on_estimate: bool = False
 
     def values(self, series: ResultColumns) -> Column:
-        """The (n,) values of a batch; NaN where there is nothing to judge."""
+        """Values (n,) of a batch, with NaN if there is nothing to evaluate."""
         own = series if self.seats is None else series.of_leg(self.seats)
         return _VALUES[self.criterion.quantity](own, self.criterion.part, self.leg)
 
     def broken(self, values: Column) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        """(n,) where values are beyond the limit; never where they are NaN."""
+        """Whether each value (n,) violates the limit (false for NaN)."""
         limit = self.criterion.limit
         assert limit is not None
         beyond = values < limit if self.criterion.least else values > limit
@@ -59,34 +65,42 @@ class CountedLimit:
 
 
 def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
-    """Every limit of a mooring that can be counted in a batch, rule by rule and down the line.
+    """Every limit of a mooring that can be evaluated in a batch, rule by rule and down the line.
 
-    The tension of a piece is the greatest, or the least, of those at its ends and at the clamps on
-    it, which is what a result holds. A line meant for the surface is judged as such wherever the
-    current takes its float. Each leg is judged as the design check judges it.
+    The tension of a piece is the maximum or minimum of the tensions at its ends and at its clamps,
+    which are the values in a result. A line meant for the surface is always checked as such, even
+    if its float is submerged. Each leg is checked as in the design check, with the lower bounds of
+    estimates for missing figures of components.
     """
     seats = LegSeats.of_file(mooring.file) if mooring.several else (None,)
     order = list(RULES)
     found = [
-        CountedLimit(rule, criterion, leg, seat)
+        CountedLimit(rule, criterion, estimated(leg), seat, _on_estimate(rule, criterion, leg))
         for leg, seat in zip(mooring.meant, seats, strict=True)
         for rule in RULES.values()
         if rule.criteria is not None
-        for criterion in rule.criteria(leg)
+        for criterion in rule.criteria(estimated(leg))
         if is_judged(leg.file, rule, criterion.part.index)
     ]
     return tuple(sorted(found, key=lambda limit: order.index(limit.rule.name)))
 
 
+def _on_estimate(rule: Rule, criterion: Criterion, leg: Leg) -> bool:
+    """Whether a rule judges a part by a figure of which the leg as given has an estimate alone."""
+    figures, place = TEXTS[rule.name].figures, criterion.part.place
+    own = (part.component.estimates for part in parts_of(leg.file.pieces) if part.place == place)
+    return any(name in figures for estimates in own for name in estimates)
+
+
 def top_offset(series: ResultColumns) -> Column:
-    """(n,) horizontal distance of the top of the line from the anchor [m]."""
+    """Horizontal distance (n,) of the top of the line from the anchor [m]."""
     offset = series.column("x_top", 0) - series.column("x_top", -1)
     np.hypot(offset, series.column("y_top", 0) - series.column("y_top", -1), out=offset)
     return offset
 
 
 def top_knockdown(series: ResultColumns) -> Column:
-    """(n,) how much deeper the top of the line is than in still water [m]."""
+    """Knockdown (n,) of the top of the line [m]."""
     return series.column("knockdown", 0)
 
 
@@ -102,7 +116,7 @@ def _greatest_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Colu
 
 
 def _least_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
-    """Return the least at the ends of a piece; NaN where all of it lies on the seabed."""
+    """Minimum tension at the ends of a piece; NaN if the whole piece is on the seabed."""
     water, pieces, least = leg.water, leg.file.pieces, series.least_tension(_seat(part))
     bed: Column | float = water.depth * (1.0 - _LYING)
     for name, deeper in (("x_top", water.deeper_east), ("y_top", water.deeper_north)):
@@ -114,12 +128,12 @@ def _least_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
 
 
 def _greatest_depth(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
-    """Return the depth of the deeper end of a piece, whose lower end is the top of the next one."""
+    """Depth of the deeper end of a piece; its lower end is the top of the next piece."""
     depth = series.depth(_seat(part))
     floats = depth <= (AT_SURFACE if reaches_the_surface(leg) else -np.inf)
     pieces = leg.file.pieces
     if part.clamp is None and pieces[part.index + 1].use == STAND_IN:
-        depth += pieces[part.index].length or 0.0  # it cannot be deeper, but for its stretch
+        depth += pieces[part.index].length or 0.0  # an upper bound, apart from its stretch
     elif part.clamp is None:
         np.maximum(depth, series.depth(Seat(part.index + 1)), out=depth)
     depth[floats] = np.nan
@@ -156,17 +170,19 @@ _VALUES: dict[str, Callable[[ResultColumns, JudgedPart, Leg], Column]] = {
     "slide": _slide,
     "reserve": lambda series, _, __: 1.0 - series.ends("used_buoyancy"),
 }
-"""The readings of `calm.checks.criterion` over the profiles of a batch."""
+"""Quantities of `calm.checks.criterion` for the profiles of a batch."""
 
-_LYING = 1e-6  # of the depth: what is no further above the seabed lies on it
+_LYING = 1e-6  # share of the depth; parts closer to the seabed than this lie on it
 
 
 @dataclass(frozen=True)
 class Exceedance:
-    """Describe how often a limit is broken: `share` of the `count` profiles that it can judge.
+    """Exceedance of a limit: `share` of the `count` profiles in which it can be evaluated.
 
-    `worst` is the value furthest beyond the limit, or nearest to it, and `time` its time; None
-    where there is no limit or nothing to judge.
+    A profile beyond a limit that is an estimate is not counted as a failure.
+
+    `worst` is the value that exceeds the limit most, or comes closest to it, and `time` its time.
+    They are None without a limit or without values.
     """
 
     limit: CountedLimit
@@ -178,16 +194,16 @@ class Exceedance:
 
 @dataclass(frozen=True)
 class RuleShare:
-    """Describe how often a rule fails, or warns, anywhere on the line.
+    """Share of profiles in which a rule fails, or warns, at any part of the line.
 
     Attributes
     ----------
-    judged : profiles in which one of its limits at least is judged
-    fails, warns : share of these in which it fails, or only warns; None where there are none
-    fails_at_most : share in which it fails if it does in every profile that has a current and was
-        not solved, of these and those judged; None where none is judged
-    unknown : limits that are judged in no profile, most often for want of a figure
-    exceedances : of its limits
+    judged : number of profiles in which at least one of its limits is evaluated
+    fails, warns : share of these in which it fails, or only warns; None if there are none
+    fails_at_most : share of failures if it also failed in every unsolved profile with a
+        current, relative to these and the evaluated profiles; None without evaluated profiles
+    unknown : number of limits that cannot be evaluated, usually for lack of a value
+    exceedances : exceedances of its limits
     """
 
     name: str
@@ -201,7 +217,7 @@ class RuleShare:
 
 
 def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
-    """Return how often the line has no equilibrium; what did not converge is not judged."""
+    """Share of profiles without equilibrium; profiles that did not converge are not counted."""
     without = ended[Ending.NO_EQUILIBRIUM]
     judged = ended[Ending.SOLVED] + without
     return _rule_share(equilibrium, judged, without, 0, ended[Ending.NOT_CONVERGED], ())
@@ -210,11 +226,11 @@ def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
 def shares_of(
     series: ResultColumns, limits: Iterable[CountedLimit], unsolved: int
 ) -> Iterator[RuleShare]:
-    """Return how often each rule fails, from its limits, which follow one another.
+    """Yield the share of failures of each rule, from its successive limits.
 
     Parameters
     ----------
-    unsolved : profiles with a current for which there is no solution to judge
+    unsolved : number of profiles with a current but without a solution
     """
     for rule, group in groupby(limits, key=lambda limit: limit.rule):
         beyond = {state: np.zeros(len(series), np.bool_) for state in (State.FAIL, State.WARN)}
@@ -241,7 +257,7 @@ def _rule_share(
     unsolved: int,
     exceedances: tuple[Exceedance, ...],
 ) -> RuleShare:
-    """The shares of a rule from numbers of profiles."""
+    """Compute the shares of a rule from numbers of profiles."""
     return RuleShare(
         name=rule.name,
         title=rule.title,
@@ -257,11 +273,14 @@ def _rule_share(
 def _exceedance(
     series: ResultColumns, limit: CountedLimit, beyond: NDArray[np.bool_], judged: NDArray[np.bool_]
 ) -> Exceedance:
-    """Return how often a limit is broken; add the profiles beyond it and judged to the others."""
+    """Compute the exceedance of a limit, and mark the profiles beyond it and evaluated."""
     if limit.criterion.limit is None:
         return Exceedance(limit, 0, None, None, None)
     values = limit.values(series)
     broken, known = limit.broken(values), np.isfinite(values)
+    if limit.on_estimate:
+        known &= ~broken
+        broken = np.zeros_like(broken)
     beyond |= broken
     judged |= known
     count = int(np.count_nonzero(known))

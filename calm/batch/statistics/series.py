@@ -1,4 +1,4 @@
-"""The columns of a batch result, one in memory at a time."""
+"""Columns of a batch result, with one column in memory at a time."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ _FIGURE = np.dtype(np.float32)
 
 
 class Seat(NamedTuple):
-    """Describe where a part of the line has its column in a result.
+    """Column of a part of the line in a result.
 
     Attributes
     ----------
-    number : from the top, among the components or among the clamps
-    clamped : which of the two
+    number : number from the top, among the components or among the clamps
+    clamped : whether it is a clamp
     """
 
     number: int
@@ -45,7 +45,7 @@ class Seat(NamedTuple):
 
 
 class LegSeats(NamedTuple):
-    """Describe where a leg of a net has its columns: its components, its clamps, its number."""
+    """Columns of a leg of a net: components, clamps, and number of the leg."""
 
     components: slice
     clamps: slice
@@ -53,7 +53,7 @@ class LegSeats(NamedTuple):
 
     @classmethod
     def of_file(cls, file: MooringFile) -> list[LegSeats]:
-        """Return those of each leg of a file."""
+        """Return the columns of each leg of a file."""
         found, clamped = [], 0
         for number, leg in enumerate(file.legs):
             own = sum(len(piece.clamps) for piece in file.pieces[leg.first : leg.end])
@@ -63,28 +63,29 @@ class LegSeats(NamedTuple):
 
 
 class ResultColumns:
-    """A batch result over time, n profiles, NaN where a profile was not solved.
+    """A batch result over time, for n profiles, with NaN for unsolved profiles.
 
-    A result lies on the disk by profiles; here it is turned once, into a temporary file by
-    columns, so that each can be read by itself: memory does not grow with the components. The file
-    takes 4 bytes a number, without compression, and goes with the `with` block.
+    A result is stored by profiles. Here it is transposed once into a temporary file by columns, so
+    that columns can be read separately and memory does not grow with the number of components. The
+    file takes 4 bytes per number, without compression, and is deleted at the end of the `with`
+    block.
 
     Parameters
     ----------
     dataset : the result, opened without loading it
-    folder : for the temporary file; the system's unless given
-    source : its file, for messages
+    folder : folder of the temporary file; by default that of the system
+    source : file of the result, for messages
 
     Attributes
     ----------
-    time : (n,) of the profiles
-    statuses : profiles by their status
-    component_label, clamp_label : of the columns
+    time : (n,) times of the profiles
+    statuses : number of profiles by status
+    component_label, clamp_label : labels of the columns
 
     Raises
     ------
     UsageError
-        The result cannot be read, or there is no room for the temporary file.
+        The result cannot be read, or there is not enough disk space for the temporary file.
     """
 
     def __init__(
@@ -117,7 +118,7 @@ class ResultColumns:
         return len(self.time)
 
     def of_leg(self, leg: LegSeats) -> ResultColumns:
-        """Return the columns of a leg of a net alone, which read from the same temporary file."""
+        """Return the columns of a leg of a net, read from the same temporary file."""
         view, ends = copy(self), slice(leg.number, leg.number + 1)
         of_ends = {one.name for one in MOORED_ENDS}
         view._columns = {
@@ -131,24 +132,24 @@ class ResultColumns:
 
     @property
     def seats(self) -> tuple[Seat, ...]:
-        """Return the seats of the components, then those of the clamps."""
+        """Seats of the components, followed by the seats of the clamps."""
         components, clamps = len(self.component_label), len(self.clamp_label)
         return (*map(Seat, range(components)), *(Seat(each, True) for each in range(clamps)))
 
     def label(self, seat: Seat) -> str:
-        """Return what a part is called."""
+        """Label of a part."""
         return (self.clamp_label if seat.clamped else self.component_label)[seat.number]
 
     def ends(self, name: str) -> Column:
-        """(n,) of a variable of the whole line, such as `anchor_vertical`."""
+        """Values (n,) of a variable of the whole line, such as `anchor_vertical`."""
         return self.column(name, 0)
 
     def column(self, name: str, index: int) -> Column:
-        """(n,) of a component or a clamp, such as `tilt` or `clamp_tilt`."""
+        """Values (n,) of a component or a clamp, such as `tilt` or `clamp_tilt`."""
         return self._read(self._columns[name][index])
 
     def at(self, name: str, time: int) -> Column:
-        """(columns,) of all components or clamps in one profile, none where there are none."""
+        """Values (columns,) of all components or clamps in one profile; empty if there are none."""
         values = []
         for column in self._columns.get(name, ()):
             self._turned.seek((column * len(self) + time) * _FIGURE.itemsize)
@@ -156,19 +157,19 @@ class ResultColumns:
         return np.array(values, _FIGURE)
 
     def depth(self, seat: Seat) -> Column:
-        """(n,) depth of the upper end of a component, or of a clamp [m]."""
+        """Depth (n,) of a clamp, or of a component's upper end [m]."""
         return self.column("clamp_depth" if seat.clamped else "depth_top", seat.number)
 
     def of_part(self, name: str, seat: Seat) -> Column:
-        """(n,) `tilt` [degrees] or `knockdown` [m] of a component or a clamp."""
+        """Values (n,) of `tilt` [degrees] or `knockdown` [m] of a component or a clamp."""
         return self.column(f"clamp_{name}" if seat.clamped else name, seat.number)
 
     def greatest_tension(self, seats: Sequence[Seat]) -> Column:
-        """(n,) the greatest of those at the ends of components and at clamps [N]."""
+        """Maximum (n,) of the tensions at the ends of components and at clamps [N]."""
         return self._gathered(np.maximum, seats)
 
     def least_tension(self, seat: Seat) -> Column:
-        """(n,) the lesser of those at both ends of a component, or at a clamp [N]."""
+        """Minimum (n,) of the tensions at both ends of a component, or tension at a clamp [N]."""
         return self._gathered(np.minimum, [seat])
 
     def _gathered(self, choose: np.ufunc, seats: Sequence[Seat]) -> Column:
@@ -180,7 +181,7 @@ class ResultColumns:
         return chosen
 
     def _tensions(self, seat: Seat) -> tuple[int, ...]:
-        """The columns of the tensions of a part."""
+        """Columns of the tensions of a part."""
         names = ("clamp_tension",) if seat.clamped else ("tension_top", "tension_bottom")
         return tuple(self._columns[name][seat.number] for name in names)
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, nan
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,16 +28,17 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 WORST = 20
-"""Profiles listed as the worst of a response."""
+"""Number of profiles listed as the most severe for a response."""
 
 SOURCE = ("currents", "notes", "input_sha256")
-"""Attributes of a result that a summary repeats: the record, the rules that were applied to it,
-and the hash of all that the result was computed from."""
+"""Attributes of a result that a summary repeats: the record, the rules applied to it, and the hash
+of the complete input.
+"""
 
 
 @dataclass(frozen=True)
 class PartDistributions:
-    """A component or a clamp: its distributions, None where nothing is known."""
+    """Distributions of a component or a clamp; None if no values are known."""
 
     label: str
     clamped: bool
@@ -47,7 +49,7 @@ class PartDistributions:
 
 @dataclass(frozen=True)
 class StopDepths:
-    """Hold how deep a stop of a profiler is: depths [m] and pressures [dbar] at `STOP_SHARES`."""
+    """Depths [m] and pressures [dbar] of a profiler's stop at `STOP_SHARES`."""
 
     profiler: str
     stop: str
@@ -61,14 +63,14 @@ STOP_SHARES = (1.0, 50.0, 99.0)
 
 @dataclass(frozen=True)
 class Response:
-    """One of the `RESPONSES`, figures of the line as a whole.
+    """One of the `RESPONSES`, quantities of the whole line.
 
     Attributes
     ----------
-    distribution : over the profiles; None where it is known in none
-    begin, low, high : of the intervals of time in which it is drawn: when they begin, and their
-        least and greatest value, NaN where it is not known in an interval
-    return_levels : by GEV and by POT
+    distribution : distribution over the profiles; None if there are no values
+    begin, low, high : start of each time interval of the drawing, and the
+        smallest and largest value in the interval, NaN without values
+    return_levels : return levels by GEV and by POT
     """
 
     name: str
@@ -81,7 +83,7 @@ class Response:
 
 @dataclass(frozen=True)
 class WorstProfile:
-    """One profile and its responses; `leaning` is the label of the part that tilts most."""
+    """One profile and its responses; `leaning` is the label of the part with the largest tilt."""
 
     time: np.datetime64
     knockdown: float
@@ -93,24 +95,25 @@ class WorstProfile:
 
 @dataclass(frozen=True)
 class Summary:
-    """All that is reported about a batch result.
+    """All contents of the report on a batch result.
 
     Attributes
     ----------
-    name : of the mooring
-    count : profiles
-    endings : profiles by how they ended
-    statuses : profiles by status, those that occur
+    name : name of the mooring
+    count : number of profiles
+    endings : number of profiles by ending
+    statuses : number of profiles for each status that occurs
     begin, end : times of the first and the last profile
-    years : that the solved profiles stand for
+    years : years represented by the solved profiles
     parts : the components in the order of the file, then the clamps
-    responses : of `RESPONSES`
-    worst : by the names in `RANKED`, the worst first
-    rules : whether there is an equilibrium, and the rules that can be judged in every profile
-    not_judged : why others are not, by their names
-    source : what the result says of where it comes from, by the names in `SOURCE`
-    limits_used : what the rules judge by, each with its default
-    stops : of the profilers, down the line
+    responses : one for each of `RESPONSES`
+    worst : worst profiles by the names in `RANKED`, in order
+    rules : the equilibrium rule, and the rules that can be evaluated in every profile
+    not_judged : reasons why other rules are not evaluated, by their names
+    source : origin of the result, by the names in `SOURCE`
+    read : records of the files from which the result was made
+    limits_used : limits used by the rules, each with its default
+    stops : stops of the profilers, down the line
     """
 
     name: str
@@ -126,22 +129,27 @@ class Summary:
     rules: tuple[limits.RuleShare, ...]
     not_judged: Mapping[str, str]
     source: Mapping[str, str]
+    read: Sequence[Mapping[str, Any]]
     limits_used: tuple[LimitKey, ...] = ()
     stops: tuple[StopDepths, ...] = ()
 
     @property
     def known_responses(self) -> Sequence[Response]:
-        """Those that are known in some profile, as the offset of most nets is not; else all."""
+        """Responses with values in at least one profile, or else all responses; most nets have no
+        offset.
+        """
         return [one for one in self.responses if one.distribution is not None] or self.responses
 
     @property
     def solved(self) -> int:
-        """Profiles that all figures are of."""
+        """Number of solved profiles, on which all values are based."""
         return self.endings[Ending.SOLVED]
 
     @property
     def unsolved(self) -> int:
-        """Profiles that have a current and no figures: without equilibrium, or not converged."""
+        """Number of profiles with a current but without values: no equilibrium, or no
+        convergence.
+        """
         return self.count - self.solved - self.endings[Ending.NO_DATA]
 
 
@@ -151,25 +159,25 @@ def summarize(
     folder: Path | None = None,
     source: Path = Path("the result"),
 ) -> Summary:
-    """Gather what a finished result says.
+    """Build the summary of a finished result.
 
     Parameters
     ----------
     dataset : the result, opened without loading it
-    mooring : that it was solved for: its limits are judged
-    folder : for a temporary file, as large as the result is without compression; the system's
-        unless given
+    mooring : mooring that it was solved for, whose limits are evaluated
+    folder : folder for a temporary file, as large as the uncompressed result; by default
+        that of the system
     source : the file of the result, for messages
 
-    Profiles that were not solved are left out, and counted. All shares are of profiles: shares of
-    time where the record is even. It takes some 35 bytes of memory a profile, however many
-    components there are.
+    Unsolved profiles are excluded, and counted. All shares are shares of profiles, which are shares
+    of time if the record is evenly spaced. Memory use is about 35 bytes per profile, for any number
+    of components.
 
     Raises
     ------
     UsageError
-        The dataset is no result of `calm batch`, or cannot be read; there is no room for the
-        temporary file.
+        The dataset is not a result of `calm batch`, or cannot be read; or there is not enough disk
+        space for the temporary file.
     """
     with ResultColumns(dataset, folder, source) as series:
         ended = endings(series.statuses)
@@ -191,6 +199,7 @@ def summarize(
             rules=(equilibrium, *limits.shares_of(series, limits.limits_of(mooring), unsolved)),
             not_judged=limits.NOT_JUDGED,
             source={name: str(dataset.attrs[name]) for name in SOURCE if name in dataset.attrs},
+            read=json.loads(dataset.attrs.get("read", "[]")),
             limits_used=tuple(
                 dict.fromkeys(
                     key
@@ -224,7 +233,7 @@ def _stops(series: ResultColumns, mooring: Design) -> Iterator[StopDepths]:
         assert isinstance(profiler.component, Profiler)
         for stop, label in zip(("upper", "lower"), profiler.component.between or (), strict=True):
             seat = seats[label]
-            if stop == "upper" and not seat.clamped:  # it ends where what follows begins
+            if stop == "upper" and not seat.clamped:  # it ends at the beginning of the next piece
                 seat = Seat(seat.number + 1)
             depths = np.nanpercentile(series.depth(seat), STOP_SHARES)
             pressures = pressure_at(depths, latitude)
@@ -246,18 +255,20 @@ RESPONSES: Mapping[str, Callable[[ResultColumns], Column]] = {
     "tilt": _greatest_tilt,
     "offset": limits.top_offset,
 }
-"""Knockdown of the top, tension at the anchor, greatest tilt of any part, offset of the top."""
+"""Knockdown of the top, tension at the anchor, largest tilt of any part, offset of the top."""
 
 RANKED = ("knockdown", "anchor_tension", "tilt")
-"""The responses by which the worst profiles are reported."""
+"""Responses for which the most severe profiles are reported."""
 
 
 _LegColumns = Mapping[str, Sequence[ResultColumns]]
-"""The columns that each response is the greatest of: of a line, or of the legs of a net."""
+"""Columns whose maximum each response is, of a line or of a net's legs."""
 
 
 def _columns_of(series: ResultColumns, mooring: Design) -> _LegColumns:
-    """Of a net the free ends count, and the anchors; an offset is that from the leg's own."""
+    """Columns for each response. In a net they are those of the free ends and the anchors, with
+    each offset relative to the leg's own anchor.
+    """
     if not mooring.several:
         return dict.fromkeys(RESPONSES, (series,))
     keys, seats = mooring.file.legs, LegSeats.of_file(mooring.file)
@@ -271,7 +282,7 @@ def _columns_of(series: ResultColumns, mooring: Design) -> _LegColumns:
 def _responses(
     series: ResultColumns, legs: _LegColumns, step: np.timedelta64
 ) -> tuple[tuple[Response, ...], Mapping[str, tuple[WorstProfile, ...]]]:
-    """One response in memory at a time."""
+    """Compute the responses, with one response in memory at a time."""
     responses, worst = [], {}
     for name, of in RESPONSES.items():
         values = np.full(len(series), np.nan, np.float32)
@@ -291,7 +302,7 @@ def _responses(
 
 
 def _greatest(values: Column) -> list[int]:
-    """Indices of the `WORST` greatest values, of like ones the first before the later."""
+    """Indices of the `WORST` largest values, with earlier ones first among equal values."""
     known = values[np.isfinite(values)]
     if not len(known):
         return []
@@ -299,7 +310,7 @@ def _greatest(values: Column) -> list[int]:
     if len(known) > WORST:
         known.partition(len(known) - WORST)
         least = known[len(known) - WORST]
-    above = np.flatnonzero(values > least)  # fewer than `WORST`, however many are alike
+    above = np.flatnonzero(values > least)  # fewer than `WORST`, even if many are equal
     above = above[np.argsort(-values[above], kind="stable")]
     alike = np.flatnonzero(values == least)[: WORST - len(above)]
     return [int(index) for index in (*above, *alike)]
@@ -330,23 +341,23 @@ Floats = NDArray[np.float64]
 PERCENTILES = (50.0, 90.0, 99.0, 99.9)
 
 SHARES = np.geomspace(1.0, 1e-7, 57)
-"""Shares of the profiles for which an exceedance curve shows the value; eight to a decade."""
+"""Shares of the profiles in an exceedance curve, eight per decade."""
 
 MOST_INTERVALS = 1000
-"""Intervals of time into which a series is gathered to be drawn."""
+"""Number of time intervals of a series in a drawing."""
 
 
 @dataclass(frozen=True)
 class Distribution:
-    """Describe how a quantity is distributed over the n profiles in which it is known.
+    """Distribution of a quantity over the n profiles with a value.
 
     Attributes
     ----------
     count : n
-    mean : each profile counts alike
-    percentiles : of `PERCENTILES`: linear between the order statistics, of which that of rank
+    mean : mean over the profiles
+    percentiles : values at `PERCENTILES`: linear between the order statistics, where rank
         1 + (n - 1) p is the p quantile (definition 7 of Hyndman and Fan 1996)
-    maximum, time : the greatest value, and when it is first reached
+    maximum, time : the maximum, and the time at which it is first reached
     share, value : exceedance curve: the value that a share of the profiles reaches or exceeds,
         the quantile 1 - share, for `SHARES` down to a single profile
     """
@@ -361,13 +372,13 @@ class Distribution:
 
 
 def distribution_of(values: Column, time: Times) -> Distribution | None:
-    """The distribution of (n,) values; NaN is left out, None returned where nothing else is."""
+    """Compute the distribution of (n,) values without NaN; None if all values are NaN."""
     known = values[np.isfinite(values)]
     known.sort()
     count = len(known)
     if not count:
         return None
-    greatest = int(np.argmax(values == known[-1]))  # the first of its like
+    greatest = int(np.argmax(values == known[-1]))  # the first of equal values
     share = np.append(SHARES[SHARES * count > 1.0], 1.0 / count)
     rank = (count - 1) * np.concatenate([np.array(PERCENTILES) / 100.0, 1.0 - share])
     rank[-1] = count - 1  # the rarest value is the maximum
@@ -387,9 +398,11 @@ def distribution_of(values: Column, time: Times) -> Distribution | None:
 
 
 def envelope_of(values: Column, time: Times) -> tuple[Times, Column, Column]:
-    """Return when each of `MOST_INTERVALS` intervals begins, and its least and greatest value.
+    """Return the start of each of `MOST_INTERVALS` time intervals, with the smallest and the
+    largest value.
 
-    The intervals hold the same number of profiles; of a shorter record each profile is one.
+    The intervals contain equal numbers of profiles; in a shorter record, each profile is an
+    interval.
     """
     count = min(len(values), MOST_INTERVALS)
     begin = np.unique(np.linspace(0, len(values), count, endpoint=False).astype(np.int64))

@@ -15,23 +15,27 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 CONFIDENCE = 0.95
-"""Share of the intervals of `Tail.interval` that hold the true level, were all assumptions met."""
+"""Share of the intervals of `Tail.interval` that contain the true level if all assumptions are
+met.
+"""
 
 CHI_SQUARE = 3.841458820694124
 """Quantile of the χ² distribution with one degree of freedom at `CONFIDENCE`."""
 
 LEAST_SHAPE = -0.5
-"""Shape from which on the theory of the likelihood holds (Coles 2001, §3.3.2)."""
+"""Shape above which the theory of the likelihood is valid (Coles 2001, §3.3.2)."""
 
 SHAPES = (-1.0, 2.0)
-"""Shapes that are searched. At -1 and below the likelihood has no maximum (Coles 2001, §3.3.2).
-The upper bound is our choice: from 1 on even the mean is infinite, as of no force or depth."""
+"""Range of shapes that is searched. At -1 and below the likelihood has no maximum (Coles 2001,
+§3.3.2). The upper bound is our choice: from 1 on even the mean is infinite, unlike that of any
+force or depth.
+"""
 
-_AT_BOUND = 0.01  # our choice: a hundred times what the search for a shape is exact to
+_AT_BOUND = 0.01  # our choice: a hundred times the accuracy of the search for a shape
 _EULER = 0.5772156649015329
-_NO_SHAPE = 1e-8  # a shape nearer to nothing is the exponential or the Gumbel case to rounding
-_FURTHEST = 100.0  # our choice: standard deviations of the data that an interval may reach
-_MOST_DEVIANCE = 1e3  # keeps a search for a root away from infinities
+_NO_SHAPE = 1e-8  # shapes closer to zero are, to rounding, the exponential or the Gumbel case
+_FURTHEST = 100.0  # our choice: largest extent of an interval in standard deviations of the data
+_MOST_DEVIANCE = 1e3  # keeps a root search away from infinities
 
 
 class NotFitted(Exception):
@@ -40,13 +44,13 @@ class NotFitted(Exception):
 
 @dataclass(frozen=True)
 class Tail:
-    """A generalised extreme value or a generalised Pareto distribution, fitted.
+    """A fitted generalised extreme value distribution or generalised Pareto distribution.
 
     Attributes
     ----------
     location, scale : μ, σ, in the unit of the values; the location of a Pareto distribution is
         its threshold
-    shape : ξ; a tail with ξ < 0 ends at some value, one with ξ > 0 falls off slowly
+    shape : ξ; a tail with ξ < 0 has a finite end, a tail with ξ > 0 decreases slowly
     maxima : whether it describes maxima (GEV), rather than peaks over a threshold (Pareto)
     values : (n,) maxima or peaks that it was fitted to
     """
@@ -58,10 +62,10 @@ class Tail:
     values: Floats
 
     def level(self, growth: float) -> float:
-        """The return level μ + σ (e^{ξ g} - 1)/ξ of a period of T years.
+        """Return level μ + σ (e^{ξ g} - 1)/ξ of a period of T years.
 
-        Its growth g is -log(-log(1 - 1/T)) for maxima of years (Coles 2001, eq. 3.4), log(λ T) for
-        λ independent peaks a year (eq. 4.12 with λ in place of the rate of exceedances).
+        The growth g is -log(-log(1 - 1/T)) for annual maxima (Coles 2001, eq. 3.4), and log(λ T)
+        for λ independent peaks per year (eq. 4.12 with λ instead of the rate of exceedances).
         """
         return self.location + self.scale * _grown(self.shape, growth)
 
@@ -69,10 +73,10 @@ class Tail:
         """Both ends of the `CONFIDENCE` interval of a level, by its profile likelihood.
 
         For each possible level the likelihood is maximised over the other parameters. The interval
-        holds the levels for which twice the logarithm of this is less than `CHI_SQUARE` below that
-        of the fit (Coles 2001, §2.6.6, §3.3.4, §4.3.3). An end is None where none is found within
-        100 standard deviations of the values: the data do not bound the level there. NotFitted: the
-        search for a maximum failed.
+        contains the levels for which twice the logarithm of this maximum is less than `CHI_SQUARE`
+        below that of the fit (Coles 2001, §2.6.6, §3.3.4, §4.3.3). An end is None if it is not
+        within 100 standard deviations of the values: the data then do not bound the level. Raises
+        NotFitted if the search for a maximum fails.
         """
         estimate = self.level(growth)
         best = _loss(self.values, self.location, self.scale, self.shape, self.maxima)
@@ -85,7 +89,7 @@ class Tail:
         return _end(excess, estimate, -spread), _end(excess, estimate, spread)
 
     def _profile(self, level: float, growth: float) -> float:
-        """The least loss of all distributions with a given level."""
+        """Smallest loss of all distributions with a given level."""
         if not self.maxima:
 
             def of_shape(free: Floats) -> float:
@@ -103,11 +107,11 @@ class Tail:
 
 
 def fit_maxima(values: Floats) -> Tail:
-    """The generalised extreme value distribution of greatest likelihood (Coles 2001, eq. 3.7-3.9).
+    """Fit a generalised extreme value distribution by maximum likelihood (Coles 2001, eq. 3.7-3.9).
 
     Parameters
     ----------
-    values : (n,) independent maxima of blocks of equal length, not all alike
+    values : (n,) independent maxima of blocks of equal length, not all equal
 
     Raises
     ------
@@ -116,7 +120,7 @@ def fit_maxima(values: Floats) -> Tail:
     """
     middle, spread = float(values.mean()), float(values.std())
     scaled = (values - middle) / spread
-    scale = sqrt(6.0) / pi  # of a Gumbel distribution of unit deviation
+    scale = sqrt(6.0) / pi  # scale of a Gumbel distribution of unit deviation
 
     def loss(free: Floats) -> float:
         return _loss(scaled, free[0], exp(free[1]), free[2], True)
@@ -127,7 +131,7 @@ def fit_maxima(values: Floats) -> Tail:
 
 
 def fit_excesses(values: Floats, threshold: float) -> Tail:
-    """The generalised Pareto distribution of greatest likelihood (Coles 2001, eq. 4.10-4.11).
+    """Fit a generalised Pareto distribution by maximum likelihood (Coles 2001, eq. 4.10-4.11).
 
     Parameters
     ----------
@@ -149,7 +153,7 @@ def fit_excesses(values: Floats, threshold: float) -> Tail:
 
 
 def _inside(shape: float) -> float:
-    """A shape that was found, refused where it is only as far as the search went."""
+    """Return a fitted shape, or raise NotFitted if it is at a bound of the search."""
     for bound in SHAPES:
         if abs(shape - bound) <= _AT_BOUND:
             raise NotFitted(
@@ -160,15 +164,15 @@ def _inside(shape: float) -> float:
 
 
 def _grown(shape: float, growth: float) -> float:
-    """(e^{ξ g} - 1)/ξ."""
+    """Evaluate (e^{ξ g} - 1)/ξ."""
     shape = _apart(shape)
     return float(np.expm1(min(shape * growth, 700.0))) / shape
 
 
 def _loss(values: Floats, location: float, scale: float, shape: float, maxima: bool) -> float:
-    """Negative log-likelihood; infinite where a value cannot occur.
+    """Negative log-likelihood; infinite if a value cannot occur.
 
-    With s = log(1 + ξ (x - μ)/σ)/ξ each value adds log σ + (1 + ξ) s, and e^{-s} as a maximum.
+    With s = log(1 + ξ (x - μ)/σ)/ξ each value adds log σ + (1 + ξ) s, and for maxima also e^{-s}.
     """
     if not (SHAPES[0] < shape < SHAPES[1] and scale > 0.0):
         return inf
@@ -188,7 +192,7 @@ def _apart(shape: float) -> float:
 
 
 def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, float]:
-    """Return where a loss is least, and how much it is there, from the best of some starts."""
+    """Minimise a loss from the best of several starts, and return the minimum and its loss."""
     from scipy.optimize import minimize
 
     start = min(starts, key=lambda one: loss(np.array(one)))
@@ -202,7 +206,9 @@ def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, 
 
 
 def _end(excess: Callable[[float], float], estimate: float, step: float) -> float | None:
-    """Return where a function, negative at an estimate, turns positive on the side of a step."""
+    """Find the position at which a function, negative at an estimate, becomes positive in the
+    direction of a step.
+    """
     from scipy.optimize import brentq
 
     within, reach = estimate, abs(step) * _FURTHEST

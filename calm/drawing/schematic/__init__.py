@@ -1,7 +1,7 @@
-"""The parts of a line one below the other: symbols, words that wrap, and figures beside them.
+"""The parts of a line in a column, with symbols, wrapped texts and values.
 
-The schematic is one such column, an SVG picture in order from the top and not to scale; the mooring
-diagram has as many as its pages hold. Lengths are in points (1/72 inch).
+The schematic is one such column, an SVG picture in order from the top and not to scale; the pages
+of a mooring diagram hold several columns. Lengths are in points (1/72 inch).
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from calm.files import MooringFile
 from calm.quantities import QUANTITIES
 
 FONT = 8.0
-"""Size of the texts; nothing in a column is smaller."""
+"""Size of the texts, the smallest in a column."""
 LEADING = 10.0
-"""Distance of two lines of text."""
+"""Distance between two lines of text."""
 SYMBOL_SCALE, CLAMP_SCALE = 0.6, 0.42
 HEAD = 38.0
 """Height of the headings, from the top of the column."""
@@ -31,25 +31,25 @@ _PAD, _GAP, _INDENT = 4.0, 6.0, 10.0
 _CLAMP_AT = 16.0
 _SHORTEST, _PER_DECADE = 18.0, 9.0
 
-# A4 leaves 180 by 267 mm; a long line is drawn smaller to fit its height, but no smaller than can
-# be read.
+# A4 leaves 180 by 267 mm; a long line is reduced to fit this height, but stays legible
 _WIDTH, _MARGIN = 508.0, 3.0
 _MILLIMETRE = 72.0 / 25.4
 _PRINTED_HEIGHT, _LEAST_SCALE = 267.0 * _MILLIMETRE, 0.67
 _TITLE, _TITLE_LEADING = 13.0, 16.0
 _SHEAVE = 26.0 * SYMBOL_SCALE
-_SKY, _MAST, _SHIP, _HELICOPTER = 8.0, 26.0, 30.0, 28.0  # above the surface, or the hook
+_SKY, _MAST, _SHIP, _HELICOPTER = 8.0, 26.0, 30.0, 28.0  # above the surface or the hook
 _SUBMERGED, _BELOW_BODY = 12.0, 14.0
 _MOORED_AT, _TOWED_AT = 26.0, 46.0
 
 
 def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
-    """A line as an SVG picture; it prints on A4 up to some 50 parts, beyond on a longer sheet.
+    """Draw a line as an SVG picture that prints on A4 up to about 50 parts, and on a longer sheet
+    otherwise.
 
-    It refers to nothing outside and has neither identifiers nor style sheets, so that it can stand
-    in a page beside others. No text is cut: long ones wrap. The same line gives the same text.
-    With a result, depths are under load and in the current; without, those of the upright,
-    unstretched line, unknown in a tow and of a float at the surface.
+    The picture has no external references, identifiers or style sheets, so that it can be placed on
+    a page with others. Long texts wrap and are never cut. The same line gives the same text. With a
+    result, depths are under load and in the current; without, they are those of the upright,
+    unstretched line, and unknown for a tow and for a float at the surface.
     """
     shown = schematic_of(file, result)
     rows = [row for part in shown.parts for row in part.rows]
@@ -82,7 +82,7 @@ def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
 
 
 def _hung(shown: Schematic, column: LineColumn, top: float) -> tuple[float, tuple[PlacedPart, ...]]:
-    """The level of the sea surface, or of a helicopter's hook, and the parts below it."""
+    """Level of the sea surface, or of a helicopter's hook, and the placed parts below."""
     parts = measured(shown.parts, column)
     if shown.towed_by is None:
         middle = parts[0].height / 2
@@ -90,18 +90,18 @@ def _hung(shown: Schematic, column: LineColumn, top: float) -> tuple[float, tupl
         start = surface - middle if shown.surface else surface + _SUBMERGED
         return surface, placed(parts, start, start + middle)
     if shown.sea is None:
-        surface = hung = start = top + _HELICOPTER
+        surface = line_top = start = top + _HELICOPTER
     else:
         surface = top + _SHIP
-        hung, start = surface - _SHEAVE, surface + _SUBMERGED
-    *others, last = placed(parts, start, hung)
+        line_top, start = surface - _SHEAVE, surface + _SUBMERGED
+    *others, last = placed(parts, start, line_top)
     return surface, (*others, replace(last, ends=(last.ends[0], last.middle)))
 
 
 def _draw_scene(
     page: Pen, shown: Schematic, column: LineColumn, surface: float, bottom: float
 ) -> None:
-    """Water, surface and seabed, and what tows, with their texts."""
+    """Draw water, surface, seabed and the towing vehicle, with their texts."""
     if shown.sea is not None:
         draw_sea(page, column, 0.0, (surface, bottom), None if shown.surface else shown.sea)
     if shown.seabed is not None:
@@ -117,15 +117,15 @@ def _draw_scene(
 
 @dataclass(frozen=True)
 class LineColumn:
-    """Hold where a line is drawn, and what stands beside it.
+    """Geometry of a column with its line, texts and values.
 
     Attributes
     ----------
-    width : of all
-    headings : over the figures, line by line, the unit last
-    rights : right edges of the columns of figures
-    text : from where to where there is room for words
-    line_at : where the line hangs, from the left edge
+    width : total width
+    headings : headings of the values, line by line, with the unit last
+    rights : right edges of the columns of values
+    text : left and right edge of the texts
+    line_at : position of the line from the left edge
     """
 
     width: float
@@ -141,13 +141,13 @@ def column_of(
     width: float,
     line_at: float = 26.0,
 ) -> LineColumn:
-    """A column of a width with room for its figures, as wide as the widest of them.
+    """Lay out a column of a width, with room for the widest value in each of its columns of values.
 
     Parameters
     ----------
-    parts : the rows beside the line
-    headings : over their figures
-    line_at : where the line hangs; the picture is twice as wide
+    parts : rows of text next to the line
+    headings : headings of their values
+    line_at : position of the line; the picture is twice as wide
     """
     cells = [[*heading] for heading in headings]
     for row in parts:
@@ -160,7 +160,7 @@ def column_of(
 
 
 class TextLine(NamedTuple):
-    """A line of text beside a part, what stands `at` a distance in the same line, and figures."""
+    """A line of text next to a part, a second text `beside` at distance `at`, and values."""
 
     text: str
     colour: str = INK
@@ -171,14 +171,14 @@ class TextLine(NamedTuple):
 
     @property
     def width(self) -> float:
-        """Return how far it reaches."""
+        """Width of the line of text."""
         beside = self.at + text_width(self.beside, FONT) if self.beside else 0.0
         return max(text_width(self.text, FONT, bold=self.bold), beside)
 
 
 @dataclass(frozen=True)
 class PlacedPart:
-    """A part from where to where, and its texts; `ends` are those of the line through it."""
+    """A part with its position and texts; `ends` are the ends of the line through it."""
 
     part: ShownPart
     top: float
@@ -188,17 +188,17 @@ class PlacedPart:
 
     @property
     def middle(self) -> float:
-        """Return where its symbol is."""
+        """Position of its symbol."""
         return self.top + self.height / 2
 
 
 def measured(
     parts: Sequence[ShownPart], column: LineColumn, growth: float = 1.0
 ) -> list[PlacedPart]:
-    """Each part with the height that it needs, not placed yet.
+    """Compute the height of each part, before the parts are placed.
 
-    A long cable is seen to be long: its height, with what is clamped on it, grows with the
-    logarithm of its length, at a rate of `growth`.
+    The height of a cable, with its clamps, grows with the logarithm of its length at a rate of
+    `growth`, so that long cables look long.
     """
     found = [_measured(part, column) for part in parts]
     for number, one in enumerate(found):
@@ -226,7 +226,7 @@ def _measured(part: ShownPart, column: LineColumn) -> PlacedPart:
 
 
 def _text_lines(row: TextRow, room: float) -> list[TextLine]:
-    """Label and name in one line where they fit; else they wrap, one below the other."""
+    """Put label and name on one line if they fit, else wrap them one below the other."""
     at = text_width(row.label, FONT, bold=row.strong) + 6.0
     if at + text_width(row.name, FONT) <= room and row.label.isascii():
         return [TextLine(row.label, INK, row.strong, row.name, at, row.cells)]
@@ -238,21 +238,23 @@ def _text_lines(row: TextRow, room: float) -> list[TextLine]:
 
 
 def placed(
-    parts: Sequence[PlacedPart], top: float, hung: float | None = None
+    parts: Sequence[PlacedPart], top: float, line_top: float | None = None
 ) -> tuple[PlacedPart, ...]:
-    """Parts one below the other from `top`; the line begins where it is `hung`, else at `top`."""
+    """Place parts one below the other from `top`; the line begins at `line_top` if given, else at
+    `top`.
+    """
     tops = accumulate((part.height for part in parts), initial=top)
     found = [
         replace(part, top=at, ends=(at, at + part.height))
         for part, at in zip(parts, tops, strict=False)
     ]
-    if hung is not None:
-        found[0] = replace(found[0], ends=(hung, found[0].ends[1]))
+    if line_top is not None:
+        found[0] = replace(found[0], ends=(line_top, found[0].ends[1]))
     return tuple(found)
 
 
 def draw_headings(page: Pen, column: LineColumn, left: float, top: float) -> None:
-    """The words over the figures, their last lines at one level, and a rule below."""
+    """Write the headings of the values, aligned at their last lines, and a rule below."""
     for lines, right in zip(column.headings, column.rights, strict=True):
         for number, word in enumerate(reversed(lines)):
             y = top + HEAD - 8.0 - 9.4 * number
@@ -263,7 +265,7 @@ def draw_headings(page: Pen, column: LineColumn, left: float, top: float) -> Non
 def draw_sea(
     page: Pen, column: LineColumn, left: float, levels: tuple[float, float], row: TextRow | None
 ) -> None:
-    """The water between its levels, and the surface with its text where it has one."""
+    """Draw the water between two levels, and the surface with its text, if any."""
     pen = page.group(left, 0.0)
     symbols.draw_water(pen, 2.0 * column.line_at, *levels)
     symbols.draw_surface(pen, 2.0 * column.line_at, levels[0])
@@ -272,29 +274,29 @@ def draw_sea(
 
 
 def draw_ground(page: Pen, column: LineColumn, left: float, y: float, row: TextRow) -> None:
-    """The seabed with its text."""
+    """Draw the seabed with its text."""
     symbols.draw_seabed(page.group(left, 0.0, stroke=INK), 2.0 * column.line_at, y)
     draw_row(page, column, left, y + SEABED_ROOM / 2 + 1.0, row)
 
 
 def draw_row(page: Pen, column: LineColumn, left: float, y: float, row: TextRow) -> None:
-    """A text that stands for no part, with its figures."""
+    """Write a text that belongs to no part, with its values."""
     page.letters(left + column.text[0], y, row.label, size=FONT, colour=SOFT)
     for text, right in zip(row.cells, column.rights, strict=False):
         page.letters(left + right, y, text, size=FONT, colour=SOFT, anchor="end")
 
 
 def draw_parts(page: Pen, parts: Sequence[PlacedPart], column: LineColumn, left: float) -> None:
-    """The line with its symbols, and the texts beside it, `left` of the picture."""
+    """Draw the line with its symbols and texts; `left` is the left edge of the column."""
     pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
     for part in parts:
-        _draw_symbol(pen.draw("g"), part, left + column.line_at)
+        draw_symbol(pen.draw("g"), part, left + column.line_at)
     for part in parts:
         _draw_texts(page, part, column, left)
 
 
-def _draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
-    """The line through a part, its symbol, or what is clamped on it."""
+def draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
+    """Draw the line through a part, and its symbol or its clamps."""
     part = one.part
     if part.labels:
         pen.title(", ".join(part.labels))
@@ -312,7 +314,7 @@ def _draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
 
 
 def _draw_texts(page: Pen, one: PlacedPart, column: LineColumn, left: float) -> None:
-    """The texts of a part, with dots that lead the eye from its symbol on to its figures."""
+    """Write the texts of a part, with dots that lead from its symbol to its values."""
     start = left + column.text[0] + (_INDENT if one.part.clamped else 0.0)
     levels = [
         one.middle + LEADING * (number - (len(one.lines) - 1) / 2)

@@ -1,7 +1,8 @@
 """Parts of a deck that the mooring diagram shows, from the top down."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import groupby
 from math import nan
 
@@ -9,21 +10,47 @@ from calm.deck import Deck
 from calm.deck.deck_items import DeckItem, DeckRow, rows_on_paper
 from calm.drawing.schematic.shown_parts import ShownPart, TextRow, afloat, one_line, place_text
 from calm.drawing.schematic.symbols import LINES, Sign, Symbol, sign_of
+from calm.files import MooringFile
 from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
 
+Cells = Callable[[Sequence[DeckItem], tuple[str, str]], tuple[str, ...]]
+"""The figures beside some items, by these and by their cut length, or place, and stretched one."""
 
-def parts_of(deck: Deck, listed: Sequence[DeckItem], *, surface: bool) -> tuple[ShownPart, ...]:
+
+def parts_of_deck(
+    deck: Deck, listed: Sequence[DeckItem], *, surface: bool
+) -> tuple[ShownPart, ...]:
+    """Return the listed parts of a line or leg, whose top is at the `surface` or submerged.
+
+    The values of each part are cut length or position on the wire, stretched length, depth, planned
+    depth if any part has one, height, tension and net buoyancy.
+    """
+    weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
+    cells = partial(_figures, weights=weights, planned=has_plans(deck))
+    return parts_of(deck.file, deck.parts, listed, cells, surface=surface)
+
+
+def parts_of(
+    file: MooringFile,
+    every: Sequence[DeckItem],
+    listed: Sequence[DeckItem],
+    cells: Cells,
+    *,
+    surface: bool,
+) -> tuple[ShownPart, ...]:
     """The parts listed, down a line or a leg, whose top is at the `surface` or below it.
 
-    Connectors that follow one another make one junction.
+    Connectors that follow one another make one junction. The labels of a part are those of all
+    that it stands for.
 
-    Beside each stand cut length or place on the wire, stretched length, depth, planned depth if any
-    part has one, height, tension and net buoyancy.
+    Parameters
+    ----------
+    every : all of the line, among which a label is a person's own or not
+    cells : the figures beside the items of a part
     """
-    own, planned = _own_labels(deck.parts), has_plans(deck)
-    weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
-    codes = {one.serial: " · ".join(one.code_lines) for one in deck.file.releases}
+    own = _own_labels(every)
+    codes = {one.serial: " · ".join(one.code_lines) for one in file.releases}
     found: list[ShownPart] = []
     joints: list[DeckItem] = []
     cable: Symbol | None = None
@@ -34,26 +61,26 @@ def parts_of(deck: Deck, listed: Sequence[DeckItem], *, surface: bool) -> tuple[
             joints += (*row.items, *row.joints)
             continue
         if joints:
-            found.append(_junction(joints, own, weights, planned=planned))
+            found.append(_junction(joints, own, cells))
         joints = [*row.joints] if len(row.items) == 1 else []
         if row.first.on is None:
             sign = _sign(row.first)
             cable = sign.symbol if sign.symbol in LINES else None
-        found.append(_piece(row, cable, weights, codes, planned=planned))
+        found.append(_piece(row, cable, codes, cells))
     if joints:
-        found.append(_junction(joints, own, weights, planned=planned))
+        found.append(_junction(joints, own, cells))
     if surface:
         found[0] = replace(found[0], sign=afloat(found[0].sign))
     return tuple(found)
 
 
 def has_plans(deck: Deck) -> bool:
-    """Whether any part of a deck has a planned depth."""
+    """Whether at least one part of a deck has a planned depth."""
     return any(one.planned_depth is not None for one in deck.parts)
 
 
 def _own_labels(parts: Sequence[DeckItem]) -> dict[int, str]:
-    """Of each part, by its identity: its label where a person gave it, else nothing."""
+    """User-defined labels of parts by their identity, empty for default labels."""
     labels = own_labels([one.label for one in parts])
     return {
         id(one): "" if label == one.part.use else one.label
@@ -65,22 +92,15 @@ def _sign(one: DeckItem) -> Sign:
     return sign_of(one.part.use, one.label, one.part.component)
 
 
-_Weights = Mapping[str, float | None]
-
-
 def _piece(
-    row: DeckRow,
-    cable: Symbol | None,
-    weights: _Weights,
-    codes: Mapping[str | None, str],
-    *,
-    planned: bool,
+    row: DeckRow, cable: Symbol | None, codes: Mapping[str | None, str], cells: Cells
 ) -> ShownPart:
     first, label = row.first, one_line(row.label)
+    joints = row.joints if len(row.items) > 1 else ()
     words = [
         "" if (name := one_line(row.name)) == label else name,
         f"on {one_line(first.name)}" if row.floats else "",
-        f"with {one_line(row.joined)}" if row.joined and len(row.items) > 1 else "",
+        f"with {one_line(row.joined)}" if joints else "",
         "" if first.serial is None else f"no. {one_line(first.serial)}",
         one_line(codes.get(first.serial, "")) if first.role == "release" else "",
     ]
@@ -94,12 +114,13 @@ def _piece(
     row_beside = TextRow(
         label,
         " · ".join(filter(None, words)),
-        (*lengths, *_figures([*row.items, *row.floats], weights, planned=planned)),
+        cells([*row.items, *row.floats, *joints], lengths),
         strong=first.role != "line" or bool(row.floats),
     )
     return ShownPart(
         _sign(first),
         (row_beside,),
+        labels=tuple(one.label for one in (*row.items, *row.floats, *joints)),
         cable=cable,
         length=first.cut_length if first.cut_length is not None else nan,
         floats=_sign(row.floats[0]) if row.floats else None,
@@ -107,9 +128,15 @@ def _piece(
     )
 
 
-def _figures(items: Sequence[DeckItem], weights: _Weights, *, planned: bool) -> tuple[str, ...]:
-    """Depth, planned depth and height of the first, the greatest tension, and the net buoyancy of
-    all.
+def _figures(
+    items: Sequence[DeckItem],
+    lengths: tuple[str, str],
+    weights: Mapping[str, float | None],
+    *,
+    planned: bool,
+) -> tuple[str, ...]:
+    """Lengths, depth, planned depth and height of the first item, maximum tension, and total net
+    buoyancy.
     """
     plan = items[0].planned_depth
     tension = max((one.tension for one in items if one.tension is not None), default=None)
@@ -117,6 +144,7 @@ def _figures(items: Sequence[DeckItem], weights: _Weights, *, planned: bool) -> 
     known = [one for one in own if one is not None]
     buoyancy = -sum(known) if len(known) == len(own) else None
     return (
+        *lengths,
         _said("depth", items[0].depth),
         *(["" if plan is None else _said("planned_depth", plan)] if planned else []),
         _said("depth", items[0].height),
@@ -129,10 +157,8 @@ def _said(name: str, value: float | None) -> str:
     return QUANTITIES[name].format(value)
 
 
-def _junction(
-    parts: Sequence[DeckItem], own: Mapping[int, str], weights: _Weights, *, planned: bool
-) -> ShownPart:
-    words = []  # connectors as people write them, with their own labels and serial numbers
+def _junction(parts: Sequence[DeckItem], own: Mapping[int, str], cells: Cells) -> ShownPart:
+    words = []  # connectors in their usual notation, with their own labels and serial numbers
     for one in parts:
         hardware, label = one_line(one.hardware), one_line(own[id(one)])
         text = f"{label} ({hardware})" if label else hardware
@@ -142,11 +168,12 @@ def _junction(
         for word, count in ((word, len([*same])) for word, same in groupby(words))
     )
     signs = [_sign(one) for one in parts]
-    lengths = (sum(one.cut_length or 0.0 for one in parts),
-               sum(one.stretched or 0.0 for one in parts))  # fmt: skip
-    figures = (
-        *(_said("length", length) for length in lengths),
-        *_figures(parts, weights, planned=planned),
+    lengths = (
+        _said("length", sum(one.cut_length or 0.0 for one in parts)),
+        _said("length", sum(one.stretched or 0.0 for one in parts)),
     )
     sign = next((sign for sign in signs if sign.symbol is Symbol.SWIVEL), signs[0])
-    return ShownPart(sign, (TextRow(joined, "", figures),), junction=True)
+    labels = tuple(one.label for one in parts)
+    return ShownPart(
+        sign, (TextRow(joined, "", cells(parts, lengths)),), labels=labels, junction=True
+    )

@@ -1,4 +1,4 @@
-"""The schematic of a line for a terminal: a row of text for each part, without colour."""
+"""The schematic of a line for a terminal, with a row of text for each part and without colour."""
 
 import textwrap
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ _PACK = "(ooo)"
 _LOOKS = {(False, False): ":", (True, False): "^", (False, True): "v", (True, True): "X"}
 _SHIP, _HELICOPTER = r"\__|__/", "---+---"
 _CLAMP, _SEA, _SEABED = "├─", "~", "▒"
-# Every sign of the picture that not all terminals have, and the one that stands for it.
+# replacements for characters of the picture that not all terminals have
 _ASCII = str.maketrans("│┊├─▒§×–·°…", "|:|-#%x-, .")
 _SIGNS = "".join(map(chr, _ASCII))
 
@@ -46,13 +46,13 @@ def schematic_text(
     *,
     ascii_only: bool = False,
 ) -> str:
-    """A line in order from the top, not to scale, with the columns of `schematic_svg`.
+    """Draw a line in order from the top, not to scale, with the columns of `schematic_svg`.
 
     Parameters
     ----------
-    file, result : as of `schematic_svg`
-    width : of the terminal [cells]; labels and names are cut to fit, from some 55 cells on
-    ascii_only : draw with plain signs; labels keep their letters
+    file, result : as in `schematic_svg`
+    width : width of the terminal [cells], at least about 55; labels and names are cut to fit
+    ascii_only : whether to draw with ASCII characters; labels keep their letters
     """
     schematic = schematic_of(file, result)
     lines = [
@@ -68,26 +68,26 @@ def schematic_text(
 
 
 def can_carry(encoding: str | None) -> bool:
-    """Return whether an output of this encoding has all signs of the picture."""
+    """Whether an output encoding has all characters of the picture."""
     return encodable(encoding, _SIGNS)
 
 
 @dataclass(frozen=True)
 class TerminalSchematic:
-    """The schematic as a rich console prints it, as wide as that is."""
+    """The schematic for a rich console, with the width of the console."""
 
     file: MooringFile
     result: AnyResult | None
     ascii_only: bool
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """The text, not wrapped."""
+        """Yield the text without wrapping."""
         text = schematic_text(self.file, self.result, options.max_width, ascii_only=self.ascii_only)
         yield Text(text, no_wrap=True, overflow="ignore")
 
 
 def _table(schematic: Schematic, width: int) -> Iterator[str]:
-    """Headings and rows, the columns as wide as their texts need and the terminal allows."""
+    """Yield headings and rows; columns are as wide as their texts need and the terminal allows."""
     drawn = list(_drawn(schematic))
     rows = [row for _, row in drawn if row is not None]
     figures = []
@@ -95,7 +95,7 @@ def _table(schematic: Schematic, width: int) -> Iterator[str]:
         words = (*HEADINGS[quantity], *(row.cells[number] for row in rows))
         figures.append(max(map(cell_len, words)))
     room = width - _ART - sum(figures) - 2 * len(figures) - 1
-    # labels first, which tell parts apart
+    # labels first, since they identify the parts
     label, name = (max(cell_len(getattr(row, of)) for row in rows) for of in ("label", "name"))
     label = min(label, max(room - min(name, _LEAST_NAME), _LEAST_LABEL))
     name = max(min(name, room - label), 0)
@@ -113,7 +113,7 @@ def _table(schematic: Schematic, width: int) -> Iterator[str]:
 
 
 def _drawn(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
-    """The picture from the top, a line each with its row of text."""
+    """Yield the lines of the picture from the top, each with its row of text."""
     if schematic.towed_by is not None:
         yield (_SHIP if schematic.sea else _HELICOPTER), schematic.towed_by
         if schematic.sea is not None:
@@ -142,7 +142,7 @@ def _drawn(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
 
 
 def _art(sign: Sign) -> str:
-    """A symbol, an ADCP in its middle with the way it looks."""
+    """A symbol, with the direction of view in the middle of an ADCP."""
     art = _PACK if sign.symbol in BALLS and sign.count > 1 else _SYMBOLS[sign.symbol]
     if not sign.sounding:
         return art
@@ -159,7 +159,7 @@ def _padded(text: str, width: int) -> str:
 
 
 def _cut(text: str, width: int) -> str:
-    """The text, or its beginning with an ellipsis."""
+    """Cut a text to a width, with an ellipsis."""
     if cell_len(text) <= width:
         return text
     return set_cell_size(text, width - 1).rstrip() + ELLIPSIS

@@ -1,4 +1,4 @@
-"""Elements of an SVG picture; every text and attribute is escaped as the picture is written."""
+"""Elements of an SVG picture; texts and attributes are escaped when the picture is written."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from xml.etree import ElementTree
 from rich.cells import cell_len
 
 INK, SOFT, FAINT = "#1b2733", "#5a6672", "#c3ccd4"
-"""Colours of what is to be read first, next, and last."""
+"""Colours of primary, secondary and faint texts and lines."""
 
 
-FONTS = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
-"""Of every text: the first of them that there is."""
+FONTS = "'Source Sans 3', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
+"""Fonts of all texts, in order of preference."""
 
 
 class Pen:
@@ -22,44 +22,48 @@ class Pen:
         self.element = element
 
     def draw(self, tag: str, **attributes: float | str) -> Pen:
-        """A new element; of an attribute's name ``_`` stands for ``-``. Gives a pen for it."""
+        """Add an element, and return a pen for the element; ``_`` in attribute names becomes
+        ``-``.
+        """
         written = {name.replace("_", "-"): _text(value) for name, value in attributes.items()}
         return Pen(ElementTree.SubElement(self.element, tag, written))
 
     def group(self, x: float, y: float, scale: float = 1.0, **attributes: float | str) -> Pen:
-        """A group with its own origin."""
+        """Add a group with its own origin."""
         transform = f"translate({_text(x)} {_text(y)})"
         if scale != 1.0:
             transform += f" scale({_text(scale)})"
         return self.draw("g", transform=transform, **attributes)
 
     def title(self, text: str) -> None:
-        """The text a reader sees who points at the element."""
+        """Set the tooltip of the element."""
         self.draw("title").element.text = text
 
     def line(self, x1: float, y1: float, x2: float, y2: float, **attributes: float | str) -> None:
-        """A straight line."""
+        """Draw a straight line."""
         self.draw("line", x1=x1, y1=y1, x2=x2, y2=y2, **attributes)
 
     def circle(self, x: float, y: float, radius: float, **attributes: float | str) -> None:
-        """A circle about a point."""
+        """Draw a circle about a point."""
         self.draw("circle", cx=x, cy=y, r=radius, **attributes)
 
     def box(
         self, x: float, y: float, width: float, height: float, **attributes: float | str
     ) -> None:
-        """A rectangle centred at a point."""
+        """Draw a rectangle centred at a point."""
         left, top = x - width / 2, y - height / 2
         self.draw("rect", x=left, y=top, width=width, height=height, **attributes)
 
     def path(self, d: str, **attributes: float | str) -> None:
-        """A path."""
+        """Draw a path."""
         self.draw("path", d=d, **attributes)
 
     def write(
         self, x: float, y: float, text: str, width: float, *, size: float, bold: bool = False
     ) -> None:
-        """A text in a width, its middle at `y`; one that is cut has the whole for its title."""
+        """Write a text within a width, centred at `y`. A text that is cut gets the whole text as
+        its tooltip.
+        """
         shown = shortened(text, width, size, bold=bold)
         pen = self.letters(x, y, shown, size=size, bold=bold)
         if shown != text:
@@ -78,7 +82,7 @@ class Pen:
         bold: bool = False,
         anchor: str = "start",
     ) -> Pen:
-        """A text whole, its middle at `y`; nothing is drawn of an empty one."""
+        """Write a whole text, centred at `y`, unless it is empty."""
         if not text:
             return self
         weight = {"font_weight": "bold"} if bold else {}
@@ -95,12 +99,12 @@ def _text(value: float | str) -> str:
 
 
 def picture(width: float, height: float, title: str, size: tuple[str, str] | None = None) -> Pen:
-    """A pen for an empty white picture, its origin the upper left corner.
+    """Create a pen for an empty white picture, with its origin in the upper left corner.
 
     Parameters
     ----------
-    width, height : in units of the picture; points where no size is given
-    title : what it shows
+    width, height : size in units of the picture; in points if `size` is None
+    title : title of the picture
     size : width and height in print
     """
     printed = size or (f"{width:g}pt", f"{height:g}pt")
@@ -117,7 +121,7 @@ def picture(width: float, height: float, title: str, size: tuple[str, str] | Non
 
 
 def svg_text(picture: Pen) -> str:
-    """The picture as text, an element a line."""
+    """Convert the picture to text, one element per line."""
     ElementTree.indent(picture.element)
     return ElementTree.tostring(picture.element, encoding="unicode") + "\n"
 
@@ -136,13 +140,13 @@ _BOLD = 1.19
 
 
 def text_width(text: str, size: float, *, bold: bool = False) -> float:
-    """An upper bound of the width of a text, in the unit of the font's size."""
+    """Upper bound for the width of a text, in the unit of the font size."""
     ems = sum(map(_ems, text))
     return size * ems * (_BOLD if bold else 1.0)
 
 
 def shortened(text: str, width: float, size: float, *, bold: bool = False) -> str:
-    """The text, or as much of its beginning as fits the width with an ellipsis at its end."""
+    """Return the text, or its beginning with an ellipsis, to fit a width."""
     if text_width(text, size, bold=bold) <= width:
         return text
     room = width - text_width(ELLIPSIS, size, bold=bold)
@@ -156,7 +160,9 @@ def shortened(text: str, width: float, size: float, *, bold: bool = False) -> st
 
 
 def wrapped(text: str, width: float, size: float, *, bold: bool = False) -> list[str]:
-    """The text in lines that fit the width; a word that is wider is parted. Nothing is cut off."""
+    """Break a text into lines that fit a width, without cutting; words that are too wide are
+    divided.
+    """
     lines: list[str] = []
     line = ""
     for word in text.split():
@@ -183,5 +189,5 @@ def _ems(sign: str) -> float:
         return _CAPITAL if sign.isupper() else _USUAL
     if unicodedata.combining(sign) or cell_len(sign) == 0:
         return 0.0
-    # Scripts of their own: a sign of one cell of a terminal is at most an em wide.
+    # other scripts: a character of one terminal cell is at most an em wide
     return _WIDE * cell_len(sign)

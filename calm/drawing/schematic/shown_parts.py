@@ -1,4 +1,4 @@
-"""Parts of a line that a schematic shows, from the top: their rows of text, their lengths."""
+"""The parts of a line in a schematic, from the top, with their rows of text and lengths."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from calm.files.pieces import STAND_IN
 from calm.quantities import QUANTITIES, say
 
 HEADINGS = {"cut_length": ("cut", "length"), "depth": ("", "depth"), "height": ("above", "seabed")}
-"""The quantities beside each part, with the two lines of their headings."""
+"""Quantities next to each part, with the two lines of their headings."""
 
 _JOINED = (*BALLS, Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
 
 
 @dataclass(frozen=True)
 class TextRow:
-    """The text beside a part: its label, its component's name, a cell for each column."""
+    """Text next to a part: its label, its component's name, and a cell for each column."""
 
     label: str
     name: str
@@ -33,18 +33,18 @@ class TextRow:
 
 @dataclass(frozen=True)
 class ShownPart:
-    """A part that is drawn as one: a piece or several alike, a junction, a clamped instrument.
+    """A part drawn as a unit: a piece or several equal ones, a junction, or a clamped instrument.
 
     Attributes
     ----------
-    sign : what is drawn
-    rows : of text beside it; two of a pair of releases, else one
-    labels : of what it stands for
-    cable : the symbol of the cable that it is, or is clamped on; None of what is rigid
-    length : of a cable [m], NaN where unknown
-    floats : the symbol of the floats that are clamped on it
+    sign : symbol to draw
+    rows : rows of text; two for a pair of releases, else one
+    labels : labels of the pieces it represents
+    cable : symbol of the cable that it is or is clamped on; None for a rigid part
+    length : length of a cable [m], NaN if unknown
+    floats : symbol of the floats clamped on it
     clamped : whether it is clamped on the part above it
-    junction : whether a page may end above it without parting what belongs together
+    junction : whether a page break above it separates nothing that belongs together
     """
 
     sign: Sign
@@ -59,17 +59,17 @@ class ShownPart:
 
 @dataclass(frozen=True)
 class Schematic:
-    """A line as it is drawn, from the top of a mooring, or from the ship down.
+    """Contents of a schematic, from the top of a mooring or from the ship down.
 
     Attributes
     ----------
-    title, subtitle, note : its name; water and place, or speed; how to read the figures
-    columns : those quantities of `HEADINGS` that are known
+    title, subtitle, note : its name; depth and position, or speed; explanation of the values
+    columns : the known quantities of `HEADINGS`
     parts : clamped instruments after the piece they are on
     surface : whether the first part floats at the surface
     towed_by : the text at the ship or the helicopter
     sea : the text at the sea surface; None in air
-    seabed : the text at the seabed; None where its depth is unknown
+    seabed : the text at the seabed; None if its depth is unknown
     """
 
     title: str
@@ -84,17 +84,17 @@ class Schematic:
 
 
 def schematic_of(file: MooringFile, result: AnyResult | None = None) -> Schematic:
-    """Return what the schematic of a line shows; as solved, where there is a result."""
+    """Build the contents of the schematic of a line, with solved depths if there is a result."""
     levels = levels_of(file, result)
     bottom = file.environment.depth
 
     def cells(length: str, depth: float) -> tuple[str, ...]:
-        """Length, depth, and the height where the depth of the seabed is known."""
+        """Return length, depth, and the height if the depth of the seabed is known."""
         heights = [] if bottom is None else [QUANTITIES["height"].format(bottom - depth)]
         return length, QUANTITIES["depth"].format(depth), *heights
 
-    stands = file.pieces[-1].use != STAND_IN
-    pieces = file.pieces if stands else file.pieces[:-1]
+    has_anchor = file.pieces[-1].use != STAND_IN
+    pieces = file.pieces if has_anchor else file.pieces[:-1]
     water = file.environment.fluid == "water"
     towed_by = None
     if file.tow is not None:
@@ -108,21 +108,25 @@ def schematic_of(file: MooringFile, result: AnyResult | None = None) -> Schemati
         surface=levels.surface,
         towed_by=towed_by,
         sea=TextRow("sea surface", "", cells("", 0.0)) if water else None,
-        seabed=None if bottom is None or not stands else TextRow("seabed", "", cells("", bottom)),
+        seabed=None
+        if bottom is None or not has_anchor
+        else TextRow("seabed", "", cells("", bottom)),
     )
 
 
 def one_line(text: str) -> str:
-    """A text in one line, what XML or a terminal cannot carry replaced by a mark."""
+    """Convert a text to a single line, with a mark for characters that XML or a terminal cannot
+    show.
+    """
     return printable(" ".join(text.split()))
 
 
 Cells = Callable[[str, float], tuple[str, ...]]
-"""The figures of a row, by its length, or its place in its stead, and its depth [m]."""
+"""Function that returns the values of a row from its length or position, and its depth [m]."""
 
 
 def _parts(pieces: Sequence[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:
-    """Yield the parts from the top; pieces that are drawn as one make one."""
+    """Yield the parts from the top; pieces that are drawn together form one part."""
     run: list[Piece] = []
     for piece in pieces:
         if run and not _goes_with(run, piece, levels):
@@ -148,12 +152,12 @@ def _sign(of: Piece | Clamp, levels: Levels) -> Sign:
 
 
 def afloat(sign: Sign) -> Sign:
-    """Return the sign of what floats at the surface."""
+    """Return the sign of a part that floats at the surface."""
     return sign if sign.symbol is Symbol.SPHERE else replace(sign, symbol=Symbol.BUOY)
 
 
 def _part(run: list[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:
-    """Yield what is drawn of pieces that are alike, and what is clamped on a single one."""
+    """Yield the part for equal pieces, and the clamps on a single piece."""
     first, sign = run[0], _sign(run[0], levels)
     cable = sign.symbol if sign.symbol in LINES else None
     start = first.index - levels.first.index
@@ -182,7 +186,7 @@ def _row(of: Piece | Clamp, cells: tuple[str, ...]) -> TextRow:
 
 
 def _subtitle(file: MooringFile) -> str:
-    """Water and place of a mooring; speed of a tow."""
+    """Depth and position of a mooring, or speed of a tow."""
     said = []
     if file.tow is not None:
         said.append(f"towed at {say('speed', file.tow.speed)} towards {file.tow.toward:.0f}°")
@@ -195,23 +199,23 @@ def _subtitle(file: MooringFile) -> str:
     return " · ".join(said)
 
 
-_NOT_TO_SCALE = "Not to scale. Depth and height: of the upper end,"
+_NOT_TO_SCALE = "Not to scale. Depth and height are at the upper end,"
 _SOLVED = f"{_NOT_TO_SCALE} as solved in the current."
 _UPRIGHT = f"{_NOT_TO_SCALE} upright and unstretched."
-_UNKNOWN = "Not to scale. Depths are known once the line is solved."
+_UNKNOWN = "Not to scale. Depths are unknown until the line is solved."
 
 
 @dataclass(frozen=True)
 class Levels:
-    """Hold where the pieces are; NaN where that is unknown.
+    """Lengths and depths of the pieces; NaN for unknown values.
 
     Attributes
     ----------
     lengths, depths : cut length of each piece, and depth of its upper end [m]
     clamps : depth of each clamped instrument [m]
     first : piece at the top of the line
-    surface : whether that floats at the surface
-    note : what the depths are
+    surface : whether this piece floats at the surface
+    note : description of the depths
     """
 
     lengths: tuple[float, ...]
@@ -223,9 +227,9 @@ class Levels:
 
 
 def levels_of(file: MooringFile, result: AnyResult | None) -> Levels:
-    """Levels as solved; else of the upright, unstretched line.
+    """Return the solved depths, or the depths of the upright, unstretched line.
 
-    Without a result they are unknown in a tow, and where the line reaches the surface.
+    Without a result they are unknown for a tow, and for a line that reaches the surface.
     """
     if result is not None:
         return Levels(
@@ -261,5 +265,5 @@ def levels_of(file: MooringFile, result: AnyResult | None) -> Levels:
 
 
 def place_text(at: float) -> str:
-    """Return where a clamp sits, from the top of its piece [m], as it stands among lengths."""
+    """Text for the position of a clamp from the top of its piece [m], in the column of lengths."""
     return f"at {QUANTITIES['at'].format(at)}"

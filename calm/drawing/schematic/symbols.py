@@ -1,6 +1,6 @@
-"""The symbols of a schematic: which stands for a component by its kind, role and name, and as SVG.
+"""Symbols of a schematic: choice by kind, role and name of a component, and their SVG.
 
-Each is drawn about an origin through which the line runs upright.
+Each symbol is drawn about an origin; the line runs vertically through the origin.
 """
 
 import re
@@ -17,7 +17,7 @@ from calm.physics.materials import fibre_of
 
 
 class Symbol(StrEnum):
-    """Hold what a schematic draws, and what a legend calls it."""
+    """Symbol of a schematic, with its name in a legend."""
 
     SPHERE = "float"
     BALL = "ball"
@@ -49,7 +49,7 @@ LINES = (Symbol.CHAIN, Symbol.WIRE, Symbol.ROPE)
 
 @dataclass(frozen=True)
 class Sign:
-    """A symbol, how many times it is drawn; whether an ADCP is in it, and which way that looks."""
+    """A symbol, the number of its copies, and whether it contains an ADCP, looking up or down."""
 
     symbol: Symbol
     count: int = 1
@@ -58,7 +58,7 @@ class Sign:
     down: bool = False
 
 
-_LARGEST_BALL = 0.6  # m; what is smaller is drawn as a ball of a pack
+_LARGEST_BALL = 0.6  # m; smaller spheres are drawn as balls of a pack
 _NUMBERS = {"double": 2, "two": 2, "triple": 3, "three": 3, "four": 4}
 _COUNTED = re.compile(r"\b(?:chain|cluster|string|pack)-(\d+)|\b(\d+) x\b|\bx (\d+)\b")
 _NAMES = {
@@ -78,12 +78,12 @@ _DOWN = re.compile(r"\bdown(?:ward|wards)?\b")
 
 
 def sign_of(use: str, label: str, component: Component) -> Sign:
-    """The sign of a piece or of a clamped instrument.
+    """Choose the sign of a piece or of a clamped instrument.
 
     Parameters
     ----------
-    use, label : what the line calls it; either may tell what it is
-    component : kind, role, name and note tell first
+    use, label : its names in the line, which may also identify it
+    component : its kind, role, name and note, which are considered first
     """
     own = f"{use} {component.name or ''} {component.note or ''}".lower()
     words = f"{own} {label.lower()}"
@@ -130,7 +130,7 @@ def _sphere(diameter: float) -> Symbol:
 
 
 def _named(names: dict[Symbol, str], words: str, other: Symbol) -> Symbol:
-    """The first symbol whose pattern the words have."""
+    """First symbol whose pattern matches the words, or `other`."""
     return next((symbol for symbol, name in names.items() if re.search(name, words)), other)
 
 
@@ -139,7 +139,7 @@ def _first_number(text: str | None) -> int | None:
     return int(found[0]) if found else None
 
 
-# Fills differ in lightness too, so that they can be told apart without colour.
+# fills also differ in lightness, to be distinguishable without colour
 _FLOAT, _GLASS, _INSTRUMENT, _RELEASE = "#f4b13e", "#ffe6a3", "#d6e4f0", "#7fb69c"
 _STEEL, _CONCRETE, _DARK = "#97a2ab", "#d3d5d6", "#46515b"
 
@@ -151,14 +151,14 @@ _BEAM = 11.0
 
 @dataclass(frozen=True)
 class SymbolFigure:
-    """A symbol as it is drawn: its height, and what draws it about the origin of a pen."""
+    """A symbol with its height, and the function that draws it about the origin of a pen."""
 
     height: float
     draw: Callable[[Pen], None]
 
 
 def figure_of(sign: Sign) -> SymbolFigure:
-    """The figure of a sign that is no cable or chain."""
+    """Return the figure of a sign, except for cables and chains."""
     if sign.symbol in BALLS:
         figure = _pack(sign)
     elif sign.symbol is Symbol.WHEELS:
@@ -171,7 +171,7 @@ def figure_of(sign: Sign) -> SymbolFigure:
 
 
 def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
-    """A figure with its ADCP: the sound that goes up or down, or its transducers alone."""
+    """Add the ADCP to a figure: sound that goes up or down, or its transducers alone."""
     shift = _BEAM / 2 * (sign.up - sign.down)
 
     def draw(pen: Pen) -> None:
@@ -188,7 +188,7 @@ def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
 
 
 def _row(figure: SymbolFigure, count: int) -> SymbolFigure:
-    """Return the same figure several times, one below the other."""
+    """Stack copies of a figure vertically."""
 
     def draw(pen: Pen) -> None:
         for number in range(count):
@@ -198,7 +198,7 @@ def _row(figure: SymbolFigure, count: int) -> SymbolFigure:
 
 
 def _pack(sign: Sign) -> SymbolFigure:
-    """Balls in turn left and right of their chain."""
+    """Draw balls alternately left and right of their chain."""
     count = min(sign.count, _MOST_BALLS)
     fill = _GLASS if sign.symbol is Symbol.GLASS else _FLOAT
 
@@ -215,7 +215,7 @@ def _pack(sign: Sign) -> SymbolFigure:
 
 
 def _wheels(count: int) -> SymbolFigure:
-    """Railway wheels or rotors, one on the other, on their rod."""
+    """Draw railway wheels or rotors, stacked on their rod."""
     height = count * _WHEEL + 8.0
 
     def draw(pen: Pen) -> None:
@@ -236,7 +236,7 @@ _BARE: dict[str, Any] = {"fill": "none"}
 
 
 def _figure(height: float, *parts: Callable[[Pen], None]) -> SymbolFigure:
-    """A figure of a height from parts about its origin, the first behind the others."""
+    """Build a figure of a height from parts about its origin, from back to front."""
 
     def draw(pen: Pen) -> None:
         for part in parts:
@@ -246,7 +246,7 @@ def _figure(height: float, *parts: Callable[[Pen], None]) -> SymbolFigure:
 
 
 _REPEATED = (Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
-"""What is drawn as often as it is there."""
+"""Symbols that are repeated for each item."""
 _FIGURES = {
     Symbol.SPHERE: _figure(36.0,
         _circle(0.0, 0.0, 17.0, fill=_FLOAT), _path("M-17 0Q0 7 17 0", **_BARE, stroke_width=0.9)),
@@ -306,7 +306,7 @@ _FIGURES = {
         _box(0.0, 0.0, 28.0, 24.0, rx=2.0, fill=_INSTRUMENT),
         _path("M-14 -12L14 12M14 -12L-14 12", **_BARE, stroke_width=0.7)),
 }  # fmt: skip
-"""Heights and parts of the symbols that are always drawn alike."""
+"""Heights and parts of the symbols with a fixed drawing."""
 
 
 SEABED_ROOM = 22.0
@@ -319,7 +319,7 @@ _WAVE = 9.0
 
 
 def draw_cable(pen: Pen, symbol: Symbol, x: float, top: float, bottom: float) -> None:
-    """A wire as a solid line, a rope as a laid one, a chain by its links."""
+    """Draw a wire as a solid line, a rope with strands, and a chain with links."""
     if symbol is Symbol.WIRE:
         pen.line(x, top, x, bottom, stroke_width=2.4)
     elif symbol is Symbol.ROPE:
@@ -334,7 +334,7 @@ def draw_cable(pen: Pen, symbol: Symbol, x: float, top: float, bottom: float) ->
 
 
 def _draw_chain(pen: Pen, x: float, top: float, bottom: float) -> None:
-    """Links in turn seen from the front and from the side."""
+    """Draw links alternately from the front and from the side."""
     count = max(3, round((bottom - top) / _LINK))
     pitch = (bottom - top) / count
     for number in range(count):
@@ -347,13 +347,13 @@ def _draw_chain(pen: Pen, x: float, top: float, bottom: float) -> None:
 
 
 def draw_water(pen: Pen, width: float, top: float, bottom: float) -> None:
-    """The water behind the line."""
+    """Draw the water behind the line."""
     height = bottom - top
     pen.box(width / 2, (top + bottom) / 2, width, height, fill=_WATER, stroke="none")
 
 
 def draw_surface(pen: Pen, width: float, y: float) -> None:
-    """The waves of the sea surface."""
+    """Draw the waves of the sea surface."""
     waves = int(width / _WAVE / 2)
     step = width / waves / 2
     path = f"M0 {y:g}" + f"q{step / 2:.3g} -4 {step:.3g} 0t{step:.3g} 0" * waves
@@ -361,7 +361,7 @@ def draw_surface(pen: Pen, width: float, y: float) -> None:
 
 
 def draw_seabed(pen: Pen, width: float, y: float) -> None:
-    """The seabed, hatched."""
+    """Draw the hatched seabed."""
     pen.box(width / 2, y + SEABED_ROOM / 2, width, SEABED_ROOM, fill=_SAND, stroke="none")
     for number in range(int(width / 10)):
         x = 10.0 * number + 9.0
@@ -370,7 +370,7 @@ def draw_seabed(pen: Pen, width: float, y: float) -> None:
 
 
 def draw_ship(pen: Pen) -> None:
-    """A ship that tows from its A-frame, whose sheave is at the origin; 26 above the water."""
+    """Draw a ship that tows from its A-frame, with the sheave at the origin, 26 above the water."""
     pen.path("M-62 16L-14 16L-12 32Q-36 36 -56 32Z", fill=_HULL)
     pen.path("M-50 16L-50 3L-30 3L-30 16Z", fill="white")
     pen.path("M-46 7L-34 7", stroke_width=2.2)
@@ -380,7 +380,7 @@ def draw_ship(pen: Pen) -> None:
 
 
 def draw_helicopter(pen: Pen) -> None:
-    """A helicopter whose hook is at the origin."""
+    """Draw a helicopter with its hook at the origin."""
     pen.path("M-40 -26L-8 -22L-8 -17L-40 -23Z", fill=_HULL)
     pen.path("M-40 -33L-40 -19", fill="none", stroke_width=2.0)
     pen.path("M-14 -24Q-8 -31 4 -31Q20 -30 22 -19Q20 -11 8 -9L-6 -9Q-14 -11 -14 -24Z", fill=_HULL)
@@ -391,6 +391,6 @@ def draw_helicopter(pen: Pen) -> None:
 
 
 def draw_clamp(pen: Pen, reach: float) -> None:
-    """Draw what holds an instrument beside the line, which is at the origin."""
+    """Draw the clamp that holds an instrument next to the line, which is at the origin."""
     for y in (-3.5, 3.5):
         pen.line(0.0, y, reach, y, stroke=INK, stroke_width=1.6)

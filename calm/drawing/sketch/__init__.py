@@ -1,7 +1,7 @@
-"""A solved line for a terminal: from the side and above, its tension, the current by depth.
+"""A solved line for a terminal: side view, plan, tension, and current by depth.
 
-Each picture is drawn with braille dots, a text for each row of any number of cells. From 20 by 6
-cells on it shows a scale; more room shows more.
+Each picture is drawn with braille dots, as a text for each row, in any number of cells. From 20 by
+6 cells it shows a scale; larger pictures show more.
 """
 
 from collections.abc import Iterable, Sequence
@@ -22,18 +22,25 @@ from calm.drawing.graph import number
 from calm.drawing.line_picture import LineKind, LinePicture, PictureMark, along_the_line, plane_of
 from calm.drawing.schematic.pen import ELLIPSIS
 from calm.drawing.sketch import canvas
-from calm.drawing.sketch.canvas import ACROSS, AXIS, DOWN, header_rows, levels, scaled_frame
+from calm.drawing.sketch.canvas import (
+    AXIS,
+    DOTS_ACROSS,
+    DOTS_DOWN,
+    header_rows,
+    levels,
+    scaled_frame,
+)
 from calm.physics.line import Floats, Water
 from calm.quantities import bearing_of, bearing_text, say
 
 _LEAST_SPAN = 0.1
-"""Share of the height that distances are drawn to at least: a line that stands looks as it does."""
+"""Smallest horizontal range, as a share of the height, so that a vertical line looks vertical."""
 
 _NAMED_FROM = 50
 _SHARE_OF_NAMES = 0.36
 _LONGEST_NAME = 22
 _FARTHEST = 1.5
-"""Rows that a name may stand from its part; where more names crowd, some are left out."""
+"""Largest distance between a name and its part [rows]; if more names crowd, some are omitted."""
 
 _NEED = ("float", "release", "anchor", "instrument")
 
@@ -41,15 +48,16 @@ _NEED = ("float", "release", "anchor", "instrument")
 def elevation(
     result: AnyResult, width: int, height: int, beside: Sequence[Shape] = ()
 ) -> list[Text]:
-    """A line in the vertical plane of its excursion, or of its tow.
+    """Draw a line in the vertical plane of its excursion or its tow.
 
-    Distances are from the anchor towards the free end, or from the ship backward; their scale is
-    not that of the depths. The line in still water is dotted. From 50 cells on parts are named.
-    Shapes `beside` a mooring, of other environments or designs, are dashed.
+    Distances are from the anchor towards the free end, or from the ship backward; their scale
+    differs from that of the depths. The line in still water is dotted. From a width of 50 cells,
+    the names of parts are shown. The shapes `beside` a mooring, from other environments or designs,
+    are dashed.
     """
     side = line_picture.elevation_of(result, beside)
     moored = not result.towed
-    if moored:  # its seabed is the foot of the picture
+    if moored:  # the seabed of a mooring is the foot of the picture
         held = [line.y.min() for line in side.lines] if result.several else []
         side = replace(side, top=float(min(0.0, *held, 0.0)), bottom=side.seabed or side.bottom)
     seabed = side.seabed if side.seabed is not None and side.seabed <= side.bottom else None
@@ -82,7 +90,7 @@ def draw_picture(frame: canvas.PlotFrame, picture: LinePicture) -> None:
 
 
 def _caption(result: AnyResult) -> str:
-    """Return how deep and how far off the end is, in words."""
+    """Describe depth and offset of the end in words."""
     if result.several:
         return _distance(result)
     (leg,) = result.legs
@@ -96,11 +104,11 @@ def _caption(result: AnyResult) -> str:
 
 
 def _distance(result: AnyResult) -> str:
-    """Return how far off the end is and where to; of several legs how many there are."""
+    """Describe offset and direction of the end, or the number of legs of a net."""
     if result.several:
         return f"net of {len(result.legs)} legs"
     (leg,) = result.legs
-    free = leg.shape  # which begins at the free end
+    free = leg.shape  # the shape begins at the free end
     x, y = (float(free.x[0]), float(free.y[0])) if leg.towed else (leg.top.x, leg.top.y)
     distance = hypot(x, y)
     towards = f" to {bearing_text(bearing_of(x, y))}" if distance >= 0.05 else ""
@@ -108,7 +116,7 @@ def _distance(result: AnyResult) -> str:
 
 
 def _span(side: LinePicture) -> tuple[float, float]:
-    """Return the distances at the edges; a line that hardly leans stands in the middle."""
+    """Return the distances at the edges; an almost vertical line is centred."""
     low, high = side.span()
     spare = max(_LEAST_SPAN * (side.bottom - side.top) - (high - low), 0.0)
     margin = 0.04 * (high - low + spare) + spare / 2.0
@@ -116,7 +124,7 @@ def _span(side: LinePicture) -> tuple[float, float]:
 
 
 def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
-    """Names of parts, each on a row of its own, near its part."""
+    """Choose rows for the names of parts, each close to its part."""
     height = (side.bottom - side.top) / rows
     found = sorted(line_picture.names(list(side.marks), height), key=lambda each: each[1].depth)
     while True:
@@ -134,7 +142,9 @@ def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
 
 
 def _least(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: int) -> int:
-    """Of the names around one the least needed: an instrument, the farthest from the others."""
+    """Index of the most dispensable name in a crowd: an instrument, the farthest from the
+    others.
+    """
     around = [i for i, row in enumerate(wanted) if abs(row - wanted[crowded]) <= 2.0 * _FARTHEST]
     middle = sum(around) / len(around)
     return min(around, key=lambda i: (-_NEED.index(found[i][1].role), abs(i - middle)))
@@ -143,7 +153,7 @@ def _least(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: i
 LINE = "bold cyan"
 STILL = "white"
 OTHER = "magenta"
-"""Of a line in another environment, or of another design, drawn beside."""
+"""Style of a line in another environment, or of another design, drawn for comparison."""
 SURFACE = "blue"
 LIMIT = "red"
 SHIP = ("▲", "bold")
@@ -154,7 +164,7 @@ SIGNS = {
     "release": ("◆", "green"),
     "instrument": ("■", "red"),
 }
-"""Sign and style of each role, the first where it is and the others beside it."""
+"""Character and style of each role."""
 
 STROKES = {
     LineKind.LINE: (LINE, 0, 0),
@@ -162,23 +172,23 @@ STROKES = {
     LineKind.BESIDE: (OTHER, 3, 2),
     LineKind.SEABED: (canvas.SEABED, 0, 0),
 }
-"""Style, dots drawn and dots left out of each kind of line."""
+"""Style, dots drawn and dots skipped for each kind of line."""
 
 
 _HIGHEST_LOAD = 2.5
-"""Allowable loads are drawn up to this many times the greatest tension."""
+"""Largest allowable load drawn, as a multiple of the maximum tension."""
 _KILO = 1e4
-"""Tensions are in kilonewtons from here on [N]."""
+"""Tension from which kilonewtons are used [N]."""
 
 
 def tension(result: LegResult, width: int, height: int) -> list[Text]:
-    """Tension by the way along the line, as listed from the top.
+    """Draw tension against the distance along the line, from the top.
 
-    Dotted in red is what the weakest piece there may bear: its working load, or its breaking load
-    over the safety factor that the design asks for. What bears far more than is drawn has no mark.
+    A red dotted line shows the allowable load of the weakest piece at each position: its working
+    load, or its breaking load over the required safety factor. Much larger loads are not drawn.
     """
     pulls, way = result.shape.tension, along_the_line(result.shape)
-    if result.towed:  # listed from the ship down, its shape from the body up
+    if result.towed:  # pieces are listed from the ship down, while the shape begins at the body
         pulls, way = pulls[::-1], (way[-1] - way)[::-1]
     greatest = max(float(pulls.max()), 1e-9)
     loads = _allowable(result)
@@ -189,17 +199,17 @@ def tension(result: LegResult, width: int, height: int) -> list[Text]:
     caption = f"at most {say('tension', greatest)}{'; dotted: limits' if near else ''}"
     frame = scaled_frame((width, height), caption, across, (0.0, length), unit)
     before = 0.0
-    for row, load in _weakest(loads, length, frame.rows * DOWN):
+    for row, load in _weakest(loads, length, frame.rows * DOTS_DOWN):
         if load <= _HIGHEST_LOAD * greatest and (row % 2 == 0 or load != before):
             x, _ = frame.point(load * scale, 0.0)
-            frame.canvas.dot(x, frame.row * DOWN + row, LIMIT)
+            frame.canvas.dot(x, frame.row * DOTS_DOWN + row, LIMIT)
         before = load
     frame.line(zip((pulls * scale).tolist(), way.tolist(), strict=True), LINE)
     return frame.canvas.rows()
 
 
 def _allowable(result: LegResult) -> list[tuple[float, float, float]]:
-    """Start and end along the line [m] of each piece with a known limit, and that [N]."""
+    """Start and end along the line [m] of each piece with a known limit, and the limit [N]."""
     factors = result.file.checks.safety_factor
     surface = not result.towed and reaches_the_surface(result.leg)
     found, start = [], 0.0
@@ -214,7 +224,7 @@ def _allowable(result: LegResult) -> list[tuple[float, float, float]]:
 def _weakest(
     loads: list[tuple[float, float, float]], length: float, dots: int
 ) -> list[tuple[int, float]]:
-    """For each dot down the line the least of the limits there."""
+    """Smallest limit for each dot down the line."""
     least: dict[int, float] = {}
     for start, end, load in loads:
         first, last = (round(each / length * (dots - 1)) for each in (start, min(end, length)))
@@ -230,9 +240,9 @@ _DEGREES_FROM = 18
 
 
 def current_profile(water: Water, width: int, height: int) -> list[Text]:
-    """Speed by depth with the directions beside it, from 12 by 6 cells on.
+    """Draw speed and direction of the current by depth, in at least 12 by 6 cells.
 
-    Depths are on the rows where `elevation` of the same height has them.
+    Depths are on the same rows as in an `elevation` of the same height.
     """
     beside = 6 if width >= _DEGREES_FROM else 2
     depths, u, v = line_picture.current_between(water, 0.0, water.depth)
@@ -261,21 +271,21 @@ _MARGIN = 0.06
 
 
 def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = ()) -> list[Text]:
-    """A line from above with its anchor, or the ship, at zero.
+    """Draw a line from above, with its anchor or the ship at zero.
 
-    Shapes `beside` it, of other environments or designs, are dashed.
+    Other shapes `beside` it, from other environments or designs, are dashed.
     """
     shapes = [*(leg.shape for leg in result.legs), *beside]
     rows = height - header_rows(height) - 2
     west, east = _range([0.0, *_ends(each.x for each in shapes)])
     south, north = _range([0.0, *_ends(each.y for each in shapes)])
     gutter = 1
-    for _ in range(2):  # the numbers beside it take room, which changes them
+    for _ in range(2):  # the numbers next to it take room, which changes the numbers
         columns = width - gutter - 1
-        metres = max((east - west) / (columns * ACROSS), (north - south) / (rows * DOWN))
-        bottom, top = _centred(south, north, metres * rows * DOWN)
+        metres = max((east - west) / (columns * DOTS_ACROSS), (north - south) / (rows * DOTS_DOWN))
+        bottom, top = _centred(south, north, metres * rows * DOTS_DOWN)
         gutter = max(map(len, map(number, levels(bottom, top, rows))))
-    left, right = _centred(west, east, metres * (width - gutter - 1) * ACROSS)
+    left, right = _centred(west, east, metres * (width - gutter - 1) * DOTS_ACROSS)
     across, down = (left, right), (top, bottom)
     what = "" if result.several else "end " if result.towed else "top "
     said = f"{what}{_distance(result)}"

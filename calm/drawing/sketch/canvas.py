@@ -1,4 +1,4 @@
-"""A picture in the cells of a terminal, dots of braille and signs, with axes around it."""
+"""A picture in the cells of a terminal: braille dots and characters, with axes around it."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,8 +12,8 @@ from calm.drawing.graph import number, round_numbers
 
 Points = Iterable[tuple[float, float]]
 
-ACROSS, DOWN = 2, 4
-"""Dots of a cell."""
+DOTS_ACROSS, DOTS_DOWN = 2, 4
+"""Number of dots per cell, horizontally and vertically."""
 
 _BRAILLE = 0x2800
 _BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
@@ -21,9 +21,9 @@ _MOST_STEPS = 4000
 
 
 class Canvas:
-    """Cells to draw on, `width` by `height`; what lies outside is left out.
+    """Cells to draw on, `width` by `height`; parts outside are clipped.
 
-    Dots are counted from the upper left, as are columns and rows.
+    Dots, columns and rows are counted from the upper left corner.
     """
 
     def __init__(self, width: int, height: int) -> None:
@@ -33,15 +33,15 @@ class Canvas:
         self._signs: list[list[str | None]] = [[None] * width for _ in range(height)]
 
     def dot(self, x: float, y: float, style: str) -> None:
-        """One dot; its cell takes the style."""
-        column, row = int(x // ACROSS), int(y // DOWN)
+        """Draw a dot; its cell takes the style."""
+        column, row = int(x // DOTS_ACROSS), int(y // DOTS_DOWN)
         if 0 <= column < self.width and 0 <= row < self.height:
-            self._bits[row][column] |= _BITS[int(y) % DOWN][int(x) % ACROSS]
+            self._bits[row][column] |= _BITS[int(y) % DOTS_DOWN][int(x) % DOTS_ACROSS]
             if self._signs[row][column] is None:
                 self._styles[row][column] = style
 
     def line(self, points: Points, style: str, dash: int = 0, gap: int = 0) -> None:
-        """Straight lines from point to point, `dash` dots drawn and `gap` left out in turn."""
+        """Draw straight lines from point to point, alternating `dash` dots and a `gap`."""
         drawn = 0
         last: tuple[int, int] | None = None
         for (x0, y0), (x1, y1) in pairwise(points):
@@ -59,7 +59,7 @@ class Canvas:
                 drawn += 1
 
     def text(self, column: int, row: int, text: str, style: str = "") -> None:
-        """Signs over the dots, cut at the edges."""
+        """Write characters over the dots, clipped at the edges."""
         if not 0 <= row < self.height or column >= self.width:
             return
         if column < 0:
@@ -77,11 +77,11 @@ class Canvas:
             column += width
 
     def sign(self, column: int, row: int) -> str | None:
-        """The sign in a cell of the canvas, if any."""
+        """Character in a cell of the canvas, if any."""
         return self._signs[row][column]
 
     def rows(self) -> list[Text]:
-        """The picture, a text for each row of cells, all of the full width."""
+        """Return the picture, one text of full width for each row of cells."""
         found = [Text(no_wrap=True, end="") for _ in range(self.height)]
         for text, *cells in zip(found, self._signs, self._bits, self._styles, strict=True):
             for sign, bits, style in zip(*cells, strict=True):
@@ -91,12 +91,12 @@ class Canvas:
 
 
 AXIS, SEABED = "white", "yellow"
-"""The styles of scales, and of the seabed."""
+"""Styles of scales and of the seabed."""
 _HEADED = 9
-"""Rows from which on a picture is headed by what it says in words."""
+"""Smallest height of a picture with a caption [rows]."""
 
 COLUMNS_PER_TICK = 8
-"""Of a scale along the last row."""
+"""Number of columns per tick of a horizontal scale."""
 
 _ROWS_PER_TICK = 3
 
@@ -110,14 +110,13 @@ class CellScale:
     dots: int
 
     def dot(self, value: float) -> float:
-        """Return where a value is, counted in dots from the start of the range."""
+        """Position of a value, in dots from the start of the range."""
         return (value - self.low) / (self.high - self.low) * (self.dots - 1)
 
 
 @dataclass(frozen=True)
 class PlotFrame:
-    """The part of a canvas between its scales: first column and row, how many of each, and what
-    they measure."""
+    """Area of a canvas between its scales: first column and row, size, and the two scales."""
 
     canvas: Canvas
     column: int
@@ -128,24 +127,27 @@ class PlotFrame:
     down: CellScale
 
     def point(self, x: float, y: float) -> tuple[float, float]:
-        """The dot of the canvas where two values are."""
-        return self.column * ACROSS + self.across.dot(x), self.row * DOWN + self.down.dot(y)
+        """Dot of the canvas for two values."""
+        column = self.column * DOTS_ACROSS + self.across.dot(x)
+        return column, self.row * DOTS_DOWN + self.down.dot(y)
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
-        """The column and the row, the nearest inside the frame."""
+        """Column and row for two values, limited to the frame."""
         dot_x, dot_y = self.point(x, y)
-        column, row = int((dot_x + 0.5) // ACROSS), int((dot_y + 0.5) // DOWN)
+        column, row = int((dot_x + 0.5) // DOTS_ACROSS), int((dot_y + 0.5) // DOTS_DOWN)
         return (
             min(max(column, self.column), self.column + self.columns - 1),
             min(max(row, self.row), self.row + self.rows - 1),
         )
 
     def line(self, points: Points, style: str, dash: int = 0, gap: int = 0) -> None:
-        """A line through points of the two quantities."""
+        """Draw a line through points given in the two quantities."""
         self.canvas.line((self.point(x, y) for x, y in points), style, dash, gap)
 
     def mark(self, x: float, y: float, sign: str, style: str) -> None:
-        """A sign at a point; beside it where another is there, once where the same is."""
+        """Draw a mark at a point; next to it if the cell is taken, and only once if the same mark
+        is there.
+        """
         column, row = self.cell(x, y)
         for beside in (0, 1, -1, 2):
             here = column + beside
@@ -158,9 +160,10 @@ class PlotFrame:
                 return
 
     def scale_down(self, values: Iterable[float], width: int, foot: str = "m") -> None:
-        """Numbers and marks along the left edge; the numbers are so many cells wide.
+        """Write numbers and ticks along the left edge; `width` is the width of the numbers in
+        cells.
 
-        `foot` stands below them.
+        The unit `foot` is below the numbers.
         """
         axis = self.column - 1
         self.canvas.text(axis - width, self.row + self.rows, f"{foot:>{width}}", AXIS)
@@ -171,10 +174,10 @@ class PlotFrame:
             self.canvas.text(axis - width, row, f"{number(value):>{width}}┤", AXIS)
 
     def scale_across(self, values: Iterable[float], *units: str) -> None:
-        """Numbers along the last row of the canvas, and their marks on the row above.
+        """Write numbers along the last row of the canvas, and ticks on the row above.
 
-        After them the first unit for which there is room; for the last one it is made, as long as
-        two numbers are left.
+        The first unit that fits follows the numbers. For the last unit numbers are removed, as long
+        as two remain.
         """
         row, edge = self.canvas.height - 1, self.canvas.width
         labels: list[tuple[int, str]] = []
@@ -196,17 +199,17 @@ class PlotFrame:
 
 
 def _end(labels: list[tuple[int, str]]) -> int:
-    """The column after the last label."""
+    """Column after the last label."""
     return labels[-1][0] + len(labels[-1][1]) if labels else 0
 
 
 def levels(low: float, high: float, rows: int) -> list[float]:
-    """Ticks for a scale of a number of rows."""
+    """Ticks for a scale with a number of rows."""
     return round_numbers(low, high, max(rows // _ROWS_PER_TICK, 1))
 
 
 def header_rows(height: int) -> int:
-    """Rows above a picture for what it says in words; none where it is low."""
+    """Number of rows for a caption above a picture; 0 for a low picture."""
     return int(height >= _HEADED)
 
 
@@ -220,17 +223,17 @@ def scaled_frame(
     beside: int = 0,
     per_tick: int = COLUMNS_PER_TICK,
 ) -> PlotFrame:
-    """A frame with its scales on a canvas of its own, to draw in.
+    """Create a frame with its scales on a new canvas.
 
     Parameters
     ----------
-    size : columns and rows of all
-    caption : above it, where there is room
-    across, down : what is at the left and the right edge, at the upper and the lower one
-    units : of the scale across; the last one is made room for
-    seabed : depth of the seabed below the frame, where there is one [m]
-    beside : columns to the right for what else is written
-    per_tick : columns of the scale across for each number
+    size : total numbers of columns and rows
+    caption : text above the frame, if there is room
+    across, down : values at the left and the right edge, and at the upper and the lower edge
+    units : units of the horizontal scale; room is made for the last one
+    seabed : depth of the seabed below the frame, if any [m]
+    beside : number of columns to the right for other texts
+    per_tick : number of columns per number of the horizontal scale
     """
     canvas, head = Canvas(*size), header_rows(size[1])
     if head:
@@ -239,7 +242,7 @@ def scaled_frame(
     foot = "m" if seabed is None else number(seabed)
     gutter = max(map(len, [foot, *map(number, values)]))
     columns, rows = size[0] - gutter - 1 - beside, size[1] - head - 2
-    scales = CellScale(*across, columns * ACROSS), CellScale(*down, rows * DOWN)
+    scales = CellScale(*across, columns * DOTS_ACROSS), CellScale(*down, rows * DOTS_DOWN)
     frame = PlotFrame(canvas, gutter + 1, head, columns, rows, *scales)
     sign, style, first = ("─", AXIS, -1) if seabed is None else ("▒", SEABED, 0)
     canvas.text(frame.column + first, size[1] - 2, sign * (frame.columns - first), style)

@@ -1,4 +1,4 @@
-"""Make components of WHOI Cable's buoys, anchors, connectors and materials, with its drag."""
+"""Convert buoys, anchors, connectors and materials of WHOI Cable to components, with their drag."""
 
 import math
 from dataclasses import dataclass
@@ -11,9 +11,11 @@ from calm.exchange.part_names import role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
-_TOO_WIDE = 20.0  # times what mass and weight say: no cable, whatever its fairing
-_ROPE = 10.0  # m: what is shorter may be a frame, whose diameter is that of its drag
-_FASTEST = 10.0  # m/s: a drag tabulated beyond it counts on depth
+# ratio of the displacement to that from mass and weight, above which it is not a cable, even with
+# fairing
+_TOO_WIDE = 20.0
+_ROPE = 10.0  # m: a shorter segment may be a frame, whose diameter represents its drag
+_FASTEST = 10.0  # m/s: a drag table beyond this range is a function of depth
 _DYNAMICS = (
     "ei", "gj", "am", "amn", "amt", "can", "cat", "cmn", "cmt", "bn", "bt", "b", "cg", "cl",
     "i", "j", "g", "nu",
@@ -24,7 +26,9 @@ _SLIGHT = 1e-9
 
 @dataclass
 class ComponentMaker:
-    """Makes components in the water of the problem; keys without a counterpart go to `dropped`."""
+    """Converter of components in the water of the problem; unsupported keys are added to
+    `dropped`.
+    """
 
     density: float
     gravity: float
@@ -33,14 +37,15 @@ class ComponentMaker:
     def material(
         self, definition: CableDefinition, length: float, depth: float, speed: float
     ) -> ImportedComponent:
-        """Return a cable of a length [m], with its drag at a depth [m] and a speed [m/s].
+        """Convert a material to a cable of a length [m], with its drag at a depth [m] and a speed
+        [m/s].
 
         Parameters
         ----------
-        definition : of the material
-        length : of the segment [m]
-        depth : for which a drag by depth is taken [m]
-        speed : for which a drag by speed is taken [m/s]
+        definition : definition of the material
+        length : length of the segment [m]
+        depth : depth for a drag that depends on depth [m]
+        speed : speed for a drag that depends on speed [m/s]
         """
         values, name = definition.values, definition.name
         across, inside = values.number("d", "diam"), values.number("id")
@@ -67,8 +72,8 @@ class ComponentMaker:
             and _TOO_WIDE * (mass - weight / self.gravity) < CATALOGUE_DENSITY * area
         ):
             component.guesses["diameter"] = (
-                f"kept as it is: a metre of it displaces {CATALOGUE_DENSITY * area:.3g} kg of "
-                f"water, but has a mass of {mass:.3g} kg and weighs {weight:.3g} N"
+                f"unchanged: one metre displaces {CATALOGUE_DENSITY * area:.3g} kg of water, but "
+                f"has a mass of {mass:.3g} kg and a weight in water of {weight:.3g} N"
             )
         self._stretch(component, definition, area - bore)
         self._drop(definition)
@@ -92,7 +97,7 @@ class ComponentMaker:
             component.figures["working_load"] = working
 
     def connector(self, definition: CableDefinition) -> ImportedComponent:
-        """Return a point in the line: a sphere of its drag, as long as the file says."""
+        """Convert a connector to a sphere with its drag, with the length in the file."""
         values, name = definition.values, definition.name
         wet, mass = self._at_reference(values.number("wet"), values.number("m", "mass"))
         across, drag = values.number("d", "diam"), values.number("cdn")
@@ -109,13 +114,13 @@ class ComponentMaker:
     def anchor(
         self, definition: CableDefinition | None, name: str, friction: float
     ) -> ImportedComponent:
-        """Return the lower end; without a weight where the file gives none.
+        """Convert an anchor; it has no weight if the file has none.
 
         Parameters
         ----------
-        definition : None where the file defines none
-        name : as the layout calls it
-        friction : of the layout; 0 where it gives none
+        definition : None if the file has no definition
+        name : name in the layout
+        friction : friction coefficient in the layout; 0 if unspecified
         """
         values = definition.values if definition else KeyValues()
         figures: dict[str, FigureOrWord] = {}
@@ -131,13 +136,13 @@ class ComponentMaker:
             figures["friction"] = mu
         component = ImportedComponent(name, "anchor", figures)
         if "mass" in figures and "weight" not in figures:
-            component.guesses["mass"] = "taken as steel: the file gives no weight in water"
+            component.guesses["mass"] = "assumed steel: no weight in water in the file"
         return component
 
     def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
-        """Return the upper end, or what is towed.
+        """Convert the float at the upper end, or a towed body.
 
-        Its hull is that of the file. Where it does not float, it is a point, as in that program.
+        The hull is that of the file. If it does not float, the body is a point, as in WHOI Cable.
         """
         values, name = definition.values, definition.name
         shape = values["type"].text.lower() if "type" in values else "sphere"
@@ -166,7 +171,7 @@ class ComponentMaker:
         component = ImportedComponent(name, kind, figures)
         if not afloat:
             figures["length"] = 0.0
-            component.comment = "That program treats it as a point: the line ends at its depth."
+            component.comment = "WHOI Cable treats it as a point: the line ends at its depth."
         elif kind == "body":
             component.hull = hull
         figures |= {"mass": mass, "volume": whole}
@@ -180,9 +185,10 @@ class ComponentMaker:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """Return a weight in CALM's water, and the mass; 0 for an impossible mass.
+        """Convert a weight to that in CALM's reference water; the mass is 0 if it is impossible.
 
-        What is displaced follows from both, so that the weight in the file's own water comes out.
+        The displaced volume follows from both, so that the weight in the file's own water is
+        unchanged.
         """
         if mass * KILOGRAM_FORCE < wet or mass <= 0.0:
             return wet, 0.0
@@ -198,7 +204,7 @@ class ComponentMaker:
 
 
 def counts_on_depth(value: KeyValue) -> bool:
-    """Return whether a drag counts on depth; a table up to speeds that occur is one of speed."""
+    """Whether a drag depends on depth; a table limited to realistic speeds depends on speed."""
     return not value.rows or value.rows[-1][0].at() > _FASTEST
 
 
@@ -207,7 +213,7 @@ def _drag(value: KeyValue | None, depth: float, speed: float) -> float:
 
 
 def varies(definition: CableDefinition) -> bool:
-    """Return whether a drag of a material is a function of depth."""
+    """Whether a drag of a material is a function of depth."""
     given = [definition.values[key] for key in ("cdn", "cdt") if key in definition.values]
     deep = [value for value in given if counts_on_depth(value)]
     return any(value.rows or (value.formula and value.formula.names) for value in deep)
@@ -243,7 +249,7 @@ def _displacement(
 
 
 def _turned(definition: CableDefinition) -> tuple[tuple[float, float, float], ...]:
-    """Return the rows of a hull given by its diameters at levels above its keel."""
+    """Rows of a hull given by its diameters at levels above its keel."""
     value = definition.values.get("diameters")
     if value is None or len(value.rows) < 2 or any(len(row) != 2 for row in value.rows):
         raise definition.token.refuse(f"buoy `{definition.name}` needs `diameters` at two levels")

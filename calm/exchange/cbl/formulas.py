@@ -1,4 +1,4 @@
-"""Read formulas of problem files into functions, of the depth `H` where they depend on it."""
+"""Parse formulas of problem files to functions; formulas may depend on the depth `H`."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -9,9 +9,9 @@ from calm.errors import InputError, Problem, one_line
 from calm.exchange.cbl.words import SourceLine, Token, tokens_of
 
 Formula: TypeAlias = Callable[[Mapping[str, float]], float]
-"""A value, computed from the values of the names it depends on."""
+"""Function that computes a value from the values of the names it depends on."""
 
-_DEEPEST = 40  # parentheses within each other
+_DEEPEST = 40  # nesting depth of parentheses
 _FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
     "sin": (1, math.sin), "cos": (1, math.cos), "tan": (1, math.tan), "asin": (1, math.asin),
     "acos": (1, math.acos), "atan2": (2, math.atan2), "sinh": (1, math.sinh),
@@ -24,7 +24,7 @@ _LOGICAL: dict[str, Callable[[Formula, Formula], Formula]] = {
     "||": lambda left, right: lambda at: float(bool(left(at)) or bool(right(at))),
     "&&": lambda left, right: lambda at: float(bool(left(at)) and bool(right(at))),
 }
-"""Signs whose right side is not computed where the left side decides."""
+"""Operators whose right side is not evaluated if the left side decides."""
 
 _BINARY: dict[str, Callable[[float, float], float]] = {
     "|": lambda a, b: float(int(a) | int(b)),
@@ -39,7 +39,7 @@ _BINARY: dict[str, Callable[[float, float], float]] = {
     "*": lambda a, b: a * b, "/": lambda a, b: a / b, "%": lambda a, b: float(int(a) % int(b)),
 }  # fmt: skip
 _LEVELS = ("||", "&&", "|", "^", "&", "== !=", "< > <= >=", "<< >>", "+ -", "* / %")
-"""Signs between two values: those of a level bind more loosely than those of the next."""
+"""Binary operators by precedence, from the lowest level to the highest."""
 
 _UNARY: dict[str, Callable[[float], float]] = {
     "-": lambda a: -a, "+": lambda a: a, "!": lambda a: float(not a), "~": lambda a: float(~int(a)),
@@ -48,62 +48,62 @@ _UNARY: dict[str, Callable[[float], float]] = {
 
 @dataclass
 class TokenStream:
-    """Words taken one after the other; `at` is the place of the next one."""
+    """Stream of tokens; `at` is the index of the next token."""
 
     tokens: list[Token]
     at: int = 0
 
     @property
     def next(self) -> Token:
-        """The next word, which is not taken."""
+        """The next token, without consuming it."""
         return self.tokens[self.at]
 
     def ahead(self, count: int) -> Token:
-        """Return a word further on, which is not taken."""
+        """Return a later token, without consuming it."""
         return self.tokens[min(self.at + count, len(self.tokens) - 1)]
 
     def take(self) -> Token:
-        """Return the next word."""
+        """Consume and return the next token."""
         token = self.next
         self.at = min(self.at + 1, len(self.tokens) - 1)
         return token
 
-    def stands(self, *signs: str) -> bool:
-        """Return whether the next word is one of some signs."""
+    def is_next(self, *signs: str) -> bool:
+        """Whether the next token is one of the given operators."""
         return self.next.kind == "sign" and self.next.text in signs
 
     def comes(self, sign: str) -> bool:
-        """Return whether the next word is a sign; if so, it is taken."""
-        return self.stands(sign) and bool(self.take())
+        """Whether the next token is a given sign, which is then consumed."""
+        return self.is_next(sign) and bool(self.take())
 
     def expect(self, sign: str) -> None:
-        """Take a sign, which must be next."""
+        """Consume a sign, which must be the next token."""
         if not self.comes(sign):
             raise self.next.refuse(f"`{sign}` is missing before `{self.next.text}`")
 
 
 class UnknownNameError(InputError):
-    """A formula holds names that stand for nothing; `names` has them."""
+    """A formula contains undefined names, listed in `names`."""
 
     def __init__(self, token: Token, names: Sequence[str]) -> None:
         self.names = tuple(names)
-        said = "`{0}` is neither a number nor a known name; is it a macro? Give it with -D {0}=…"
+        said = "`{0}` is neither a number nor a known name; if it is a macro, define it by -D {0}=…"
         place = token.path, token.line, token.column
         super().__init__([Problem(*place, one_line(said.format(name))) for name in names])
 
 
 @dataclass
 class Expression:
-    """Represent a formula, the names it depends on, and the word it begins with."""
+    """A formula, the names it depends on, and its first token."""
 
     formula: Formula
     names: frozenset[str]
     token: Token
 
     def at(self, **values: float) -> float:
-        """Return its value.
+        """Return the value of the formula.
 
-        UnknownNameError: it depends on something else. InputError: it has no value.
+        Raises UnknownNameError for other names, and InputError if there is no value.
         """
         unknown = sorted(self.names - values.keys())
         if unknown:
@@ -127,21 +127,21 @@ def constant(text: str) -> float:
 
 
 def read_expression(words: TokenStream) -> Expression:
-    """Read a formula, as far as it goes (InputError: it cannot be read)."""
+    """Parse a formula to its end; raises InputError if it cannot be parsed."""
     token, names = words.next, set[str]()
     formula = _Reader(words, names).choice(0)
     return Expression(formula, frozenset(names), token)
 
 
 class _Reader:
-    """Reads by descent, from the signs that bind loosely to those that bind tightly."""
+    """Recursive-descent parser, from the lowest precedence to the highest."""
 
     def __init__(self, words: TokenStream, names: set[str]) -> None:
         self._words = words
         self._names = names
 
     def choice(self, depth: int) -> Formula:
-        """``a ? b : c``."""
+        """Parse ``a ? b : c``."""
         if depth > _DEEPEST:
             raise self._words.next.refuse("parentheses are nested too deeply")
         condition = self._binary(0, depth)
@@ -156,9 +156,9 @@ class _Reader:
         if level == len(_LEVELS):
             return self._unary(depth)
         left = self._binary(level + 1, depth)
-        while self._words.stands(*_LEVELS[level].split()):
-            # a `+` before a key or the end closes a table that repeats: nothing is added
-            if self._words.stands("+") and self._words.ahead(1).kind in ("key", "end"):
+        while self._words.is_next(*_LEVELS[level].split()):
+            # a `+` before a key or the end marks a periodic table, not an addition
+            if self._words.is_next("+") and self._words.ahead(1).kind in ("key", "end"):
                 break
             left = _joined(self._words.take().text, left, self._binary(level + 1, depth))
         return left
@@ -166,7 +166,7 @@ class _Reader:
     def _unary(self, depth: int) -> Formula:
         if depth > _DEEPEST:
             raise self._words.next.refuse("signs are nested too deeply")
-        if not self._words.stands(*_UNARY):
+        if not self._words.is_next(*_UNARY):
             return self._value(depth)
         operation = _UNARY[self._words.take().text]
         of = self._unary(depth + 1)
@@ -182,7 +182,7 @@ class _Reader:
             return inner
         if token.kind != "name":
             raise token.refuse(f"a number is missing before `{token.text}`")
-        if "/" in token.text:  # a sign that names may hold: here it divides
+        if "/" in token.text:  # names may contain this sign; here it divides
             head, _, rest = token.text.partition("/")
             more = list(tokens_of([SourceLine(f"/{rest}", token.path, token.line)]))
             self._words.tokens[self._words.at : self._words.at] = more[:-1]

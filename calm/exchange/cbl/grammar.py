@@ -1,4 +1,4 @@
-"""Read the words of WHOI Cable's problem files as a problem, by their grammar."""
+"""Parse problem files of WHOI Cable according to their grammar."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ _TEXTS = frozenset([
     "forcing-method", "input-type", "static-solution", "static-initial-guess",
     "dynamic-integration", "static-outer-method",
 ])  # fmt: skip
-"""Keys whose value is a word."""
+"""Keys with a word as value."""
 
 _SECTIONS = {
     "environment": "environment", "buoys": "buoys", "platforms": "buoys", "anchors": "anchors",
     "connectors": "connectors", "materials": "materials", "layout": "layout", "end": "",
     "problem": "description", "analysis": "analysis",
 }  # fmt: skip
-"""What of a problem stands in each section."""
+"""Part of a problem for each section."""
 
 _LONG_SECTIONS = {"problem": "description", "analysis": "parameters"}
-"""The second words of those that have two."""
+"""Second words of the section names with two words."""
 
 _MOST_NODES = 1_000_000
 _LAYOUT = frozenset(["terminal", "segment", "branch"])
@@ -36,7 +36,7 @@ _LAYOUT = frozenset(["terminal", "segment", "branch"])
 
 @dataclass
 class KeyValue:
-    """Hold the value of a key: a word, a formula, or rows in parentheses."""
+    """Value of a key: a word, a formula, or rows in parentheses."""
 
     token: Token
     text: str = ""
@@ -45,15 +45,15 @@ class KeyValue:
     repeats: bool = False
 
     def number(self, **values: float) -> float:
-        """Return a formula's value; `values` are those of the names it may hold."""
+        """Return the value of a formula; `values` are the values of its names."""
         if self.formula is None:
             raise self.token.refuse(f"a number is missing after `{self.token.text} =`")
         return self.formula.at(**values)
 
     def at(self, depth: float) -> float:
-        """Return a formula or a table at a depth, or whatever it counts on.
+        """Evaluate a formula or a table at a depth, or at another variable it depends on.
 
-        The lines of a table are prolonged at both ends.
+        The lines of a table are extrapolated at both ends.
         """
         if not self.rows:
             return self.number(H=depth, h=depth, t=0.0)
@@ -72,12 +72,12 @@ class KeyValue:
 
 
 class KeyValues(dict[str, KeyValue]):
-    """Hold the values of a section, of a definition or of a block, by their keys."""
+    """The values of a section, a definition or a block, by key."""
 
     def number(self, *keys: str, default: float = 0.0) -> float:
-        """Return the number of the first key that has one other than 0, at the time 0.
+        """Return the first nonzero number of some keys, at time 0.
 
-        The keys mean the same; `default` is returned where the file has none of them.
+        The keys are synonyms; `default` is returned if all are missing.
         """
         found = default
         for key in keys:
@@ -90,22 +90,22 @@ class KeyValues(dict[str, KeyValue]):
 
 @dataclass
 class CableDefinition:
-    """Represent a buoy, an anchor, a connector or a material."""
+    """Represent the definition of a buoy, an anchor, a connector or a material."""
 
     token: Token
     values: KeyValues
 
     @property
     def name(self) -> str:
-        """The name by which the layout calls it."""
+        """Name used in the layout."""
         return self.token.text
 
 
 @dataclass
 class CableSegment:
-    """Represent a length of one material, and what joins it to the next one up.
+    """A length of one material, and the connector to the next segment up.
 
-    `attachments` are connectors hung on it, each with its nodes.
+    `attachments` are connectors attached to it, each with its nodes.
     """
 
     token: Token
@@ -117,17 +117,17 @@ class CableSegment:
 
 @dataclass
 class CableTerminal(CableDefinition):
-    """Represent an end of the line."""
+    """An end of the line."""
 
     @property
     def buoy(self) -> KeyValue | None:
-        """The buoy or platform that it names."""
+        """The buoy or platform of this end."""
         return self.values.get("buoy") or self.values.get("platform")
 
 
 @dataclass
 class CableBranch:
-    """Represent a side line: its segments from where it joins, and its terminal."""
+    """A side line: its segments from the junction, and its terminal."""
 
     token: Token
     layout: CableItems
@@ -139,13 +139,13 @@ CableItems = list[CableTerminal | CableSegment | CableBranch]
 
 @dataclass
 class CableProblem:
-    """Hold the content of a problem file.
+    """Contents of a problem file.
 
     Attributes
     ----------
-    options : how it is read
-    description, environment : key and value
-    buoys, anchors, connectors, materials : by name
+    options : options of the import
+    description, environment : values by key
+    buoys, anchors, connectors, materials : definitions by name
     layout : terminals, segments and branches in the order of the file
     """
 
@@ -162,28 +162,28 @@ class CableProblem:
 
     @property
     def kind(self) -> str:
-        """The type of the problem."""
+        """Type of the problem."""
         given = self.description.get("type")
         return given.text.lower() if given else "general"
 
     @property
     def terminals(self) -> list[CableTerminal]:
-        """The ends of the line."""
+        """Ends of the line."""
         return [each for each in self.layout if isinstance(each, CableTerminal)]
 
     @property
     def segments(self) -> list[CableSegment]:
-        """The segments of the line, from the first end to the last."""
+        """Segments of the line, from the first end to the last."""
         return [each for each in self.layout if isinstance(each, CableSegment)]
 
     @property
     def length(self) -> float:
-        """The length of all segments [m]."""
+        """Total length of the segments [m]."""
         return sum(segment.values.number("length") for segment in self.segments)
 
 
 def read_problem(path: Path, options: ImportOptions) -> CableProblem:
-    """Read a file (InputError: it cannot be read; with line and column)."""
+    """Parse a file; raises InputError, with line and column, if it is invalid."""
     words = TokenStream(list(tokens_of(Preprocessor(options).read(path))))
     problem = CableProblem(path, options)
     while words.next.kind != "end":
@@ -213,7 +213,7 @@ def _section(words: TokenStream, problem: CableProblem) -> None:
 
 
 def _section_name(words: TokenStream) -> str | None:
-    """Return the section that begins here, if one does."""
+    """Return the name of a section that begins here, or None."""
     word, behind = words.next.text.lower(), words.ahead(1)
     if words.next.kind != "name" or word not in _SECTIONS:
         return None
@@ -223,7 +223,7 @@ def _section_name(words: TokenStream) -> str | None:
 
 
 def _values(words: TokenStream) -> KeyValues:
-    """Keys and their values, as far as they go; the last of a key holds."""
+    """Parse successive keys and their values; the last value of a key counts."""
     values = KeyValues()
     while words.next.kind == "key" and words.next.text not in _LAYOUT:
         key = words.take()
@@ -234,11 +234,11 @@ def _values(words: TokenStream) -> KeyValues:
 def _value(words: TokenStream, key: Token) -> KeyValue:
     if key.text in _TEXTS:
         return KeyValue(key, text=_word(words, key))
-    if words.stands("{"):  # the name of a profile
+    if words.is_next("{"):  # name of a profile
         words.take()
         words.take()
         words.expect("}")
-    if words.stands("(") and (rows := _rows(words)):
+    if words.is_next("(") and (rows := _rows(words)):
         return KeyValue(key, rows=rows, repeats=words.comes("+"))
     if words.next.kind == "text":
         return KeyValue(key, text=words.take().text)
@@ -250,14 +250,14 @@ def _word(words: TokenStream, key: Token) -> str:
     if token.kind not in ("name", "text", "number"):
         raise key.refuse(f"a name is missing after `{key.text} =`")
     text = token.text
-    while words.stands("-") and words.ahead(1).kind == "name":
+    while words.is_next("-") and words.ahead(1).kind == "name":
         words.take()
         text += "-" + words.take().text
     return text
 
 
 def _rows(words: TokenStream) -> list[tuple[Expression, ...]]:
-    """Rows such as ``(0, 0.5) (100, 0.2)``; none where the parenthesis is one of a formula."""
+    """Parse rows such as ``(0, 0.5) (100, 0.2)``; empty if the parenthesis belongs to a formula."""
     rows: list[tuple[Expression, ...]] = []
     while True:
         back = words.at
@@ -277,7 +277,7 @@ def _rows(words: TokenStream) -> list[tuple[Expression, ...]]:
 
 
 def _layout(words: TokenStream) -> CableItems:
-    """Terminals, segments and what joins them, from the anchor up."""
+    """Parse terminals, segments and connectors, from the anchor up."""
     layout: CableItems = []
     while words.next.kind == "key":
         key = words.take()
@@ -292,7 +292,7 @@ def _layout(words: TokenStream) -> CableItems:
             layout.append(CableBranch(key, _layout(words)))
             words.expect("}")
         else:
-            raise key.refuse(f"`{key.text} =` has no place in a layout")
+            raise key.refuse(f"`{key.text} =` is not allowed in a layout")
     return layout
 
 
@@ -319,9 +319,9 @@ def _segment(words: TokenStream, key: Token) -> CableSegment:
 def _connector(words: TokenStream, key: Token, layout: CableItems) -> None:
     below = layout[-1] if layout else None
     if not isinstance(below, CableSegment):
-        raise key.refuse("a connector stands above a segment")
+        raise key.refuse("a connector must follow a segment")
     body: KeyValue | None
-    if words.stands("{"):
+    if words.is_next("{"):
         below.joint = _block(words)
         body = below.joint.get("body") or below.joint.get("connector")
     else:
@@ -331,7 +331,7 @@ def _connector(words: TokenStream, key: Token, layout: CableItems) -> None:
 
 
 def _attachments(words: TokenStream, key: Token) -> list[tuple[Token, list[int]]]:
-    """Lists such as ``meter : (3 9 27), light : [2, 2, 40]``."""
+    """Parse lists such as ``meter : (3 9 27), light : [2, 2, 40]``."""
     found: list[tuple[Token, list[int]]] = []
     while words.next.kind in ("name", "text"):
         token = words.take()

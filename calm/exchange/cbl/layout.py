@@ -1,4 +1,4 @@
-"""Lay the layout of a WHOI Cable problem as a mooring, a tow, or a net of legs."""
+"""Convert the layout of a WHOI Cable problem to a mooring, a tow, or a net of legs."""
 
 import math
 from dataclasses import dataclass, replace
@@ -11,28 +11,28 @@ from calm.exchange.cbl.components import ComponentMaker, counts_on_depth, varies
 from calm.exchange.cbl.words import Token
 from calm.quantities import bearing_of
 
-_REACHES = 0.97  # of the depth: a line as long reaches the surface
-_PARTS = 12  # lengths of a segment whose drag changes with depth
-_CHANGE = 0.02  # of a drag that is worth two lengths
+_REACHES = 0.97  # share of the depth: a longer line reaches the surface
+_PARTS = 12  # number of lengths of a segment whose drag changes with depth
+_CHANGE = 0.02  # relative change of a drag coefficient above which a segment is divided
 _MOST_NODES = 1_000_000
 _ON_THE_BED = 0.05
-"""Share of the depth: an anchor no higher above the seabed stands on it."""
+"""Share of the depth: an anchor closer to the seabed stands on the seabed."""
 
 
 _End = grammar.CableTerminal | str
-"""Where a leg of the layout begins or ends: a terminal, or the name of a node."""
+"""Start or end of a leg in the layout: a terminal, or the name of a node."""
 
 
 @dataclass
 class CableLayout:
-    """Lays the line of a problem.
+    """Converter of the line of a problem.
 
     Attributes
     ----------
-    problem : whose line it is
-    makers : of components
-    design : to which pieces and legs are added, and whose water counts for drags by depth
-    nodes : where legs of a net join, so far; legs begin where the layout has their first segment
+    problem : problem of the line
+    makers : converter of components
+    design : design that receives the pieces and legs, and whose water is used for drags by depth
+    nodes : number of nodes of a net so far; legs begin at their first segment in the layout
     """
 
     problem: grammar.CableProblem
@@ -42,19 +42,19 @@ class CableLayout:
 
     @property
     def water(self) -> model.ImportedWater:
-        """The water of the design."""
+        """Water of the design."""
         assert self.design.water is not None
         return self.design.water
 
     @property
     def depth(self) -> float:
-        """The depth of the water [m]; InputError where the file has none."""
+        """Water depth [m]; raises InputError if the file has none."""
         if self.water.depth is None:
             raise refused(self.problem.path, "the environment has no `depth`")
         return self.water.depth
 
     def lay_mooring(self) -> None:
-        """Lay the line from the buoy down to the anchor."""
+        """Convert the line from the buoy down to the anchor."""
         items = self._pieces_of(self.problem.segments)
         lower, upper = self.problem.terminals
         if "anchor" in upper.values:
@@ -67,7 +67,9 @@ class CableLayout:
         self.design.items = [buoy, *reversed(items), model.ImportedPiece(anchor)]
 
     def lay_tow(self) -> None:
-        """Lay the line from the ship down; a ship at rest in a current moves against it."""
+        """Convert the line from the ship down; a ship at rest in a current is replaced by a moving
+        ship.
+        """
         items = self._pieces_of(self.problem.segments)
         body, ship = self.problem.terminals
         if body.buoy is None or "anchor" in ship.values:
@@ -79,7 +81,7 @@ class CableLayout:
             east, north = 0.0 - drift_east, 0.0 - drift_north
             moved = [(d, u + east, v + north, w) for d, u, v, w in self.water.current]
             self.water.current = tuple(moved) if any(any(row[1:]) for row in moved) else ()
-            note = "The ship lay in a current: here it moves, and the water with it."
+            note = "In the file the ship is at rest in a current; here the ship moves instead."
             self.design.notes.append(note)
         speed = math.hypot(east, north)
         if speed == 0.0:
@@ -88,16 +90,16 @@ class CableLayout:
         self.design.items = [*items[::-1], self._buoy(body, afloat=False)]
 
     def lay_net(self) -> None:
-        """Lay a line that has branches, or an anchor at each end, as legs that join.
+        """Convert a line with branches, or with an anchor at each end, to legs of a net.
 
-        InputError: a branch has no end, or nothing stands between two anchors.
+        Raises InputError if a branch has no end, or if there is nothing between two anchors.
         """
         first, *others = self.problem.layout
         assert isinstance(first, grammar.CableTerminal)
         self._lay(others, first)
 
     def _anchor(self, end: grammar.CableTerminal) -> model.ImportedComponent:
-        """Return the anchor of an end, as high as that stands."""
+        """Return the anchor of an end, with the height of the end."""
         name = end.values["anchor"].text
         known, height = self.problem.anchors.get(name), end.values.number("z")
         anchor = self.makers.anchor(known, name, end.values.number("mu"))
@@ -110,7 +112,7 @@ class CableLayout:
         return model.ImportedPiece(self.makers.buoy(found, afloat=afloat))
 
     def _pieces_of(self, segments: list[grammar.CableSegment]) -> list[model.ImportedPiece]:
-        """Return the pieces of segments and their connectors, from the lower one up."""
+        """Return the pieces of segments and their connectors, from the lowest up."""
         items: list[model.ImportedPiece] = []
         below, seabed = 0.0, self.water.depth or self.problem.length
         for segment in segments:
@@ -137,9 +139,9 @@ class CableLayout:
         length: float,
         lower: float,
     ) -> list[model.ImportedPiece]:
-        """Return a segment, whose lower end is at a depth standing upright, as pieces from below.
+        """Convert a segment, whose upright lower end is at a given depth, to pieces from below.
 
-        They are several where its drag changes with depth.
+        There are several pieces if the drag changes with depth.
         """
         clamps = self._clamps(segment, length)
         count = _PARTS if varies(material) else 1
@@ -157,7 +159,7 @@ class CableLayout:
             for height, clamped in clamps:
                 if start <= height < end or (item is made[-1] and height >= end):
                     item.clamp(clamped, min(max(end - height, 0.0), item.extent))
-            item.guess = "its drag at the depth where it stands upright" if len(made) > 1 else ""
+            item.guess = "drag at its depth in the upright line" if len(made) > 1 else ""
             start = end
         for key in ("cdn", "cdt"):
             value = material.values.get(key)
@@ -168,7 +170,7 @@ class CableLayout:
         return made
 
     def _speed(self, depth: float) -> float:
-        """Return the speed of the current at the level next to a depth [m/s]."""
+        """Speed of the current at the level closest to a depth [m/s]."""
         levels = self.water.current or ((0.0, 0.0, 0.0, 0.0),)
         row = min(levels, key=lambda each: abs(each[0] - depth))
         return math.hypot(row[1], row[2])
@@ -176,7 +178,9 @@ class CableLayout:
     def _clamps(
         self, segment: grammar.CableSegment, length: float
     ) -> list[tuple[float, model.ImportedComponent]]:
-        """Return what hangs on the nodes of a segment, with the height above its lower end."""
+        """Return the items attached to the nodes of a segment, with their heights above its lower
+        end.
+        """
         heights = _heights(segment, length) if segment.attachments else []
         found = []
         for token, nodes in segment.attachments:
@@ -190,11 +194,11 @@ class CableLayout:
     def _connector(self, token: Token) -> model.ImportedComponent:
         found = self.problem.connectors.get(token.text)
         if found is None:
-            raise token.refuse(f"the connector `{token.text}` is defined nowhere")
+            raise token.refuse(f"the connector `{token.text}` is not defined")
         return self.makers.connector(found)
 
     def _lay(self, layout: grammar.CableItems, start: _End) -> None:
-        """Lay what follows a terminal or a node, and the branches at the nodes on the way."""
+        """Convert the layout after a terminal or a node, including branches."""
         segments: list[grammar.CableSegment] = []
         branched = any(isinstance(each, grammar.CableBranch) for each in layout)
         last = layout[-1] if layout else None
@@ -202,7 +206,7 @@ class CableLayout:
             isinstance(end, grammar.CableTerminal) and "anchor" in end.values
             for end in (start, last)
         )
-        # a line from anchor to anchor is cut where it first can be
+        # a line from anchor to anchor is divided at the first possible position
         whole = not branched and all(anchored)
         for each, following in zip_longest(layout, layout[1:]):
             if isinstance(each, grammar.CableTerminal):
@@ -223,21 +227,21 @@ class CableLayout:
             raise last.token.refuse(message) if last else refused(self.problem.path, message)
 
     def _leg(self, start: _End, segments: list[grammar.CableSegment], end: _End) -> None:
-        """Add a leg, turned where what the layout has last is its lower end."""
+        """Add a leg, reversed if the layout lists it downwards."""
         items = self._pieces_of(segments)[::-1]
         first, lower, low = self._end(start)
         last, upper, high = self._end(end)
         if not segments or (low and high):
             where = start if isinstance(end, str) else end
             assert not isinstance(where, str)
-            raise where.token.refuse("nothing stands between its two ends, which both go down")
+            raise where.token.refuse("there is nothing between its two ends, which both lead down")
         if high:
             items = [_turned(each) for each in items[::-1]]
             first, lower, last, upper = last, upper, first, lower
         self.design.lay([*last, *items, *first], upper, lower)
 
     def _end(self, at: _End) -> tuple[list[model.ImportedPiece], str, bool]:
-        """Return what stands at an end, what holds it, and whether it is a lower one."""
+        """Return the pieces at an end, its support, and whether it is a lower end."""
         if isinstance(at, str):
             return [], model.joined_at(at), False
         values, token = at.values, at.token
@@ -264,7 +268,7 @@ def _alike(one: model.ImportedComponent, other: model.ImportedComponent) -> bool
 
 
 def _heights(segment: grammar.CableSegment, length: float) -> list[float]:
-    """Return the heights of the nodes of a segment above its lower end [m]."""
+    """Heights of the nodes of a segment above its lower end [m]."""
     nodes = segment.values.get("nodes")
     if nodes is None or not nodes.rows or any(len(row) != 2 for row in nodes.rows):
         raise segment.token.refuse("attachments need `nodes = (count, share)`")
@@ -284,10 +288,10 @@ def _defined(
     value: grammar.KeyValue | None,
     token: Token,
 ) -> grammar.CableDefinition:
-    """Return the definition that a value names; a problem stands at the value, or at `token`."""
+    """Return the definition named by a value; errors point to the value, or to `token`."""
     if value is None or not value.text:
         raise token.refuse("a name is missing: a material, or a buoy")
     found = definitions.get(value.text)
     if found is None:
-        raise value.token.refuse(f"`{value.text}` is defined nowhere")
+        raise value.token.refuse(f"`{value.text}` is not defined")
     return found

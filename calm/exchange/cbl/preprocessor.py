@@ -1,7 +1,7 @@
-"""Resolve comments, macros, conditions and included files of a problem file, and find its words.
+"""Resolve comments, macros, conditions and included files of a problem file.
 
-The C preprocessors that can be had as libraries know no limit to what macros grow to within their
-arguments, cut numbers such as `6e3` where `e3` is a macro, and let a comment without an end pass.
+Available libraries for C preprocessing do not limit the expansion of macros within their arguments,
+split numbers such as `6e3` if `e3` is a macro, and accept a comment without an end.
 """
 
 import os
@@ -16,14 +16,14 @@ from calm.exchange.model import ImportOptions
 from calm.whole_file import decoded, read_content
 
 _NAME = re.compile(r"[A-Za-z_]\w*")
-_PIECE = re.compile(  # a text in quotes, a number such as 6e3, a name, or signs between them
+_PIECE = re.compile(  # a text in quotes, a number such as 6e3, a name, or characters in between
     r"\"[^\"\n]*\"|'[^'\n]*'|\d[\w.]*|[A-Za-z_]\w*|[^\w\"']+|.", re.DOTALL
 )
 _DIRECTIVE = re.compile(r"\s*#\s*([a-z]+)\b(.*)", re.DOTALL)
-_MOST_TEXT = 4_000_000  # characters that a file may become
+_MOST_TEXT = 4_000_000  # largest number of characters after expansion
 _MOST_EXPANSIONS = 20_000
-_DEEPEST = 20  # files within files, macros within macros, conditions within conditions
-_LONGEST = 100_000  # characters of one line once expanded
+_DEEPEST = 20  # nesting depth of files, macros and conditions
+_LONGEST = 100_000  # largest number of characters of an expanded line
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class _Macro:
 
 @dataclass
 class Preprocessor:
-    """Resolves comments, macros, conditions and includes as the C preprocessor does."""
+    """Resolves comments, macros, conditions and includes like the C preprocessor."""
 
     options: ImportOptions
     _macros: dict[str, _Macro] = field(default_factory=dict)
@@ -43,10 +43,11 @@ class Preprocessor:
     _expansions: int = 0
 
     def read(self, path: Path) -> list[SourceLine]:
-        """Return the lines of a file, and of those it includes.
+        """Return the lines of a file and of its included files.
 
-        InputError: a file cannot be read or may not be included, a directive cannot be read, or
-        macros expand without end. UsageError: a macro given from outside has no proper name.
+        Raises InputError if a file cannot be read or may not be included, a directive is invalid,
+        or macros expand without end. Raises UsageError if a macro defined by the user has an
+        invalid name.
         """
         for name, value in self.options.defines.items():
             if not _NAME.fullmatch(name):
@@ -58,7 +59,8 @@ class Preprocessor:
     def _file(self, path: Path, root: Path, within: tuple[Path, ...]) -> None:
         text = decoded(path, read_content(path)).removeprefix("\ufeff")
         shown = str(path)
-        conditions: list[tuple[bool, bool]] = []  # whether it holds, whether one has held
+        # whether the condition holds, whether one has held before
+        conditions: list[tuple[bool, bool]] = []
         for number, line in enumerate(_without_comments(text, shown), 1):
             found = _DIRECTIVE.match(line)
             word, rest = (found[1], found[2].strip()) if found else ("", "")
@@ -75,7 +77,7 @@ class Preprocessor:
             raise refused(shown, "an `#if` has no `#endif`", line=len(text.splitlines()))
 
     def _condition(self, word: str, rest: str, conditions: list[tuple[bool, bool]]) -> bool:
-        """Follow `#if` and the directives that go with it; False for another directive."""
+        """Process `#if` and related directives; returns False for other directives."""
         if word in ("if", "ifdef", "ifndef"):
             if len(conditions) >= _DEEPEST:
                 raise ValueError("conditions are nested too deeply")
@@ -130,7 +132,7 @@ class Preprocessor:
         if found is None:
             raise ValueError(f"`#define {rest[:40]}` cannot be read")
         if found[1] in self.options.defines:
-            return  # what is given from outside holds
+            return  # definitions by the user have precedence
         parameters = None
         if found[2] is not None:
             parameters = tuple(name.strip() for name in found[3].split(",") if name.strip())
@@ -160,7 +162,7 @@ class Preprocessor:
         self._lines.append(SourceLine(expanded, path, number))
 
     def _expanded(self, text: str, hidden: frozenset[str] = frozenset()) -> str:
-        """Return a text with its macros replaced; quoted texts stay as they are."""
+        """Return a text with its macros expanded, except in quoted texts."""
         pieces: list[str] = []
         size, at = 0, 0
         while found := _PIECE.match(text, at):
@@ -177,7 +179,7 @@ class Preprocessor:
     def _replaced(
         self, macro: _Macro, name: re.Match[str], text: str, hidden: frozenset[str]
     ) -> tuple[str, int]:
-        """Return what stands in place of a macro, and where the text goes on."""
+        """Return the expansion of a macro, and the position after it."""
         self._expansions += 1
         if self._expansions > _MOST_EXPANSIONS or len(hidden) > _DEEPEST:
             raise ValueError(f"the macro `{name[0]}` grows without limit")
@@ -195,7 +197,7 @@ class Preprocessor:
 
 
 def _arguments(text: str, at: int) -> tuple[list[str], int]:
-    """Return the arguments in the parentheses that follow, and where the text goes on."""
+    """Return the arguments in the following parentheses, and the position after them."""
     opening = re.compile(r"\s*\(").match(text, at)
     if opening is None:
         return [], at
@@ -214,7 +216,9 @@ def _arguments(text: str, at: int) -> tuple[list[str], int]:
 
 
 def _without_comments(text: str, path: str) -> list[str]:
-    """Return as many lines without comments, those that a backslash joins in the first of them."""
+    """Return the lines without comments, in the same number; lines joined by a backslash go into
+    the first.
+    """
     pieces: list[str] = []
     at = 0
     sign = re.compile(r"/\*|//|\"[^\"\n]*\"|'[^'\n]*'")

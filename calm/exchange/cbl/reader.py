@@ -1,4 +1,4 @@
-"""Read a problem file of WHOI Cable as a design, with its environment and currents beside it."""
+"""Read a problem file of WHOI Cable as a design, with its environment and its current file."""
 
 import math
 import re
@@ -28,7 +28,7 @@ from calm.quantities import bearing_of
 from calm.whole_file import read_text
 
 _USUAL_GRAVITY = 9.81
-"""Gravity in the problems that come with that program, which has no default [m/s²]."""
+"""Gravity in the problems distributed with WHOI Cable, which has no default [m/s²]."""
 
 _REFUSED = {
     "horizontal": "a horizontal array, which has an anchor at each end",
@@ -47,26 +47,27 @@ _HEADS = re.compile(
 )
 _FORCES = ("x-force", "y-force", "z-force", "x-thrust", "y-thrust", "z-thrust")
 _NOTE = (
-    "cn and ct are its Cdn and Cdt, defined alike: on the diameter, and on the surface of a metre. "
+    "cn and ct are its Cdn and Cdt, with the same definitions: on the diameter, and on the "
+    "surface. "
     "See `calm docs import-cable`."
 )
-_FINEST = 1e-4  # share of the fastest current by which levels may miss a formula
+_FINEST = 1e-4  # tolerance of the levels, as a share of the fastest current
 _HALVINGS = 8
-_DIGITS = 9  # of a speed in m/s
+_DIGITS = 9  # digits of a speed in m/s
 _WAVES = ("x-wave", "y-wave", "x-input", "y-input", "z-input", "wave-file")
 _DYNAMICS = ("forcing-method", "input-type", "velocity-file", "force-file")
 _SEABED = ("bottom-stiffness", "bottom-damping", "bottom-elevation")
 _Profile = tuple[Callable[[float], float], list[float]]
-"""A speed by depth, and the depths between which it is linear."""
+"""A speed by depth, and depths between which it is linear."""
 
 _LARGEST = 20_000_000  # bytes
 _MOST = 2_000_000  # speeds
 _Grid = tuple[NDArray[np.float64], NDArray[np.float64]]
-"""Depths of the levels, growing [m], and (n, 3) speeds to x, y and z there [m/s]."""
+"""Depths of the levels, increasing [m], and (n, 3) speeds in x, y and z [m/s]."""
 
 
 def is_cbl(content: bytes) -> bool:
-    """Return whether a file looks like a problem: it names two sections that each must have."""
+    """Whether a file looks like a problem, with at least two of the section names."""
     text = content.decode("latin-1").lower()
     return b"\0" not in content and len(set(_HEADS.findall(text))) >= 2
 
@@ -74,8 +75,8 @@ def is_cbl(content: bytes) -> bool:
 def read_cbl(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     """Read a mooring or a tow.
 
-    InputError: the file cannot be read, or holds what CALM cannot represent. All undefined names
-    that it uses are named at once.
+    Raises InputError if the file is invalid or contains features that CALM cannot represent; all
+    undefined names are listed together.
     """
     given, missing = dict(options.defines), list[Problem]()
     while True:
@@ -85,7 +86,7 @@ def read_cbl(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
             missing += error.problems
             if any(name in given or not name.isidentifier() for name in error.names):
                 break
-            given |= dict.fromkeys(error.names, "1")  # to see which others are missing
+            given |= dict.fromkeys(error.names, "1")  # define them, to find other missing names
         except InputError:
             if not missing:
                 raise
@@ -107,9 +108,7 @@ def _read(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     design.notes.append(_NOTE)
     design.water = _water_of(problem, design.dropped)
     if problem.analysis:
-        design.dropped.append(
-            model.Remark("analysis parameters", "how that program is to solve it")
-        )
+        design.dropped.append(model.Remark("analysis parameters", "solver settings of WHOI Cable"))
     density = environment.number("rho", "density")
     gravity = environment.number("gravity", default=_USUAL_GRAVITY)
     for key, value in (("density", density), ("gravity", gravity)):
@@ -135,14 +134,14 @@ def _read(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
 
 
 def _is_net(problem: CableProblem) -> bool:
-    """Return whether a line has branches, or an anchor at each end."""
+    """Whether a line has branches, or an anchor at each end."""
     anchored = all("anchor" in end.values for end in problem.terminals)
     branched = any(isinstance(each, CableBranch) for each in problem.layout)
     return problem.kind != "towing" and (branched or anchored)
 
 
 def _refuse_other_shapes(problem: CableProblem) -> None:
-    """Refuse all but moorings and nets of legs, and tows from a ship to a body."""
+    """Raise InputError for anything except moorings, nets of legs, and tows of a body by a ship."""
     kind, layout, ends = problem.kind, problem.layout, problem.terminals
     if kind in _REFUSED and not (kind in _MOORED and _is_net(problem)):
         raise problem.description["type"].token.refuse(
@@ -168,9 +167,9 @@ def _refuse_other_shapes(problem: CableProblem) -> None:
 
 
 def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.ImportedWater:
-    """Return depth, density, gravity, current and wind; what has no counterpart is `dropped`.
+    """Read depth, density, gravity, current and wind; unsupported keys are added to `dropped`.
 
-    The length of the line stands for the depth of a tow whose file gives none.
+    For a tow without depth, the length of the line is used.
     """
     environment = problem.environment
     depth = environment.number("depth")
@@ -178,7 +177,7 @@ def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.Impor
     water.density = environment.number("rho", "density") or None
     water.gravity = environment.number("gravity", default=_USUAL_GRAVITY)
     if "gravity" not in environment:
-        water.guesses["gravity"] = "the file gives none; the usual value of such files"
+        water.guesses["gravity"] = "not in the file; the usual value of such files"
     grid = None
     if (value := environment.get("current-file")) is not None:
         grid = _gridded_current(value, problem, dropped)
@@ -191,7 +190,7 @@ def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.Impor
     east, north = (environment.number(f"{axis}-wind") for axis in "xy")
     if east or north:
         water.wind = math.hypot(east, north), bearing_of(east, north)
-    for what, keys in (("waves", _WAVES), ("how waves act", _DYNAMICS), ("the seabed", _SEABED)):
+    for what, keys in (("waves", _WAVES), ("wave forcing", _DYNAMICS), ("the seabed", _SEABED)):
         found = [key for key in keys if key in environment]
         if found:
             dropped.append(model.Remark("environment", f"{what} ({', '.join(found)})"))
@@ -201,7 +200,7 @@ def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.Impor
 def _current(
     axes: list[_Profile | None], angle: float, deepest: float
 ) -> tuple[tuple[float, float, float, float], ...]:
-    """Rows of depth, and speed to the east (x), to the north (y) and up (z), at the time 0."""
+    """Rows of depth, and speed to the east (x), to the north (y) and up (z), at time 0."""
 
     def at(depth: float) -> tuple[float, float, float]:
         x, y, z = (0.0 if axis is None else axis[0](depth) for axis in axes)
@@ -224,9 +223,9 @@ def _profile(environment: KeyValues, axis: str, grid: _Grid | None) -> _Profile 
     scale = environment.number(f"{axis}-current-scale", default=1.0)
     if scale == 1.0:
         scale = environment.number("current-scale", default=1.0)
-    if grid is not None:  # it is scaled there, but neither modulated nor turned
+    if grid is not None:  # scaled in WHOI Cable, but neither modulated nor rotated
         depths, column = grid[0], grid[1][:, "xyz".index(axis)]
-        # constant beyond the first and the last level, as there
+        # constant beyond the first and the last level, as in WHOI Cable
         return (lambda depth: scale * float(np.interp(depth, depths, column))), depths.tolist()
     value = environment.get(f"{axis}-current")
     if value is None:
@@ -262,10 +261,11 @@ def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[flo
 def _gridded_current(
     value: KeyValue, problem: CableProblem, dropped: list[model.Remark]
 ) -> _Grid | None:
-    """Return the currents of a file beside the problem; None where there is no such file.
+    """Read the currents of a current file; None if the file does not exist.
 
-    It begins with step, start and count of time, depth, x and y; the speeds to x, y and z follow,
-    the depth running fastest, then x, then y, then the time. What is left out of it is `dropped`.
+    The file begins with step, start and count of time, depth, x and y; then follow the speeds in x,
+    y and z, with depth varying fastest, then x, then y, then time. Omissions are added to
+    `dropped`.
     """
     folder = problem.path.parent
     path, outside = folder / value.text, problem.options.allow_include
@@ -295,7 +295,7 @@ def _gridded_current(
     if times > 1:
         dropped.append(model.Remark("current-file", "times after the first"))
     if np.ptp(speeds, axis=(1, 2)).any():
-        what = "how it varies horizontally: the profile at the anchor is taken"
+        what = "horizontal variation: the profile at the anchor is used"
         dropped.append(model.Remark("current-file", what))
     order = np.argsort(depth)
     return depth[order], here[order]
@@ -312,7 +312,7 @@ def _numbers(path: Path) -> NDArray[np.float64]:
 
 
 def _at_zero(grid: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the grid at 0 of its first axis, or at that end of it which is nearer."""
+    """Value of the grid at 0 of its first axis, or at its closest end."""
     order = np.argsort(axis)
     axis, grid = axis[order], grid[order]
     place = min(max(0.0, axis[0]), axis[-1])

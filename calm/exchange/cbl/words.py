@@ -1,4 +1,4 @@
-"""Find the words of a problem file of WHOI Cable."""
+"""Split a problem file of WHOI Cable into tokens."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -18,7 +18,7 @@ _TOKEN = re.compile(
 
 @dataclass(frozen=True)
 class SourceLine:
-    """Hold a line of text and where it stands."""
+    """A line of text and its position."""
 
     text: str
     path: str
@@ -27,7 +27,7 @@ class SourceLine:
 
 @dataclass(frozen=True)
 class Token:
-    """Hold a word and where it stands.
+    """A token and its position.
 
     `kind` is ``key`` (a name with its `=`), ``name``, ``text`` (in quotes), ``number``, ``sign`` or
     ``end``.
@@ -41,14 +41,14 @@ class Token:
     number: float = 0.0
 
     def refuse(self, message: str) -> Exception:
-        """Return a problem at this word."""
+        """Return an error at this token."""
         return refused(self.path, message, line=self.line, column=self.column)
 
 
 def tokens_of(lines: Iterable[SourceLine]) -> Iterator[Token]:
-    """Return the words of the lines, and an ``end``.
+    """Yield the tokens of the lines, followed by an ``end``.
 
-    InputError: a sign that has no place in such a file.
+    Raises InputError for a character that is not allowed.
     """
     last = SourceLine("", "", 0)
     for line in lines:
@@ -66,7 +66,7 @@ def _words(line: SourceLine) -> Iterator[Token]:
         place = line.path, line.number, at + 1
         found = _TOKEN.match(text, at)
         if found is None:
-            message = f"`{text[at]}` has no place in a problem of WHOI Cable"
+            message = f"`{text[at]}` is not allowed in a problem of WHOI Cable"
             raise refused(line.path, message, line=line.number, column=at + 1)
         kind = found.lastgroup or ""
         word, at = found[kind], found.end()
@@ -74,7 +74,7 @@ def _words(line: SourceLine) -> Iterator[Token]:
             word = word.lower()
         elif kind == "text":
             word = word[1:-1]
-        elif kind == "name":  # of a list: `meter: (3 5)`
+        elif kind == "name":  # name of a list: `meter: (3 5)`
             at -= len(word) - len(word.rstrip(":"))
             word = word.rstrip(":")
         yield Token(kind, word, *place, number=float(word) if kind == "number" else 0.0)

@@ -18,18 +18,18 @@ from calm.files import Chain, Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_hull
 
-_RIGID = 1e8  # N: EA of what does not stretch
-_LEAST_MASS = 0.01  # kg per metre: what weighs and drags nothing still moves
-_LEAST_WEIGHT = 1e-6  # N per metre: a weight of 0 is worked out from the mass there
-_FINEST, _COARSEST = 3, 401  # nodes of a segment
-_APART = 0.5  # m between nodes, where that many suffice
-_CALM = 1e-6  # m/s: less than this across the heading is no current
-_LEAST = 1e-3  # m of diameter, kg of mass
+_RIGID = 1e8  # N: EA of inextensible pieces
+_LEAST_MASS = 0.01  # kg per metre: smallest mass, needed for the dynamics
+_LEAST_WEIGHT = 1e-6  # N per metre: for a weight of 0, WHOI Cable uses the mass instead
+_FINEST, _COARSEST = 3, 401  # smallest and largest number of nodes of a segment
+_APART = 0.5  # m between nodes, within these limits
+_CALM = 1e-6  # m/s: a smaller current across the heading is ignored
+_LEAST = 1e-3  # smallest diameter in m and mass in kg
 
 
 @dataclass
 class _Problem:
-    """Gather the sections of the file from the lower end up, for water of one density."""
+    """Sections of the file, built from the lower end up, for water of one density."""
 
     density: float
     materials: dict[str, str] = field(default_factory=dict)
@@ -39,7 +39,7 @@ class _Problem:
     last: tuple[str, float] = ("", 0.0)
 
     def segment(self, name: str, length: float) -> None:
-        """Add a length of a material, after what acts at its lower end."""
+        """Add a length of a material, after the load at its lower end."""
         if length <= 0.0:
             return
         if self.load is None and self.last[0] == name:
@@ -53,13 +53,13 @@ class _Problem:
         )
 
     def at_a_point(self, part: ExportedPart) -> None:
-        """Add a load at the point that the line has reached."""
+        """Add a load at the current end of the line."""
         if self.load is None:
             self.load = PartLoad(self.density)
         self.load.add(part)
 
     def _join(self) -> None:
-        """Write the connector of the load at this point; none where nothing acts."""
+        """Write the connector for the load at this point, if any."""
         if self.load is None:
             return
         load, self.load = self.load, None
@@ -82,9 +82,7 @@ def write_cbl(exported: ExportedDesign) -> Exported:
     density = design.mean_density
     problem = _Problem(density)
     if max(row[4] for row in design.levels) - min(row[4] for row in design.levels) > 1e-9:
-        lost.append(
-            "the profile of density: weights and drags are those where each part stands upright"
-        )
+        lost.append("the density profile: weights and drags are those of the upright line")
     parts = list(design.parts)
     if design.tow is None:
         buoy, parts = parts[0], parts[1:]
@@ -93,20 +91,20 @@ def write_cbl(exported: ExportedDesign) -> Exported:
     for part in reversed(parts):
         _lay(problem, part, lost)
     if buoy.clamps:
-        lost.append("clamps on the float: they act at the end of the line")
+        lost.append("clamps on the float: their loads act at the end of the line")
         for clamp, _ in buoy.clamps:
             problem.at_a_point(clamp)
     floating = design.afloat
     if floating and not design.has_draft:
-        lost.append("a float that has no draft, or full drag: there it floats at its draft")
+        lost.append("a float without draft or with full drag: in WHOI Cable it floats at its draft")
     if design.tow is not None and design.tow.height:
-        lost.append("the height of the sheave: there the line begins at the surface")
+        lost.append("the height of the sheave: in WHOI Cable the line begins at the surface")
     if floating:
-        lost.append("how its drag grows with draft: its Cdn gives the drag at the present draft")
+        lost.append("the increase of its drag with draft: Cdn gives the drag at the present draft")
     elif design.tow is None:
         lost.append(AS_A_POINT)
     if buoy.flexible:
-        lost.append("the free end of the line: a small sphere without weight is put there")
+        lost.append("the free end of the line: replaced by a small sphere without weight")
     elif not floating and design.tow is None and buoy.length > 0.0:
         problem.segment(_link(problem), buoy.length)
     if problem.load is not None:
@@ -119,7 +117,9 @@ def write_cbl(exported: ExportedDesign) -> Exported:
 
 
 def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:
-    """Return a tow in axes of its ship, x ahead and y to port; the statics know x and z alone."""
+    """Return a tow in axes of its ship, x ahead and y to port, since the statics only use x
+    and z.
+    """
     assert design.tow is not None
     speed = hypot(design.tow.east, design.tow.north)
     if not speed:
@@ -128,19 +128,19 @@ def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:
     levels = []
     for depth, east, north, up, density in design.levels:
         along, across = east * ahead + north * port, north * ahead - east * port
-        # rounding alone leaves a current from ahead or astern something across
+        # rounding would otherwise leave a small cross current for a current from ahead or astern
         across = 0.0 if abs(across) < _CALM else across
         levels.append((depth, along, across, up, density))
     heading = degrees(atan2(design.tow.east, design.tow.north)) % 360.0
-    lost.append(f"the heading, {heading:.4g} deg true: there x points ahead of the ship")
+    lost.append(f"the heading, {heading:.4g} deg true: in WHOI Cable x points ahead")
     if any(level[2] for level in levels):
-        lost.append("currents across the heading: its statics know only x and z")
+        lost.append("currents across the heading: the statics of WHOI Cable only use x and z")
     tow = replace(design.tow, east=speed, north=0.0)
     return replace(design, tow=tow, levels=tuple(levels))
 
 
 def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
-    """Lay a part from its lower end up."""
+    """Write a part from its lower end up."""
     if part.flexible or (part.directional and part.length > 0.0):
         name = _material(problem, part)
         below = part.length
@@ -163,7 +163,7 @@ def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
 
 
 def _link(problem: _Problem) -> str:
-    """Return a stiff material without weight and drag, as long as a rigid piece is."""
+    """Return a stiff material without weight and drag, for rigid pieces."""
     figures = (
         f"d = 0.001  m = {_LEAST_MASS}  wet = {_LEAST_WEIGHT}  Cdn = 0  Cdt = 0"
         f"  EA = {_RIGID:g}  EI = 1e-4  GJ = 1e-4"
@@ -189,7 +189,7 @@ def _material(problem: _Problem, part: ExportedPart) -> str:
 
 
 def _word(text: str) -> str:
-    """Return a name as that program's words are: it begins with a letter."""
+    """Convert a text to a word of WHOI Cable, which begins with a letter."""
     word = "".join(sign if sign.isalnum() and sign.isascii() else "_" for sign in text)
     return word if word[:1].isalpha() else f"n_{word}"
 
@@ -243,7 +243,7 @@ def _text(design: ExportedLine, problem: _Problem, buoy: str, density: float) ->
 
 
 def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
-    """Its size, mass, buoyancy and drag in the words of that program; `lost` is what has none."""
+    """Size, mass, buoyancy and drag in the keys of WHOI Cable; losses are added to `lost`."""
     if part.flexible:
         return "type = sphere  d = 0.001  m = 0.001  buoyancy = 0.01  Cdn = 0"
     floating, gravity = design.afloat, design.gravity
@@ -272,7 +272,7 @@ def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost
         drag = seen / hull.area * _drag_share(design, hull, mass, part.net, most)
         return f"{size}  Cdn = {drag:.9g}{wind}"
     if floating and not isinstance(part.component, Sphere):
-        lost.append("the hull of the float: it is a sphere of its drag")
+        lost.append("the hull of the float: replaced by a sphere with the same drag")
     across = part.diameter if isinstance(part.component, Sphere) else sqrt(4.0 * seen / pi)
     hull = spherical_hull(max(across, _LEAST))
     drag = seen / hull.area
@@ -283,7 +283,7 @@ def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost
 
 
 def _windage(part: ExportedPart, design: ExportedLine) -> str:
-    """Return the area of a float in the wind, where there is wind or the file gives it."""
+    """Return the wind area of a float, if there is wind or the file specifies it."""
     component = part.component
     if not isinstance(component, Rigid):
         return ""
@@ -295,9 +295,9 @@ def _windage(part: ExportedPart, design: ExportedLine) -> str:
 
 
 def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most: float) -> float:
-    """Factor on the drag of a hull with which it drags, at its draft, as in CALM.
+    """Factor on the drag coefficient of a hull that gives the same drag at its draft as in CALM.
 
-    `net` is its net buoyancy, `most` what displaces all of it lifts [N].
+    `net` is its net buoyancy, `most` the buoyancy of its whole displacement [N].
     """
     used, seen = design.riding
     immersed = min(max((mass * design.gravity + used * net) / most, 0.0), 1.0)
@@ -306,9 +306,9 @@ def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most:
 
 
 def _turned(form: Displacement) -> tuple[str, list[tuple[float, float, float]]]:
-    """Levels and diameters of a hull of revolution that displaces what a table says.
+    """Levels and diameters of a hull of revolution with the displacement of a table.
 
-    With them the rows of draft [m], displaced volume [m³] and area [m²] that such a hull has.
+    Also returns the rows of draft [m], displaced volume [m³] and area [m²] of this hull.
     """
     table = form.displacement
     if table[0][0] > 0.0:

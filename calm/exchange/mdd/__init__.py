@@ -1,4 +1,4 @@
-"""Files of Mooring Design & Dynamics: matrices of elements in a `.mat` file."""
+"""Read and write files of Mooring Design & Dynamics: matrices of elements in a `.mat` file."""
 
 from calm.exchange.mat_file import is_mat
 from calm.exchange.mdd.reader import read_mdd

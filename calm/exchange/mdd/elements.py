@@ -1,4 +1,4 @@
-"""Make components of the elements of Mooring Design & Dynamics, with that program's drag."""
+"""Convert elements of Mooring Design & Dynamics to components, with the drag of that program."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
 _SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
-_FLAT = 1e-3  # m: height of a float that the file gives none
-_SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
+_FLAT = 1e-3  # m: height assumed for a float without one
+_SOFT = 1e10  # Pa: the modulus of a rope is lower, that of a wire higher
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
 _LARGEST = 1e9  # m, kg: of no piece
 _ROWS = ("B", "Cd", "ME", "Wt")
@@ -24,23 +24,24 @@ GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
 """The variables of a library that hold elements."""
 
 MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
-"""Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
-polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
+"""Moduli of elasticity of the materials that the program numbers from 1: steel, nylon, Dacron,
+polypropylene, polyethylene, Kevlar, aluminium, Dyneema [Pa].
+"""
 
 
 def piece_of(element: MddElement) -> model.ImportedPiece:
-    """Return the piece of an element that is not the anchor."""
+    """Return the piece of an element other than the anchor."""
     if element.is_line:
         return model.ImportedPiece(_flexible(element), element.length)
     return model.ImportedPiece(rigid(element))
 
 
 def rigid(element: MddElement) -> model.ImportedComponent:
-    """Return the definition of a rigid element, or of one clamped on.
+    """Return the definition of a rigid element, or of an element clamped on.
 
-    That program takes an element with a diameter for a sphere of that diameter, whatever its
-    length, and one with a width alone for a cylinder, whose Cd is for flow across it, without end
-    faces.
+    Mooring Design & Dynamics treats an element with a diameter as a sphere of that diameter,
+    whatever its length. It treats one with only a width as a cylinder whose Cd is for flow across
+    it; the end faces have no drag.
     """
     lift = element.lift * KILOGRAM_FORCE
     role = role_of(element.name, lift, fastener=element.is_fastener)
@@ -64,16 +65,17 @@ def rigid(element: MddElement) -> model.ImportedComponent:
         component.comment = "The file gives it no size, so it has no drag."
     elif _is_too_small(element):
         component.guesses["diameter"] = (
-            f"kept as it is, a placeholder: nothing of this size lifts {element.lift:g} kgf, "
+            f"kept, but a placeholder: nothing of this size lifts {element.lift:g} kgf, "
             "so its drag is missing"
         )
     return component
 
 
 def rides_by_buoyancy(component: model.ImportedComponent) -> None:
-    """Let a float ride as in that program: its draft and drag follow the buoyancy it uses.
+    """Give a surface float the draft and the drag that Mooring Design & Dynamics computes: both in
+    proportion to the share of its buoyancy that is used.
 
-    Its hull displaces, in proportion to the draft, no more than its net buoyancy needs.
+    Its hull displaces only as much as its net buoyancy requires, in proportion to the draft.
     """
     lift, height = component.number("buoyancy"), component.number("length")
     if component.kind not in ("sphere", "cylinder", "body") or lift <= 0.0:
@@ -90,7 +92,7 @@ def rides_by_buoyancy(component: model.ImportedComponent) -> None:
 
 
 def _is_too_small(element: MddElement) -> bool:
-    """Return whether a float of this size cannot displace enough water for its buoyancy."""
+    """Return whether a float of this size displaces too little water for its buoyancy."""
     if element.diameter > 0.0:
         volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
     else:
@@ -99,7 +101,7 @@ def _is_too_small(element: MddElement) -> bool:
 
 
 def _flexible(element: MddElement) -> model.ImportedComponent:
-    """Return the definition of a wire, rope or chain; its Cd is of its width."""
+    """Return the definition of a wire, rope or chain; its Cd refers to its width."""
     figures: dict[str, model.FigureOrWord] = {
         "diameter": element.across,
         "cn": element.cd,
@@ -117,8 +119,8 @@ def _flexible(element: MddElement) -> model.ImportedComponent:
             )
     if component.kind == "chain":
         component.comment = (
-            "The width in the file is used as the diameter; it is not that of the bar, but "
-            "Cd refers to it."
+            "The width in the file is used as the diameter: Cd refers to it, although it is "
+            "not the diameter of the bar."
         )
     if element.width > 0.0 and element.diameter > 0.0:
         component.guesses["diameter"] = "the file gives a width and a diameter of a sphere"
@@ -126,7 +128,9 @@ def _flexible(element: MddElement) -> model.ImportedComponent:
 
 
 def anchor_of(element: MddElement) -> model.ImportedComponent:
-    """Return the definition of the lowest element; files give its weight with either sign."""
+    """Return the definition of the anchor, the lowest element; its weight has either sign in
+    files.
+    """
     figures: dict[str, model.FigureOrWord] = {
         "weight": abs(element.lift) * KILOGRAM_FORCE,
         "length": element.length,
@@ -136,18 +140,19 @@ def anchor_of(element: MddElement) -> model.ImportedComponent:
 
 @dataclass(frozen=True)
 class MddElement:
-    """One column of ``H``, and the figures that go with it.
+    """An element: a column of ``H``, and the other figures of that element.
 
     Attributes
     ----------
-    length, width, diameter : [m]; a sphere has a diameter, all else a width
-    is_line : whether its figures are per metre: wire, rope or chain
-    is_fastener : shackles, links, swivels
-    lift : net buoyancy, of a line per metre [kg]
-    mass : in air, where that version of the program has it [kg]
-    modulus : of a line [Pa]; None where it is not known, inf where it does not stretch
-    number : its column, from 1
-    density : of the water in which it lifts as much [kg/m³]
+    length, width, diameter : sizes [m]; a sphere has a diameter, any other element a width
+    is_line : whether it is a wire, rope or chain, whose figures are per metre
+    is_fastener : whether it is a shackle, link or swivel
+    lift : net buoyancy [kg], that of a line per metre
+    mass : mass in air [kg]; None if the file has none
+    modulus : modulus of elasticity of a line [Pa]; None if unknown, inf if the line does not
+        stretch
+    number : its column, counted from 1
+    density : density of the water to which `lift` applies [kg/m³]
     """
 
     name: str
@@ -165,14 +170,15 @@ class MddElement:
 
     @property
     def across(self) -> float:
-        """Width, or the diameter where there is none [m]."""
+        """Width, or the diameter if it has no width [m]."""
         return self.width or self.diameter
 
 
 def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement], list[str]]:
-    """Return the elements of a line in the order of the file, and what is wrong with them.
+    """Return the elements of a line in the order of the file, and messages about mistakes.
 
-    The suffix is ``t`` for the matrices of a tow, ``CO`` for what is clamped on, or nothing.
+    `suffix` is ``t`` for the matrices of a tow, ``CO`` for clamped elements, and empty for a
+    mooring.
     """
     problems: list[str] = []
     size = _matrix(variables, f"H{suffix}", problems)
@@ -215,7 +221,7 @@ def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement
 
 
 def mistakes_of(element: MddElement, where: str) -> list[str]:
-    """Return the figures of an element that no piece of a mooring can have."""
+    """Return a message for each figure of an element that is out of range."""
     sizes = {
         "length": element.length, "width": element.width, "diameter": element.diameter,
         "drag coefficient": element.cd,
@@ -231,7 +237,9 @@ def mistakes_of(element: MddElement, where: str) -> list[str]:
 
 
 def _matrix(variables: MatVariables, name: str, problems: list[str]) -> RealArray:
-    """Return ``H``: four rows, one column an element; the flag is 0 where a row is missing."""
+    """Return the matrix ``H``, shape (4, elements); the row of flags is 0 if the file has only
+    three rows.
+    """
     try:
         size = variables.reals(name)
     except ValueError as error:
@@ -250,7 +258,7 @@ def _matrix(variables: MatVariables, name: str, problems: list[str]) -> RealArra
 
 
 def _densities(variables: MatVariables, length: RealArray) -> RealArray:
-    """Return the density of the water at every element of a line that stands upright [kg/m³]."""
+    """Return the density of the water at each element of a vertical line [kg/m³]."""
     levels, density = variables.row("z"), variables.row("rho")
     if not density.size == levels.size > 0 or not density.min() > 0.0:
         return np.full(length.size, CATALOGUE_DENSITY)
@@ -260,7 +268,7 @@ def _densities(variables: MatVariables, length: RealArray) -> RealArray:
 
 
 def _names(variables: MatVariables, name: str, count: int) -> list[str]:
-    """Return a name for every element, also where the file has none."""
+    """Return a name for each element; an element without a name is numbered."""
     value = variables.get(name)
     found = names(value)
     if len(found) != count and isinstance(value, np.ndarray) and value.ndim == 2:
@@ -270,7 +278,7 @@ def _names(variables: MatVariables, name: str, count: int) -> list[str]:
 
 
 def _modulus(value: float) -> float | None:
-    """Return a modulus of elasticity [Pa]; small whole numbers stand for a material."""
+    """Return a modulus of elasticity [Pa]; small whole numbers are the numbers of materials."""
     if not value > 0.0:
         return None
     return MODULI[int(value) - 1] if value in range(1, len(MODULI) + 1) else value

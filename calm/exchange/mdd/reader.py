@@ -35,7 +35,8 @@ _NOTE = (
 def read_mdd(path: Path) -> model.ImportedDesign:
     """Read a mooring or a tow.
 
-    InputError: the file is damaged, is none of that program, or holds what CALM cannot represent.
+    InputError: the file is damaged, is not one of Mooring Design & Dynamics, or holds something
+    that CALM cannot represent.
     """
     variables = read_variables(path, _WANTED)
     sized = [name for name in ("H", "Ht") if variables.row(name).size]
@@ -85,7 +86,9 @@ def _lay_mooring(design: model.ImportedDesign, elements: list[MddElement], path:
 def _lay_tow(
     design: model.ImportedDesign, elements: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
-    """Lay a tow: the file runs from the body up, and ends with a mark for the ship."""
+    """Add the elements of a tow; the file lists them from the body up, and ends with a mark for the
+    ship.
+    """
     end = elements[-1]
     if not end.is_line and end.length <= 0.01 and abs(end.lift) <= 0.011 and len(elements) > 1:
         elements = elements[:-1]
@@ -104,7 +107,9 @@ def _lay_tow(
 def _clamp(
     design: model.ImportedDesign, clamped: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
-    """Hang what is clamped on: by element and share of its length, counted from its lower end."""
+    """Clamp the clamped elements on their pieces, each at a share of the piece's length from its
+    lower end.
+    """
     host, share, height = (variables.row(name).tolist() for name in ("Jobj", "Pobj", "ZCO"))
     by_share = len(host) == len(share) == len(clamped)
     by_height = len(height) == len(clamped)
@@ -126,19 +131,21 @@ def _clamp(
 
 
 def _by_share(design: model.ImportedDesign, host: float, share: float) -> tuple[int, float] | None:
-    """Return the piece that an element became, and how far below its upper end a share of it is."""
+    """Return the index of the piece that an element became, and the distance below its upper end
+    [m] of a share of its length.
+    """
     count, number = len(design.items), round(host) - 1
     if design.tow is not None:
         number = count - 1 - number
     if not (0 <= number < count) or not -1e-6 <= share <= 1.0 + 1e-6:
         return None
-    # in a tow the program counts from the body up: from the lower end, too
+    # in a tow the program counts from the body up, and a share from the lower end, too
     length = design.items[number].extent
     return number, min(max((1.0 - share) * length, 0.0), length)
 
 
 def _by_height(items: list[model.ImportedPiece], height: float) -> tuple[int, float] | None:
-    """Return the piece at a height above the seabed (in a tow above the lower end of the body)."""
+    """Return the piece at a height above the seabed, in a tow above the lower end of the body."""
     below = 0.0
     for number in range(len(items) - 1, -1, -1):
         length = items[number].extent

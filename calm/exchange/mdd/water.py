@@ -1,4 +1,4 @@
-"""Read the water of a file of Mooring Design & Dynamics: levels, and currents at several times."""
+"""Read the water in a file of Mooring Design & Dynamics: levels, densities and currents."""
 
 import numpy as np
 
@@ -13,21 +13,21 @@ _EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this a
 def read_water(
     variables: MatVariables, towed: bool, guessed: list[model.Remark]
 ) -> tuple[model.ImportedWater | None, CurrentRecord | None]:
-    """Return the environment of a file, and the record where it has several profiles.
+    """Return the environment of a file, and the record if it has several profiles.
 
-    In a mooring `z` is the height above the seabed and its greatest the depth of the water, in a
-    tow it is the depth. The current is the first profile of the record.
+    In a mooring `z` is the height above the seabed, and the largest `z` is the depth of the water;
+    in a tow `z` is the depth. The current of the environment is the first profile of the record.
 
     Parameters
     ----------
-    variables : of the file
+    variables : variables of the file
     towed : whether it is a tow
-    guessed : to which what is guessed about times and density is added
+    guessed : list to which guesses about times and density are added
 
     Raises
     ------
     ValueError
-        The sizes of the variables do not go together.
+        The sizes of the variables disagree.
     """
     levels = variables.reals("z").ravel()
     if not np.any(levels > 0.0):
@@ -68,7 +68,7 @@ def read_water(
 
 
 def _profiles(variables: MatVariables, name: str, levels: int) -> RealArray | None:
-    """Speeds by level and time: one profile lies down or stands, several have a row a level."""
+    """Return speeds, shape (levels, times); in the file either dimension may come first."""
     values = variables.reals(name)
     if values.size == 0:
         return None
@@ -92,7 +92,7 @@ def _filled(values: RealArray | None, name: str, levels: int, times: int) -> Rea
 
 
 def _days(time: RealArray, times: int, guessed: list[model.Remark]) -> tuple[RealArray, str]:
-    """Days, and the date from which they count."""
+    """Return the days, and the date from which they are counted."""
     if time.size != times:
         guessed.append(model.Remark("record.time", "an hour between profiles, from 2000-01-01"))
         return np.arange(times) / 24.0, "2000-01-01"

@@ -73,7 +73,9 @@ def write_mdd(exported: ExportedDesign) -> Exported:
 
 
 def _column(part: ExportedPart, lost: list[str]) -> tuple[float, ...]:
-    """Length, width, diameter, flag, buoyancy [kg], Cd, modulus and mass of a column."""
+    """Return a column of the matrices: length, width, diameter, flag, buoyancy [kg], Cd, modulus
+    and mass.
+    """
     lift = part.net / KILOGRAM_FORCE
     if part.flexible:
         if part.kt > 0.0:
@@ -88,7 +90,7 @@ def _column(part: ExportedPart, lost: list[str]) -> tuple[float, ...]:
 
 
 def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
-    """Width, diameter and Cd with which an element drags as the rigid part does."""
+    """Return the width, the diameter and the Cd that give an element the drag of the rigid part."""
     component = part.component
     if part.kn == 0.0:
         return 0.0, 0.0, 0.0
@@ -103,12 +105,14 @@ def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
             return across, 0.0, part.kn / (_HALF_DENSITY * across * part.length)
         return part.area() / part.length, 0.0, 1.0
     if not isinstance(component, Cylinder):
-        lost.append("bodies: each is a sphere, or a cylinder, of its drag with Cd 1")
+        lost.append("bodies: each is written as a sphere or cylinder of equal drag with Cd 1")
     return 0.0, math.sqrt(4.0 * part.area() / math.pi), 1.0
 
 
 def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
-    """Return what is clamped on, from the top down, by element and share from its lower end."""
+    """Return the variables of clamped parts, from the top down: the element and the share of its
+    length from the lower end.
+    """
     rows, names, places = [], [], []
     count = len(design.parts)
     top = 0.0 if design.anchor is None else design.anchor[0].length
@@ -139,13 +143,15 @@ def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
 
 
 def _name(part: ExportedPart) -> str:
-    """Its id; that of a chain with the word "chain", by which it is recognised."""
+    """Return the name of an element: the id of the part, with "chain" added to that of a chain, by
+    which the program recognises chains.
+    """
     bare = isinstance(part.component, Chain) and "chain" not in part.use
     return (f"chain {part.use}" if bare else part.use)[:_LONGEST]
 
 
 def _texts(texts: list[str]) -> np.ndarray[tuple[int, ...], np.dtype[np.str_]]:
-    """Texts as a character matrix."""
+    """Return texts as a character matrix."""
     width = max(len(text) for text in texts)
     plain = [text.encode("ascii", "replace").decode() for text in texts]
     return np.array([text.ljust(width) for text in plain])

@@ -1,4 +1,4 @@
-"""Input files of MoorDyn 2, and those of MoorDyn 1 and MoorPy, which are alike."""
+"""Read and write input files of MoorDyn 2; read the similar files of MoorDyn 1 and MoorPy."""
 
 from calm.exchange.moordyn.reader import is_moordyn, read_moordyn
 from calm.exchange.moordyn.writer import write_moordyn

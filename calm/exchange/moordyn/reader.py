@@ -19,11 +19,13 @@ _FREE = ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
 _STEADY = ("1", "3")  # of `Currents`; the others vary in time
 _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
-"""Share of the depth, and metres: an upper end so near the surface hangs under a float."""
+"""An upper end nearer the surface than this share of the depth, or this distance [m], is taken as
+one below a float.
+"""
 
-_ABOVE = 0.01  # m: what is higher is held above the water
+_ABOVE = 0.01  # m: a point higher than this is held above the water
 
-_NOTE = "cn and ct are its Cd and CdAx, defined alike. See `calm docs import-moordyn`."
+_NOTE = "cn and ct are its Cd and CdAx, with the same definitions. See `calm docs import-moordyn`."
 
 _SECTIONS = (
     ("types", r"line (types|dictionary)"),
@@ -48,9 +50,11 @@ _COLUMNS = {
 
 @dataclass(frozen=True)
 class _File:
-    """Hold the tables of a file: points and line types by name, lines, those `at` each point.
+    """The tables of a file: points and line types by name, the lines, and the lines `at` each
+    point.
 
-    With the depth [m] and gravity [m/s²] of the water, and the design begun.
+    `depth` [m] and `gravity` [m/s²] are those of the water; `design` is the design to which pieces
+    are added.
     """
 
     points: dict[str, _Row]
@@ -62,10 +66,13 @@ class _File:
     design: model.ImportedDesign
 
     def piece(self, line: _Row) -> model.ImportedPiece:
-        """Return a line as a piece (InputError: it has no type, or no length)."""
+        """Return a line as a piece.
+
+        InputError: it has no type, or no length.
+        """
         kind = self.types.get(line.words.get("type", ""))
         if kind is None:
-            raise line.refuse(f"line type `{line.words.get('type')}` is defined nowhere")
+            raise line.refuse(f"line type `{line.words.get('type')}` is not defined in the file")
         length = line.number("length")
         if length <= 0.0:
             raise line.refuse("a line has no length")
@@ -74,7 +81,9 @@ class _File:
     def walk(
         self, start: str, left: list[_Row], breaks: Collection[str]
     ) -> tuple[list[str], list[_Row]]:
-        """Return the points and the lines from a point to one of `breaks`, taken from `left`."""
+        """Return the points and the lines from a point to one of `breaks`; the lines are removed
+        from `left`.
+        """
         names, lines = [start], list[_Row]()
         while not lines or names[-1] not in breaks:
             line = next((line for line in self.at[names[-1]] if line in left), None)
@@ -87,21 +96,24 @@ class _File:
         return names, lines
 
     def along(
-        self, names: list[str], lines: list[_Row], told: set[str]
+        self, names: list[str], lines: list[_Row], placed: set[str]
     ) -> list[model.ImportedPiece]:
-        """Return lines, and what is at the points before and behind each that is not `told` yet."""
+        """Return lines, and the parts at their points, as pieces in order.
+
+        A point in `placed` is left out; each point included is added to `placed`.
+        """
         items: list[model.ImportedPiece] = []
         for at, line in zip(names, [*lines, None], strict=True):
-            if not _is_held(self.points[at]) and at not in told:
+            if not _is_held(self.points[at]) and at not in placed:
                 there = _point_of(self.points[at])
                 items += [] if there is None else [there]
-            told.add(at)
+            placed.add(at)
             items += [] if line is None else [self.piece(line)]
         return items
 
 
 def read_moordyn(path: Path) -> model.ImportedDesign:
-    """Read a file: a single line from an anchor up to a float, or a net of legs.
+    """Read a single line from an anchor up to a float, or a net of legs.
 
     InputError: it cannot be read, or holds a body or a rod.
     """
@@ -124,7 +136,7 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
     lowest = min(point.number("z") for point in points.values())
     depth = _option(options, "wtrdpth", "depth", default=-lowest)
     if depth <= 0.0:
-        raise refused(path, "gives no depth of the water (`WtrDpth`)")
+        raise refused(path, "has no depth of the water (`WtrDpth`)")
     density = _option(options, "wtrdnsty", "rhow", "rho", default=CATALOGUE_DENSITY)
     gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # its own
     kind, beside = options.get("currents", "0"), path.with_name(_CURRENTS)
@@ -132,7 +144,7 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
     water = model.ImportedWater(depth, density, gravity, current)
     design = model.ImportedDesign("MoorDyn", path.stem, [], water, notes=[_NOTE])
     if kind not in ("0", "none") and not current:
-        lacks = f"without {_CURRENTS} beside the file" if kind in _STEADY else "which vary in time"
+        lacks = f"without {_CURRENTS} in its folder" if kind in _STEADY else "which vary in time"
         design.dropped.append(
             model.Remark("current", f"`Currents` {kind}, {lacks}: the water is still")
         )
@@ -153,7 +165,7 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
 
 
 def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
-    """Return the points and the lines of a single line from its top down; None of a net."""
+    """Return the points and the lines of a single line from its top down; None for a net."""
     points, ends = file.points, [name for name, met in file.at.items() if len(met) == 1]
     if len(ends) != 2 or any(len(met) > 2 for met in file.at.values()):
         return None
@@ -170,12 +182,12 @@ def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
 
 
 def _lift(figures: dict[str, model.FigureOrWord]) -> float:
-    """Return what a point lifts, as a mass [kg]."""
+    """Return the net buoyancy of a point in water, as a mass [kg]."""
     return CATALOGUE_DENSITY * float(figures["volume"]) - float(figures["mass"])
 
 
 def _is_held(point: _Row) -> bool:
-    """Return whether a point is fixed, or moves with a vessel."""
+    """Return whether a point is fixed or moves with a vessel."""
     return not point.words.get("attachment", "").lower().startswith(_FREE)
 
 
@@ -199,7 +211,9 @@ def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
 
 
 def _cable(kind: _Row, gravity: float) -> model.ImportedComponent:
-    """Return a line type; its weight in water follows from its mass and the water it displaces."""
+    """Return the cable of a line type; its weight in water is that of its mass less the water
+    displaced.
+    """
     across = kind.number("diameter")
     if across <= 0.0:
         raise kind.refuse("a line type has no diameter")
@@ -217,7 +231,7 @@ def _cable(kind: _Row, gravity: float) -> model.ImportedComponent:
 
 
 def _point_of(point: _Row) -> model.ImportedPiece | None:
-    """Return what is at a free point; None where it has neither weight nor drag."""
+    """Return the part at a free point; None if it has neither weight nor drag."""
     figures = _figures(point)
     if not any(figures[key] for key in ("mass", "volume", "drag_area")):
         return None
@@ -242,8 +256,8 @@ def _upper_end(top: _Row) -> model.ImportedPiece:
     figures = _figures(top)
     if _lift(figures) <= 0.0:
         raise top.refuse("the upper end is free, and does not float")
-    told = "the file holds the upper end; here a float of its point, free to move"
-    guess = {"volume": told} if _is_held(top) else {}
+    reason = "the file holds the upper end; here a float of its point, free to move"
+    guess = {"volume": reason} if _is_held(top) else {}
     name = f"point {top.words['id']}"
     return model.ImportedPiece(
         model.ImportedComponent(name, "body", {**figures, "role": "float"}, guess)
@@ -251,14 +265,14 @@ def _upper_end(top: _Row) -> model.ImportedPiece:
 
 
 def _anchor_of(point: _Row, depth: float) -> model.ImportedComponent:
-    """Return an anchor as high as its point stands above the seabed."""
+    """Return an anchor, as high as its point is above the seabed."""
     height = depth + point.number("z")
     return model.ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
 
 
 @dataclass(frozen=True)
 class _Row:
-    """Hold a row of a table: its words by heading, and its place in the file."""
+    """A row of a table: its words by heading, and its place in the file."""
 
     path: str
     line: int
@@ -266,11 +280,14 @@ class _Row:
 
     @property
     def ends(self) -> tuple[str, str]:
-        """The names of the points at the ends of a line."""
+        """Names of the points at the ends of a line."""
         return self.words.get("a", ""), self.words.get("b", "")
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Return a word as a number (InputError: it is missing, or no number)."""
+        """Return a word as a number.
+
+        InputError: it is missing, or is not a number.
+        """
         text = self.words.get(key)
         if text is None and default is not None:
             return default
@@ -288,14 +305,14 @@ class _Row:
 
 
 def is_moordyn(content: bytes) -> bool:
-    """Return whether a file has the sections that each such file must have."""
+    """Return whether a file has the two sections required in every MoorDyn file."""
     text = content.decode("latin-1").lower()
     found = {_section(line) for line in text.splitlines() if line.strip().startswith("---")}
     return b"\0" not in content and {"types", "lines"} <= found
 
 
 def _read_sections(path: Path) -> tuple[dict[str, list[_Row]], dict[str, str]]:
-    """Return the tables of a file, none with a row of too few words, and its options."""
+    """Return the tables of a file and its options; rows with too few words are refused."""
     tables, options = defaultdict[str, list[_Row]](list), dict[str, str]()
     current, headings, skip = "", list[str](), 0
     for number, text in enumerate(read_text(path).splitlines(), 1):
@@ -338,12 +355,13 @@ _ON_THE_BED = 0.05
 
 
 def _lay_net(file: _File, path: Path) -> None:
-    """Lay the lines as legs between points that are held, end freely, or join three and more.
+    """Divide the lines into legs between points that are held, are free ends, or join three or more
+    lines.
 
-    InputError: lines go round in a ring that nothing holds.
+    InputError: lines form a ring without a point that is held.
     """
     breaks = [name for name, met in file.at.items() if len(met) != 2 or _is_held(file.points[name])]
-    left, told = list(file.lines), set[str]()
+    left, placed = list(file.lines), set[str]()
     for start in breaks:
         while any(line in left for line in file.at[start]):
             names, lines = file.walk(start, left, breaks)
@@ -360,9 +378,9 @@ def _lay_net(file: _File, path: Path) -> None:
             else:
                 halves = [(names, lines)]
             for half in halves:
-                _lay_leg(file, *half, told)
+                _lay_leg(file, *half, placed)
     if left or not breaks:
-        raise refused(path, "lines go round in a ring that nothing holds")
+        raise refused(path, "has lines that form a ring without a fixed point")
 
 
 def _is_anchor(file: _File, name: str) -> bool:
@@ -371,9 +389,9 @@ def _is_anchor(file: _File, name: str) -> bool:
     return fixed and point.number("z") <= -(1.0 - _ON_THE_BED) * file.depth
 
 
-def _lay_leg(file: _File, names: list[str], lines: list[_Row], told: set[str]) -> None:
-    """Add a leg from its upper end; what is at a point goes to the first leg that has it."""
-    items = file.along(names, lines, told)
+def _lay_leg(file: _File, names: list[str], lines: list[_Row], placed: set[str]) -> None:
+    """Add a leg from its upper end; a part at a point belongs to the first leg that reaches it."""
+    items = file.along(names, lines, placed)
     upper, lower = (_end(file, at) for at in (names[0], names[-1]))
     if _is_anchor(file, names[-1]):
         point = file.points[names[-1]]

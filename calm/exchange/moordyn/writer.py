@@ -1,4 +1,4 @@
-"""Write a mooring as an input file of MoorDyn 2, its points where they stand in equilibrium."""
+"""Write a mooring as an input file of MoorDyn 2, with its points at their places in equilibrium."""
 
 from dataclasses import dataclass, field, replace
 from itertools import groupby
@@ -20,20 +20,20 @@ from calm.files.legs import EndKeys
 from calm.physics.line import Floats
 
 _CURRENTS = "current_profile.txt"
-"""The name under which that program looks for the current, beside its input."""
+"""The name of the file in the folder of the input from which MoorDyn reads the current."""
 
-_RIGID = 1e7  # N: EA of what does not stretch; stiffer lines need shorter steps
-_SHORT = 0.5  # m: what is rigid and shorter is softer in proportion, for the same reason
-_OWN = 0.5  # share of its mass with which a float moves the length that stands for its own
-_LENGTH, _MOST = 20.0, 60  # m of a length between two points, lengths of a cable
-_CLOSE = 0.5  # m: a clamp as close to a point stands there
-_SEGMENTS = 4  # of a length
-_LEAST = 1e-3  # kg of mass and of displaced water per metre, for what has none
+_RIGID = 1e7  # N: EA of parts that do not stretch; stiffer lines need shorter time steps
+_SHORT = 0.5  # m: a shorter rigid part has a lower EA in proportion, for the same reason
+_OWN = 0.5  # share of a float's mass that the length below its point has
+_LENGTH, _MOST = 20.0, 60  # m, and a number: length between two points, most lengths of a cable
+_CLOSE = 0.5  # m: a clamp nearer to a point is moved to the point
+_SEGMENTS = 4  # number of segments of a length
+_LEAST = 1e-3  # kg/m: least mass, and least mass of displaced water, of a line type
 
 
 @dataclass
 class _Point:
-    """A point of the file, what acts there, and whether anything holds it."""
+    """Represent a point of the file, the loads on it, and whether it is held."""
 
     place: Coordinates
     load: PartLoad
@@ -42,7 +42,7 @@ class _Point:
 
 @dataclass
 class _Length:
-    """A length of a line type between two points [m]."""
+    """Represent a length of a line type between two points [m]."""
 
     type: str
     lower: _Point
@@ -52,9 +52,9 @@ class _Length:
 
 @dataclass
 class _System:
-    """Types, points and lines of the file, as they grow from the lower end of each leg up.
+    """Collect the types, points and lines of the file, leg by leg, each from its lower end up.
 
-    `here` is the point reached.
+    `here` is the point to which the next length is attached.
     """
 
     density: float
@@ -66,19 +66,19 @@ class _System:
     here: _Point = field(init=False)
 
     def begin(self, place: Coordinates, kind: str) -> None:
-        """Go to a new point."""
+        """Start at a new point."""
         self.here = _Point(place, PartLoad(self.density), kind)
         self.points.append(self.here)
 
     def begin_at(self, node: str, place: Coordinates) -> None:
-        """Go to the point of a node, which is made where it is not there yet."""
+        """Start at the point of a node; the first leg at the node creates the point."""
         if node not in self.joined:
             self.begin(place, "Free")
             self.joined[node] = self.here
         self.here = self.joined[node]
 
     def end_at(self, node: str) -> None:
-        """Make the point reached that of a node."""
+        """Join the current point to the point of a node."""
         last = self.here
         if node not in self.joined:
             self.joined[node] = last
@@ -91,13 +91,13 @@ class _System:
                 line.upper = self.here
 
     def line(self, name: str, figures: str, length: float, to: Coordinates) -> None:
-        """Add an unstretched length [m] of a type from the point reached up to another."""
+        """Add an unstretched length [m] of a line type from the current point up to another."""
         below, chosen = self.here, unique_name(self.types, name, figures)
         self.begin(to, "Free")
         self.lines.append(_Length(chosen, below, self.here, length))
 
     def rows(self) -> tuple[list[str], list[str]]:
-        """The tables of the points and of the lines."""
+        """Return the rows of the table of points, and those of the table of lines."""
         points, numbers = [], {id(point): n for n, point in enumerate(self.points, 1)}
         for number, point in enumerate(self.points, 1):
             load, (x, y, depth) = point.load, point.place
@@ -112,7 +112,7 @@ class _System:
         return points, lines
 
     def figures(self, load: PartLoad, stiffness: float) -> str:
-        """Return the line type for what acts on a metre."""
+        """Return the figures of the line type that has a given load per metre."""
         mass = max(load.mass, _LEAST - load.net / self.gravity)
         volume = (mass + load.net / self.gravity) / self.density
         across = sqrt(4.0 * volume / pi)
@@ -123,14 +123,14 @@ class _System:
 
 
 def write_moordyn(exported: ExportedDesign) -> Exported:
-    """Write a line, or the legs of a net, with the current in a file beside the input.
+    """Write a line, or the legs of a net, and the current as a second file.
 
     Raises
     ------
     UsageError
-        It is a tow.
+        The design is a tow.
     NoEquilibrium
-        There is none: its points have no places.
+        The mooring has no equilibrium, so that the places of its points are not known.
     """
     lines = exported.legs
     deepest = max(lines, key=lambda line: line.depth)
@@ -145,7 +145,7 @@ def write_moordyn(exported: ExportedDesign) -> Exported:
         lost.append("wind")
     if any(design.afloat for design in lines):
         lost.append(
-            "the hull of the float: the upper end is held where it is; its point keeps the float's "
+            "the hull of the float: the upper end is fixed; its point keeps the float's "
             "mass, volume and drag as it floats here"
         )
     else:
@@ -156,7 +156,7 @@ def write_moordyn(exported: ExportedDesign) -> Exported:
 
 
 def _lay_line(system: _System, design: ExportedLine) -> None:
-    """Lay a line, or a leg, from its lower end up."""
+    """Add a line or a leg, from its lower end up."""
     paths, (top, bottom) = design.paths(), design.ends or (EndKeys(), None)
     if bottom is not None and bottom.join is not None:
         system.begin_at(bottom.join, place_along(paths[-1], 1.0))
@@ -187,10 +187,10 @@ def _lay_line(system: _System, design: ExportedLine) -> None:
 
 
 def _lay(system: _System, part: ExportedPart, path: Floats) -> None:
-    """Lay a cable or chain from its lower end up, cut where something is clamped on.
+    """Add a cable or chain from its lower end up, divided at its clamps.
 
-    It is cut into short lengths too, since that program starts with each as it hangs in still
-    water.
+    It is also divided into short lengths, because MoorDyn starts from the shape of each length in
+    still water.
     """
     load = PartLoad(system.density)
     load.add(part)
@@ -211,7 +211,7 @@ def _lay(system: _System, part: ExportedPart, path: Floats) -> None:
 
 
 def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> None:
-    """Rigid pieces in a row, from the lowest up."""
+    """Add consecutive rigid pieces, from the lowest up."""
     load, length = PartLoad(system.density), sum(part.length for part in parts)
     if length <= 0.0:
         load = system.here.load
@@ -224,10 +224,10 @@ def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> 
 
 
 def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
-    """Lay the uppermost piece: a point, on a stiff length as long as its draft.
+    """Add the uppermost piece: a point above a stiff length as long as its draft.
 
-    That length takes a share of its mass, neutral in water: that program steps too finely where a
-    length is light.
+    The length has a share of the piece's mass and is neutral in water, since MoorDyn needs very
+    short time steps for a light length.
     """
     part = design.parts[0]
     top, bottom = place_along(path, 0.0), place_along(path, 1.0)
@@ -246,7 +246,7 @@ def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
 
 
 def _stiff(length: float) -> float:
-    """EA of a rigid length [N]."""
+    """Return the EA of a rigid length [N]."""
     return _RIGID * min(length / _SHORT, 1.0)
 
 
@@ -256,7 +256,7 @@ def _word(text: str) -> str:
 
 def _text(design: ExportedLine, system: _System, lost: tuple[str, ...]) -> str:
     points, rows = system.rows()
-    title = f"{design.name}, by CALM; the current stands in {_CURRENTS}; lost:"
+    title = f"{design.name}, by CALM; the current is in {_CURRENTS}; lost:"
     options = (
         ("0", "writeLog"), ("0.1", "CFL"), ("RK2", "tScheme"), ("3.0e5", "kBot"),
         ("3.0e4", "cBot"), (f"{system.density:.9g}", "rho"), (f"{design.gravity:.9g}", "g"),
@@ -288,7 +288,7 @@ def _text(design: ExportedLine, system: _System, lost: tuple[str, ...]) -> str:
 
 
 def _current_profile(design: ExportedLine) -> bytes:
-    """Return the current for that program: heights from below the seabed to above the water."""
+    """Return the file of the current: heights from below the seabed to above the water."""
     rows = [[0.0 - row[0], *row[1:4]] for row in reversed(design.levels)]
     rows = [[rows[0][0] - 10.0, *rows[0][1:]], *rows, [10.0, *rows[-1][1:]]]
     lines = [

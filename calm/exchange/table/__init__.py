@@ -1,4 +1,4 @@
-"""Lists of pieces: any in CSV or a spreadsheet is read (`table`), one in CSV is written (`csv`)."""
+"""Read a list of pieces in CSV or a spreadsheet (`table`), and write a list in CSV (`csv`)."""
 
 from calm.exchange.registry import register_format
 from calm.exchange.table.cells import is_table

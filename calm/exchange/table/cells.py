@@ -1,4 +1,6 @@
-"""Read the cells of a list: its sheets, its numbers as people write them, and their units."""
+"""Read the cells of a list: its sheets, and numbers and units in the ways that people write
+them.
+"""
 
 import html
 import io
@@ -6,7 +8,6 @@ import re
 import zipfile
 from collections.abc import Iterable
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,11 +18,11 @@ from calm.units import DIMENSIONS, KILOGRAM_FORCE, QuantityError, unit_factor
 from calm.whole_file import read_content
 
 _DIMENSIONS = {
-    **dict.fromkeys(("length", "diameter", "width", "at", "height"), "length"),
+    **dict.fromkeys(("length", "diameter", "width", "at", "height", "depth"), "length"),
     **dict.fromkeys(("buoyancy", "weight", "stiffness", "breaking_load"), "force"),
     **dict.fromkeys(("area", "drag_area", "tangential_area"), "area"),
     "mass": "mass",
-}  # of a column
+}  # dimensions of the columns
 _NAMES_OF_UNITS = {
     "m": "meter metre metres meters mtr mètre mètres metern metro metros mts",
     "in": "inch inches zoll pouce pouces pulgada pulgadas \" ″ '' ” po",
@@ -69,7 +70,7 @@ _BEFORE = re.compile(r"^(?:[~≈≃<>øØ±\s]|ca\.|env\.|etwa\b|approx\.?|aprox
 _SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")  # xlsx, xls
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _LARGEST = 20_000_000
-_SHOWN = 5  # hidden rows that are named
+_SHOWN = 5  # number of hidden rows that a remark names
 _MOST_ROWS, _MOST_COLUMNS = 20_000, 500
 _NOTHING = {
     "", "-", "–", "—", "/", "*", "**", "n/a", "na", "nan", "none", "?", "nil", "x", "sans", "null",
@@ -77,20 +78,20 @@ _NOTHING = {
 
 
 class WorkbookNumber(str):
-    """Hold a number of a workbook as text; it has a point whatever its reader sees."""
+    """A number of a workbook as text, always with a decimal point."""
 
     __slots__ = ()
 
 
 SheetRows = list[list[str]]
-"""Cells as text, up to the last that is not empty."""
+"""Rows of cells as text, each up to its last nonempty cell."""
 
 
 @dataclass(frozen=True)
 class ColumnUnit:
-    """Hold what a number is multiplied by to be in SI, and whether it is that of a metre.
+    """Represent a unit: the factor to SI, and whether it is per metre.
 
-    `by_mass`: a force is counted in kilograms or pounds.
+    `by_mass` is true if a force is given in kilograms or pounds.
     """
 
     factor: float
@@ -99,10 +100,10 @@ class ColumnUnit:
 
 
 def unit_called(text: str, what: str) -> ColumnUnit | None:
-    """Return the unit that a text names, words such as *wet* apart; None where it names none.
+    """Return the unit in a text, ignoring words such as *wet*; None if the text names no unit.
 
-    The text stands in brackets, in a units row or after a number of a column that holds `what`.
-    ValueError: it is no unit of what the column holds.
+    The text comes from brackets, from a row of units, or from behind a number; `what` is what its
+    column holds. ValueError: it is not a unit of `what`.
     """
     plain = " ".join(text.replace("_", " ").split())
     while plain:
@@ -123,9 +124,9 @@ def unit_called(text: str, what: str) -> ColumnUnit | None:
 
 
 def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
-    """Return the unit of a heading: in brackets, or its last word; None where it has none.
+    """Return the unit in a heading, from brackets or from the last word; None if it has none.
 
-    ValueError: what stands in brackets is no unit, or there are two.
+    ValueError: the text in brackets is not a unit, or there are two units.
     """
     if what not in _DIMENSIONS:
         return None
@@ -151,7 +152,9 @@ def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
 
 
 def _unit(text: str, what: str) -> ColumnUnit | None:
-    """Return a unit, whole; None where a text is none of what the column holds."""
+    """Return the unit that a whole text names; None if it is not a unit of what the column
+    holds.
+    """
     dimension = _DIMENSIONS.get(what, "")
     for each, scale, by_mass in (
         (dimension, 1.0, False),
@@ -171,7 +174,9 @@ def _unit(text: str, what: str) -> ColumnUnit | None:
 
 
 def _factor(text: str, dimension: str) -> float | None:
-    """Return what a number in a unit is multiplied by, whatever language and capitals it has."""
+    """Return the factor of a unit to SI, in any language and with any capitals; None if it is
+    unknown.
+    """
     if dimension not in DIMENSIONS or text.lower() in _AMBIGUOUS:
         return None
     known = DIMENSIONS[dimension].units
@@ -185,7 +190,10 @@ def _factor(text: str, dimension: str) -> float | None:
 
 
 class CellNumber(NamedTuple):
-    """Hold the number of a cell, None where it has none; what stands behind it; what is wrong."""
+    """The number of a cell, the text behind the number, and a message if it cannot be read.
+
+    `value` is None if the cell has no number.
+    """
 
     value: float | None
     rest: str = ""
@@ -194,7 +202,7 @@ class CellNumber(NamedTuple):
 
 
 def number(cell: str, decimal: str = "") -> CellNumber:
-    """Return the number of a cell, by the decimal sign of the file, or else its own."""
+    """Return the number of a cell, by the decimal sign of the file or, without one, by its own."""
     text = cell.strip().lstrip("'")
     if text.lower() in _NOTHING:
         return CellNumber(None)
@@ -233,7 +241,9 @@ def number(cell: str, decimal: str = "") -> CellNumber:
 
 
 def _signs(digits: str) -> tuple[str, str]:
-    """Return the decimal sign of a numeral, and a sign that may be that or one of thousands."""
+    """Return the decimal sign of a numeral, and a sign that separates either decimals or
+    thousands.
+    """
     plain = re.sub(r"['’\s]", "", digits)
     present = [sign for sign in ".," if sign in plain]
     if len(present) == 2:
@@ -253,10 +263,11 @@ def _either(digits: str) -> str:
 
 
 def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
-    """Return the decimal sign of a file, and what it was found from where it has commas.
+    """Return the decimal sign of a file, and a remark about how commas are read, empty without
+    commas.
 
-    The cells are the place and the text of all that hold numbers. ValueError: two signs are used,
-    or nothing tells what `1,250` is.
+    `cells` yields the place and the text of each cell that holds a number. ValueError: both signs
+    are used, or numbers such as `1,250` remain ambiguous.
     """
     seen: dict[str, str] = {}
     doubtful: dict[str, tuple[str, str]] = {}  # where, and the digits
@@ -276,7 +287,7 @@ def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
         sign, (first, digits) = next(iter(doubtful.items()))
         what = "points" if sign == "." else "commas"
         raise ValueError(
-            f"{first} is {_either(digits)}: no number of the file tells what its {what} are"
+            f"{first} is {_either(digits)}: no other number shows how its {what} are used"
         )
     decimal = next(iter(seen), ".")
     if decimal == ",":
@@ -298,17 +309,17 @@ def is_table(content: bytes) -> bool:
 
 
 class ReadSheets(NamedTuple):
-    """Hold the rows of every sheet by its name, and what of a sheet its owner has hidden."""
+    """The rows of each sheet, and its hidden parts, by the name of the sheet."""
 
     rows: dict[str, SheetRows]
     hidden: dict[str, str]
 
 
 def read_sheets(path: Path) -> ReadSheets:
-    """Return the rows of every sheet by its name; lines that begin with # are comments.
+    """Return the rows of each sheet; lines that begin with # are comments.
 
-    A sheet without a cell is left out; text has one sheet, without a name. InputError: it cannot be
-    read.
+    A sheet without cells is left out; a text file has one sheet, whose name is empty. InputError:
+    the file cannot be read.
     """
     content = read_content(path, largest=_LARGEST)
     if content.startswith(_SPREADSHEETS):
@@ -323,7 +334,7 @@ def read_sheets(path: Path) -> ReadSheets:
 
 
 def _cleaned(rows: SheetRows) -> SheetRows:
-    """Rows without blanks at the ends of cells, empty cells at the end, and comments."""
+    """Return the rows without blanks around cells, empty cells at the end, and comments."""
     cleaned = []
     for row in rows:
         cells = [one if isinstance(one, WorkbookNumber) else " ".join(one.split()) for one in row]
@@ -335,7 +346,7 @@ def _cleaned(rows: SheetRows) -> SheetRows:
 
 
 def _text(path: Path, content: bytes) -> str:
-    """Return the text: UTF-8, UTF-16 with the mark of Excel, or the Western encoding of Windows."""
+    """Return the text of a file in UTF-8, in UTF-16 with a byte-order mark, or in Windows-1252."""
     if content.startswith(_UTF_16):
         return content.decode("utf-16", "replace")
     if b"\0" in content:
@@ -347,10 +358,6 @@ def _text(path: Path, content: bytes) -> str:
 
 
 def _workbook(path: Path, content: bytes) -> tuple[dict[str, SheetRows], dict[str, str]]:
-    if find_spec("python_calamine") is None:
-        raise refused(
-            path, "is a workbook; install `calm-mooring[sheets]`, or save the sheet as CSV"
-        )
     try:
         return read_apart(_sheets, content)
     except ValueError as error:
@@ -371,7 +378,7 @@ def _sheets(content: bytes) -> tuple[dict[str, SheetRows], dict[str, str]]:
 
 
 def _hidden_within(content: bytes) -> dict[str, str]:
-    """Return the rows and columns that are hidden, by the name of their sheet, of an .xlsx."""
+    """Return the hidden rows and columns of an .xlsx file, by the name of their sheet."""
     if not zipfile.is_zipfile(io.BytesIO(content)):
         return {}
     hidden = {}

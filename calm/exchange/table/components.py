@@ -1,4 +1,4 @@
-"""Make components of the rows of a list, and say of each figure how it was guessed."""
+"""Convert rows of a list to components, and note how missing figures were guessed."""
 
 import math
 
@@ -16,7 +16,9 @@ _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
 
 def component_of(row: ListRow, *, anchor: bool) -> model.ImportedComponent:
-    """Return the definition of a row in SI, which may be the anchor; its `problems` are added."""
+    """Return the definition of a row in SI units; add what is wrong in the row to its
+    `problems`.
+    """
     for what in ("length", "diameter", "width", "cd", "area", "drag_area", "mass", "stiffness"):
         if row.figure(what) < 0.0:
             row.refuse(f"its {what.replace('_', ' ')} is negative")
@@ -35,7 +37,7 @@ def _anchor(row: ListRow) -> _Definition:
         kept["weight"] = abs(row.figure("buoyancy"))
     elif row.figure("mass"):
         kept["mass"] = row.figure("mass")
-        row.guesses["mass"] = "taken as steel: the list gives no weight in water"
+        row.guesses["mass"] = "assumed to be of steel: the list has no weight in water"
     return "anchor", kept | {"length": row.figure("length")}
 
 
@@ -59,7 +61,7 @@ def _rigid(row: ListRow) -> _Definition:
             guesses["cd"] = "the list gives an area and no coefficient"
     elif kind == "body":
         kept |= {"drag_area": 0.0, "cd": 1.0}
-        guesses["drag_area"] = "the list gives no size: it has no drag"
+        guesses["drag_area"] = "the list has no size: the drag is 0"
     else:
         kept = {"diameter": across, "length": length or across, **_coefficient(row, kind)}
     kept["buoyancy"] = lift
@@ -70,16 +72,14 @@ def _rigid(row: ListRow) -> _Definition:
 
 
 def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
-    """Refuse or report a lift that is more than the water that a piece of this size displaces."""
+    """Refuse or report a net buoyancy greater than the weight of the water displaced."""
     if kind not in ("sphere", "cylinder"):
         return
     volume = math.pi * across**2 * max(across / 6.0, length / 4.0)
     lift, most = row.figure("buoyancy"), volume * REFERENCE_DENSITY * STANDARD_GRAVITY
     if lift <= most:
         return
-    kilograms = (
-        f"lifts {lift / KILOGRAM_FORCE:.4g} kg, its size displaces {most / KILOGRAM_FORCE:.4g} kg"
-    )
+    kilograms = f"lifts {lift / KILOGRAM_FORCE:.4g} kg but displaces {most / KILOGRAM_FORCE:.4g} kg"
     if row.count > 1 and lift <= row.count * most:
         row.refuse(f"one {kilograms}; is that of all {row.count}? Head the column `total`")
     else:
@@ -89,8 +89,8 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
 def _shape(row: ListRow) -> tuple[str, float]:
     """Return the kind of a rigid piece by its size, and its diameter [m].
 
-    Where a list has widths and diameters, a diameter is that of a sphere. Elsewhere a float that is
-    hardly longer than wide is a sphere.
+    In a list with both widths and diameters, a diameter is that of a sphere. In other lists, a
+    float that is hardly longer than wide is a sphere.
     """
     width, diameter, length, lift = map(row.figure, ("width", "diameter", "length", "buoyancy"))
     if {"width", "diameter"} <= row.figures.keys():
@@ -144,7 +144,7 @@ def _coefficient(row: ListRow, kind: str) -> dict[str, model.FigureOrWord]:
 
 
 def _further(row: ListRow, lift: float, *names: str) -> dict[str, model.FigureOrWord]:
-    """Return further figures; a mass lighter than the piece is in water is left out."""
+    """Return the mass and other named figures; a mass less than the weight in water is left out."""
     mass = row.figure("mass")
     heavy = mass > 0.0 and mass * KILOGRAM_FORCE >= max(-lift, 0.0)
     named = {name: row.figure(name) for name in names if row.figure(name) > 0.0}

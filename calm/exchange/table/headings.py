@@ -1,4 +1,4 @@
-"""Tell what the columns of a list hold, by headings in five languages."""
+"""Recognise the columns of a list by headings in five languages."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from calm.units import KILOGRAM_FORCE
 COLUMNS = (
     "name", "label", "kind", "role", "length", "diameter", "width", "mass", "buoyancy", "weight",
     "cd", "area", "drag_area", "tangential_area", "material", "stiffness", "breaking_load", "count",
-    "at", "height",
+    "at", "height", "depth",
 )  # fmt: skip
-"""What a column may hold, as `--columns` calls it."""
+"""The names of columns, as in `--columns`."""
 
 WORDS = ("name", "label", "kind", "role")
 """Columns that hold words."""
@@ -28,10 +28,11 @@ _WET = (
     r"|mojad)"
 )
 _AIR = r"(\bair\b|luft|trocken|\baire\b|\bsec[oa]?\b|\bdry\b)"
+_END = r"\b(anchor|bottom|btm|seabed|anker|grund|boden|ancre|fond|ancla|fondo|surface|top)\b"
 _PATTERNS: tuple[tuple[str, str], ...] = (
     ("count", r"^(qty|quantity|count|number|no\.? of|nb|nombre|qte|quantite)\b"),
     ("count", r"^(anzahl|antall|menge|stuck(zahl)?|stk|cant(idad)?)\b"),
-    ("at", r"clamped at|along|position sur|distance|geklemmt|abstand|distancia"),
+    ("at", rf"clamped at|along|position sur|geklemmt|(distance|abstand|distancia)(?!.*{_END})"),
     ("tangential_area", r"tangential cd x area"),
     ("drag_area", r"drag area|\bcd ?[x*.]? ?a(rea)?\b|\bcda\b"),
     ("area", r"area|surface|maitre.?couple|flache|superficie"),
@@ -50,6 +51,11 @@ _PATTERNS: tuple[tuple[str, str], ...] = (
         r"(height|hauteur|altitude|hohe|altura).*(bottom|btm|fond|seabed|above|grund|boden)",
     ),
     ("height", r"bottom_height|^altitude|^(height|hauteur|hohe|altura)\b"),
+    (
+        "depth",
+        r"^((planned|nominal|target|design|instrument|deployment|soll|geplante?) ?)?"
+        r"(depth|profondeur|immersion|tiefe|dybde|dyp|profundidad)\b(?!.*(rat|max|limit|water|wasser))",
+    ),
     ("length", r"^(length|longueur|lange|laenge|longitud|largo|long|len|l)\b"),
     ("length", r"length|longueur|lange\b|laenge|lengde|longitud"),
     ("material", r"^(material|materiau|werkstoff)\b"),
@@ -70,22 +76,23 @@ _LINES = r"(length|lange|laenge|longueur|longitud|rope|wire|line|cable|chain|sei
 _BESIDE = re.compile(
     rf"\b{_LINES}\w*\b.*\b(below|above|beneath|under|between|to next|unterhalb|darunter|oberhalb"
     r"|daruber|zwischen|dessous|dessus|entre|debajo|encima)\b"
-)  # a line beside another piece, which is not the length of that
-_ALONG = re.compile(r"tangent|axial")  # a drag along the piece, which has a column of its own
+)  # length of a line listed in the row of another piece, not of that piece
+_ALONG = re.compile(r"tangent|axial")  # drag along the piece, which has a column of its own
 _RUNNING = re.compile(r"cumul|kumul|acumul|running")
-_SEARCHED = 60  # rows in which the headings stand
+_FROM_AN_END = re.compile(rf"(distance|abstand|distancia).*{_END}|(cumul|kumul|acumul|running)")
+_SEARCHED = 60  # number of rows in which the headings are searched
 _UNIT = re.compile(r" ?\b(kgf?|g|lbf?|lbs|k?n|t)\b| ?/ ?(m|ft)\b| ?\b(per|total|whole|met\w+)\b")
 _MEASURES = {"length", "buoyancy", "weight", "mass"}
 
 
 @dataclass(frozen=True)
 class ListColumn:
-    """Describe a column: where it stands, its heading, and what its numbers are multiplied by.
+    """Describe a column: its index, its heading, and the factor of its numbers to SI.
 
-    `by_mass`: forces are counted in kilograms; `per_metre`: figures of lines are those of a metre;
-    `known`: the heading gives a unit; `whole`: it says that its figures are those of a whole piece;
-    `twin`: the column of the same figure of whole pieces beside one of a metre, or the other way
-    round; `wrong`: what is wrong with it.
+    `by_mass`: forces are in kilograms; `per_metre`: figures of lines are per metre; `known`: the
+    heading has a unit; `whole`: the heading says that figures are those of whole pieces; `twin`: a
+    second column of the same figure, one of the two per metre and the other of whole pieces;
+    `wrong`: what is wrong with the heading.
     """
 
     index: int
@@ -109,9 +116,9 @@ class ListColumn:
 
 @dataclass(frozen=True)
 class ListHeadings:
-    """Hold the row of the headings, the columns that are understood, and the other headings.
+    """The headings of a sheet: their row, the columns recognised, and the other headings.
 
-    `problems` says what in the headings is not understood and cannot be left out.
+    `problems` are messages about headings that are not understood and cannot be ignored.
     """
 
     row: int
@@ -120,8 +127,11 @@ class ListHeadings:
 
     @property
     def problems(self) -> list[str]:
-        """Units that are none, and lines that stand beside other pieces, each with its place."""
+        """Messages about headings that are not understood and cannot be ignored, each with its
+        place.
+        """
         beside = "has lines beside other pieces; a line needs a row of its own"
+        from_an_end = "counts lengths from an end of the line; give each piece its own length"
         return [
             *(
                 f"row {self.row + 1}, column {column.index + 1}, `{column.heading}`: {column.wrong}"
@@ -133,13 +143,18 @@ class ListHeadings:
                 for heading in self.others
                 if _BESIDE.search(_plain(heading)) and not re.search("height|hohe", _plain(heading))
             ),
+            *(
+                f"row {self.row + 1}, `{heading}`: {from_an_end}"
+                for heading in self.others
+                if "length" not in self.columns and _FROM_AN_END.search(_plain(heading))
+            ),
         ]
 
 
 def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
-    """Return the headings of a sheet; None where no row has a name and a length or a force.
+    """Return the headings of a sheet; None if no row has a name and a length or a force.
 
-    Those that are given, by what they hold, come before those that are recognised.
+    Columns in `given` take precedence over those that are recognised.
     """
     best, highest = None, (0, 0)
     for i in range(min(len(rows), _SEARCHED)):
@@ -161,18 +176,18 @@ def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | Non
 
 
 def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path: Path) -> None:
-    """Check that `--columns` names figures of a piece, and headings of the list.
+    """Check that `--columns` names columns that CALM knows, and headings of the list.
 
     Parameters
     ----------
-    sheets : cells by the name of the sheet
-    given : headings by what they hold
-    path : of the list
+    sheets : rows of each sheet by its name
+    given : headings by the name of the column
+    path : path of the list
 
     Raises
     ------
     InputError
-        It does not.
+        A name or a heading is unknown.
     """
     for what in (each for each in given if each not in COLUMNS):
         raise refused(path, unknown(f"--columns: `{what}` is nothing of a piece", what, COLUMNS))
@@ -183,7 +198,7 @@ def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path:
 
 
 def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict[str, ListColumn]:
-    """Return the columns of a row of headings; names are where words stand below."""
+    """Return the columns of a row of headings; the column of names must have words below it."""
     found: dict[str, ListColumn] = {}
     plain = [_plain(cell) for cell in row]
     if any(_SPANISH.search(cell) for cell in plain):
@@ -218,7 +233,9 @@ def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict
 
 
 def _with_twin(column: ListColumn, what: str, row: list[str], taken: set[int]) -> ListColumn:
-    """Return a column with its twin: headed alike, but one of the two is per metre."""
+    """Return a column with its twin: a column of the same heading, but one of the two is per
+    metre.
+    """
     taken.add(column.index)
     stem = _UNIT.sub("", _plain(column.heading, keep="/"))
     for i, heading in enumerate(row if what in _MEASURES else ()):
@@ -237,7 +254,7 @@ def _worded(below: SheetRows, index: int) -> bool:
 
 
 def _resolve(found: dict[str, ListColumn]) -> None:
-    """Take a height for a missing length, and a weight beside a buoyancy as that in air."""
+    """Use a height as a missing length, and a weight as that in air if there is a buoyancy."""
     plain = {what: _plain(column.heading) for what, column in found.items()}
     tall = r"(height|hauteur|hohe|altura)\b(?!.*(bottom|btm|fond|grund|above))"
     if "length" not in found and re.match(tall, plain.get("height", "")):
@@ -250,9 +267,9 @@ def _resolve(found: dict[str, ListColumn]) -> None:
 
 
 def _with_units(rows: SheetRows, i: int) -> list[str]:
-    """Return a row of headings, with the units that stand below them.
+    """Return a row of headings, each with the unit in the row below it.
 
-    A row without numbers is one of units where half of its cells are; the others are refused then.
+    A row without numbers is a row of units if at least half of its cells are units.
     """
     row = rows[i]
     below = rows[i + 1] if i + 1 < len(rows) else []
@@ -268,7 +285,7 @@ def _with_units(rows: SheetRows, i: int) -> list[str]:
 
 
 def _is_unit(cell: str) -> bool:
-    """Return whether a cell below a heading goes with it: `(kg)`, `m`, `off btm (m)`."""
+    """Return whether a cell below a heading is a unit: `(kg)`, `m`, `off btm (m)`."""
     inside = re.search(r"[(\[]([^()\[\]]*)[)\]]\s*$", cell)
     for what in ("length", "weight", "area"):
         try:
@@ -300,7 +317,7 @@ def _column(what: str, index: int, heading: str) -> ListColumn:
     except ValueError as error:
         unit, wrong = None, str(error)
     plain = _plain(heading, keep="/")
-    per_metre = what not in ("length", "diameter", "width", "at", "height") and bool(
+    per_metre = what not in ("length", "diameter", "width", "at", "height", "depth") and bool(
         re.search(r"/ ?m\b|\b(per|par|pro|je|por) (m\b|met)|lineique|metergewicht", plain)
     )
     return ListColumn(
@@ -316,7 +333,7 @@ def _column(what: str, index: int, heading: str) -> ListColumn:
 
 
 def _plain(text: str, keep: str = "") -> str:
-    """Return a heading without accents and capitals, signs as blanks but for those that matter."""
+    """Return a heading without accents and capitals, and with blanks in place of most signs."""
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)  # buoyancyPerMeter
     decomposed = unicodedata.normalize("NFD", spaced.lower())
     letters = "".join(sign for sign in decomposed if not unicodedata.combining(sign))
@@ -327,12 +344,12 @@ def _plain(text: str, keep: str = "") -> str:
 
 
 def cell_of(row: list[str], column: ListColumn | None) -> str:
-    """Return the cell of a row in a column; "" where it has none."""
+    """Return the cell of a row in a column; empty if there is none."""
     return row[column.index] if column and column.index < len(row) else ""
 
 
 def decimals_of(cells: SheetRows, headings: ListHeadings, problems: list[str]) -> tuple[str, str]:
-    """Return the decimal sign of the columns that hold numbers, and what is to be said of it."""
+    """Return the decimal sign of the columns of numbers, and a remark about commas."""
     figures = [column for what, column in headings.columns.items() if what not in WORDS]
     try:
         return decimal_sign(

@@ -1,4 +1,4 @@
-"""Read libraries of elements, whose figures complete a list.
+"""Read libraries of elements, which complete the figures of a list.
 
 A library is the table of elements of Mooring Design & Dynamics, in character matrices, or a table
 or workbook whose sheets have headings.
@@ -17,26 +17,29 @@ from calm.exchange.table.rows import ListRow, rows_of, weights_as_buoyancy
 from calm.units import KILOGRAM_FORCE
 from calm.whole_file import read_content
 
-_NOT_THEIRS = ("at", "count", "height")  # of an element, whatever the heading says
-_A_METRE = 1e-6  # m by which the length of a line's figures may miss a metre
-_SHEETS = 3  # with headings of their own make a library
+# columns that an element does not have, whatever the headings are
+_NOT_THEIRS = ("at", "count", "height", "depth")
+_A_METRE = 1e-6  # m: tolerance of the length of 1 m to which a line's figures apply
+_SHEETS = 3  # least number of sheets with headings in a library
 
 _LINES = ("wires", "chains")
-_NAME = 16  # bytes of a name, where the file does not say
-_FIGURES = (6, 7)  # behind it: buoyancy, mass in air of late, length, width, diameter, Cd, material
+_NAME = 16  # bytes of a name if the file does not give them
+# numbers of figures behind a name: buoyancy, mass in air (newer versions), length, width, diameter,
+# Cd, material
+_FIGURES = (6, 7)
 _CENTIMETRE = 0.01
-_METRE = 100.0  # cm: the length of a line whose figures are those of a metre
+_METRE = 100.0  # cm: the length of a line whose figures are per metre
 
 
 Library = Mapping[str, ListRow]
-"""Elements by their name without capitals and blanks; figures of a line are those of a metre."""
+"""Elements by name without capitals and blanks; figures of lines are per metre."""
 
 
 def read_library(path: Path) -> Library:
-    """Return the elements of Mooring Design & Dynamics' `mdcodes.mat`, or of a table or workbook.
+    """Return the elements of `mdcodes.mat` of Mooring Design & Dynamics, or of a table or workbook.
 
-    Of several elements of one name the first holds. InputError: the file cannot be read, or holds
-    no elements.
+    The first of several elements with the same name is used. InputError: the file cannot be read,
+    or holds no elements.
     """
     content = read_content(path, largest=200_000_000)
     elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)
@@ -56,18 +59,18 @@ def is_library(sheets: Mapping[str, SheetRows]) -> bool:
 
 
 def key_of(name: str) -> str:
-    """Return a name without capitals and blanks, as libraries are searched."""
+    """Return a name without capitals and blanks, the key of a library."""
     return "".join(name.lower().split())
 
 
 def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> None:
-    """Give rows the figures that they lack, from the element of their name.
+    """Complete the figures missing in rows from the element of the same name.
 
     Parameters
     ----------
-    rows : of the list, changed in place
-    library : in which they are looked up
-    source : name of the library in hints
+    rows : rows of the list; they are changed
+    library : the library
+    source : name of the library, for hints
     """
     for row in rows:
         element = library.get(key_of(row.name))
@@ -88,7 +91,9 @@ def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> Non
 
 
 def _of_matrices(path: Path) -> list[ListRow]:
-    """Return the elements of character matrices, a row an element, as in `mdcodes.mat`."""
+    """Return the elements of character matrices with a row for each element, as in
+    `mdcodes.mat`.
+    """
     variables = read_variables(path, [*GROUPS, "format"])
     entries = [
         entry
@@ -102,7 +107,9 @@ def _of_matrices(path: Path) -> list[ListRow]:
 
 
 def _width(variables: MatVariables) -> int:
-    """Bytes of a name: `format` has the columns of the name and of each figure."""
+    """Return the number of bytes of a name; the variable `format` gives the columns of each
+    figure.
+    """
     try:
         columns = variables.reals("format")
     except ValueError:
@@ -111,7 +118,7 @@ def _width(variables: MatVariables) -> int:
 
 
 def _entry(text: str, group: str, end: int) -> ListRow | None:
-    """Return an element of a row; None for a row that cannot be read."""
+    """Return the element of a row; None if the row cannot be read."""
     content = text.encode()
     try:
         figures = [float(word) for word in content[end:].split()]

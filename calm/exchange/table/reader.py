@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Mapping
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -30,7 +30,7 @@ from calm.files.components import FLEXIBLE_KINDS
 
 _NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
 _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
-_NAMES = 3  # at least, in a list of names alone
+_NAMES = 3  # least number of names in a list that has only names
 
 
 def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
@@ -74,6 +74,11 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     if sum(row.count for row in rows) > model.MOST_PIECES:
         raise refused(path, f"has more than {model.MOST_PIECES} pieces")
     rows = _from_the_top(rows, path, design)
+    if headings and "depth" in headings.columns and not _go_down(rows):
+        heading = headings.columns["depth"].heading
+        said.append(model.Remark(f"column {heading}", "does not grow down the line: left out"))
+        for row in rows:
+            row.figures.pop("depth", None)
     design.items = _items(rows)
     design.guessed += said
     if problems := [*problems, *(each for row in rows for each in row.problems)]:
@@ -88,8 +93,10 @@ def _headed(
     sheets: Mapping[str, SheetRows], hidden: Mapping[str, str], columns: Mapping[str, str],
     said: list[model.Remark],
 ) -> tuple[str, SheetRows, ListHeadings] | None:  # fmt: skip
-    """Return the longest sheet with headings, of those to be seen if there is one: its name, cells
-    and headings. What others there are, and what is hidden in it, is `said`.
+    """Return the name, the cells and the headings of the longest sheet with headings; a visible
+    sheet is preferred.
+
+    Remarks about other sheets and hidden parts are added to `said`.
     """
     found = [
         (name, cells, headings)
@@ -110,7 +117,7 @@ def _headed(
 
 
 def _understood(sheet: str, headings: ListHeadings, rows: list[ListRow]) -> str:
-    """Return how many pieces were read, how long they are together, and from which columns."""
+    """Return a summary: the number of pieces, their total length, and the columns used."""
     pieces = [row for row in rows if "at" not in row.figures]
     length = sum(row.count * row.figure("length") for row in pieces)
     columns = ", ".join(
@@ -123,10 +130,10 @@ def _understood(sheet: str, headings: ListHeadings, rows: list[ListRow]) -> str:
 
 
 def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:
-    """Return what is taken for the unit of forces whose headings give none."""
+    """Return remarks about the units assumed for forces whose headings have none."""
     usual = {"buoyancy": "kg", "weight": "kg", "stiffness": "N", "breaking_load": "N"}
     return [
-        model.Remark(f"column {column.heading}", f"gives no unit: read as {usual[what]}")
+        model.Remark(f"column {column.heading}", f"has no unit: read as {usual[what]}")
         for what, column in headings.columns.items()
         if what in usual and not column.known
     ]
@@ -135,9 +142,9 @@ def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:
 def _names(
     sheets: Mapping[str, SheetRows], design: model.ImportedDesign, path: Path, library: Library
 ) -> list[ListRow]:
-    """Return the rows of a list that holds names alone, in the longest sheet.
+    """Return the rows of the longest sheet of a list that has only names.
 
-    The first is the name of the mooring where the library has no such element.
+    The first row is the name of the mooring, unless the library has an element of that name.
     """
     longest = max(sheets.values(), key=len, default=[])
     rows = _names_in(longest)
@@ -160,7 +167,7 @@ def _names(
 
 
 def _names_in(cells: SheetRows) -> list[ListRow]:
-    """Return the rows of a sheet that holds names alone: the words of the column that has most."""
+    """Return a row for each name in the column with the most words, for a sheet of names alone."""
     words = (i for row in cells for i, cell in enumerate(row) if re.search(r"[^\W\d]{2}", cell))
     counts = Counter(words)
     best = max(range(max(map(len, cells), default=1)), key=counts.__getitem__)
@@ -174,7 +181,7 @@ def _names_in(cells: SheetRows) -> list[ListRow]:
 def _water(
     sheets: Mapping[str, SheetRows], design: model.ImportedDesign, path: Path
 ) -> model.ImportedWater | None:
-    """Return the environment in a sheet of heights, `z`, of Mooring Design & Dynamics."""
+    """Return the environment in a sheet of Mooring Design & Dynamics, whose heights are `z`."""
     for rows in sheets.values():
         headings = [cell.lower() for cell in rows[0]]
         if not {"z", "u"} <= set(headings):
@@ -193,7 +200,7 @@ def _water(
 
 
 def _figure(row: list[str], index: int, path: Path) -> float:
-    """Return a number of the water; 0 of an empty cell."""
+    """Return a number of the sheet; 0 for an empty cell."""
     found = number(row[index])
     if found.wrong or found.rest:
         raise refused(path, f"water: {found.wrong or f'`{row[index]}` is not a number'}")
@@ -201,7 +208,9 @@ def _figure(row: list[str], index: int, path: Path) -> float:
 
 
 def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign) -> list[ListRow]:
-    """Return the rows from the top down; lists run either way, clamps follow their piece."""
+    """Return the rows from the top down, with clamps behind their piece; lists may run either
+    way.
+    """
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:
         raise refused(path, f"has {len(pieces)} pieces")
@@ -215,14 +224,26 @@ def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign)
     if max(lifts) <= 0.0:
         raise refused(
             path,
-            "no end of the list is a float, and none is an anchor; a list of what is towed is not "
-            "read, since it has neither ship nor speed",
+            "neither end of the list is a float or an anchor; a list of a tow cannot be read, "
+            "since it has neither ship nor speed",
         )
     if lifts[0] < lifts[1]:
         design.notes.append("The list runs from the lower end up: here it is reversed.")
         rows = _turned(rows)
     design.guessed.append(model.Remark("line.anchor", "the list has none"))
     return [*rows, ListRow(0, "anchor", kind="anchor", role="anchor")]
+
+
+def _go_down(rows: list[ListRow]) -> bool:
+    """Whether depths are those of places on the line: they grow from piece to piece, and differ."""
+    depths = [row.figures["depth"] for row in rows if "depth" in row.figures]
+    return len({*depths}) > 1 and all(upper <= lower for upper, lower in pairwise(depths))
+
+
+def _planned_depth(row: ListRow, component: model.ImportedComponent) -> float | None:
+    """Depth in the list of a single float, instrument or clamp [m]."""
+    of_its_own = "at" in row.figures or component.figures.get("role") in ("float", "instrument")
+    return row.figures.get("depth") if of_its_own and row.count == 1 else None
 
 
 def _turned(rows: list[ListRow]) -> list[ListRow]:
@@ -235,14 +256,18 @@ def _items(rows: list[ListRow]) -> list[model.ImportedPiece]:
     items: list[model.ImportedPiece] = []
     for row in rows:
         component = component_of(row, anchor=row is rows[-1] and row.is_anchor)
-        at = row.figures.get("at")
+        at, planned = row.figures.get("at"), _planned_depth(row, component)
         if at is None:
             length = row.figures.get("length") if component.kind in FLEXIBLE_KINDS else None
             guess = "" if length is None else row.guesses.get("length", "")
             items += [
-                model.ImportedPiece(component, length, label=row.label, guess=guess)
+                model.ImportedPiece(
+                    component, length, label=row.label, guess=guess, planned_depth=planned
+                )
                 for _ in range(row.count)
             ]
         elif items:
-            items[-1].clamps.append(model.ImportedClamp(component, at, row.guesses.get("at", "")))
+            guess = row.guesses.get("at", "")
+            clamp = model.ImportedClamp(component, at, guess, planned_depth=planned)
+            items[-1].clamps.append(clamp)
     return items

@@ -1,4 +1,4 @@
-"""Read the rows of a list in SI, each with how it was interpreted."""
+"""Read the rows of a list in SI units, and note how each was interpreted."""
 
 import math
 import re
@@ -18,26 +18,29 @@ _DITTO = re.compile(r"^(ditt?o|do|idem|id|dto|[\"'\u2033\u201d\u201e\u3003]+)\.?
 _COUNTED = re.compile(r"^\(?([2-9]|[1-9]\d)\s?[x\u00d7]\s?(?=\S)", re.I)  # 10x glass, 6 x 17 in
 _LENGTHS = re.compile(r"^\(?\d+\s?[x\u00d7]\s?\d+([.,]\d+)?\s?m\b", re.I)  # 2 x 200 m wire
 _ANCHOR_KINDS = re.compile(r"\banchors?\b|\bancre|\blest\b", re.I)
-_ENOUGH = {"length", "buoyancy", "weight"}  # one of them makes a piece
-_MOST = 1000  # of one row's count
-_WIDEST, _WIDEST_LINE = 10.0, 0.5  # m of what has no unit
-_FULL = 5.0  # times its diameter: a metre of line shows no larger area
+_ENOUGH = {"length", "buoyancy", "weight"}  # a row with one of these is a piece
+_MOST = 1000  # largest count of a row
+# m: largest diameter of a piece, and of a line, in a column without a unit
+_WIDEST, _WIDEST_LINE = 10.0, 0.5
+_FULL = 5.0  # largest area of a metre of line, in diameters
 _METRES = re.compile(r"/\s*(\d+)")  # kg/100 m
-_SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")  # along a line
+# figures that a line has per metre
+_SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")
 ROLES = ("float", "instrument", "release", "connector")
-_TALLEST = 20.0  # m of a float, release or anchor
-_FEWEST = 4  # pieces of which it is no chance that each is longer than the one before
-_GROWN = 3.0  # m: longer than what ends a line is likely to be
+_TALLEST = 20.0  # m: greatest length of a float, release or anchor
+_FEWEST = 4  # number of pieces from which growing lengths are no coincidence
+_GROWN = 3.0  # m: longer than any usual fitting at the end of a line
 _SHARED = ("length", "buoyancy", "weight", "mass", "area", "drag_area", "tangential_area")
-_FITTING = 1.0  # m: a shorter link or shackle of a rope is none
+_FITTING = 1.0  # m: a shorter connector is a fitting, not a rope
 
 
 @dataclass(eq=False)
 class ListRow:
-    """Hold a row: its name, its figures, what was guessed in it, and its count.
+    """A row of a list: its name, its figures and count, and the guesses made in it.
 
-    `metre` names the figures of a line that are per metre; `line` says whether it is a cable or
-    chain, `hint` where a library says that its figures might be, and `problems` what is wrong.
+    `metre` names the figures of a line that are per metre, `line` is whether it is a cable or chain
+    (None: by its name), `hint` is a hint for missing figures, and `problems` are messages about
+    what is wrong.
     """
 
     place: int
@@ -55,32 +58,31 @@ class ListRow:
 
     @property
     def where(self) -> str:
-        """The name by which problems call it."""
+        """The place and the name of the row, for messages."""
         return f"row {self.place}, {self.name}"
 
     def refuse(self, problem: str) -> None:
-        """Add what is wrong with it."""
+        """Add a problem of this row."""
         self.problems.append(f"{self.where}: {problem}")
 
     def figure(self, what: str) -> float:
-        """Return a figure; 0 where the list has none."""
+        """Return a figure; 0 if the list has none."""
         return self.figures.get(what, 0.0)
 
     @property
     def is_anchor(self) -> bool:
-        """Tell whether it is the anchor."""
         said = _ANCHOR_KINDS.search(f"{self.kind} {self.role}")
         return said is not None or is_called(self.name, "anchor")
 
     @property
     def sinks(self) -> bool:
-        """Tell whether it is a line, an anchor, or what sinks by its name."""
+        """True for a line, an anchor, or a part that sinks according to its name."""
         named = is_called(self.name, "connector", "release")
         return named or self.is_line or self.is_anchor
 
     @property
     def is_line(self) -> bool:
-        """Tell whether it is a cable or a chain."""
+        """True for a cable or a chain."""
         if self.line is not None:
             return self.line
         if self.role in ROLES or is_called(self.kind, "rigid"):
@@ -99,12 +101,12 @@ def rows_of(
     *,
     bare: Callable[[str], bool] = lambda name: False,
 ) -> list[ListRow]:
-    """Return the rows below the headings; sums and rows without figures go to `dropped`.
+    """Return the rows below the headings; sums and rows without figures are added to `dropped`.
 
     Parameters
     ----------
-    guessed : to which the decimal sign is added where the file has commas
-    bare : whether a name alone makes a piece, since a library has its figures
+    guessed : list to which guesses are added
+    bare : whether a row with only this name is a piece, because a library has its figures
     """
     rows: list[ListRow] = []
     known = headings.columns
@@ -135,7 +137,7 @@ def rows_of(
             guessed.append(model.Remark(row.where, "taken as a rope, since it is long and thin"))
         several = _COUNTED.match(name)
         if several and row.count == 1 and not (row.is_line and not _LENGTHS.match(name)):
-            said = f"read as one piece with the figures of its row, not as {several[1]} of them"
+            said = f"read as one piece with the figures of its row, not as {several[1]} pieces"
             guessed.append(model.Remark(row.where, said))
         _divide(row, known, guessed)
         rows.append(row)
@@ -186,7 +188,7 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
 
 
 def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Remark]) -> None:
-    """Divide by the count of a row what a heading says to be the total."""
+    """Divide the figures of a row that are totals, by their headings, by its count."""
     totals = [what for what in _SHARED if what in row.figures and what in known]
     totals = [what for what in totals if known[what].whole and what not in row.metre]
     if row.count == 1 or not totals:
@@ -198,10 +200,10 @@ def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Rema
 
 
 def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
-    """Return what is wrong with lengths that are not those of pieces.
+    """Return messages about lengths that are not the lengths of pieces.
 
-    Lengths that grow from piece to piece, to that of an end of the line, are counted from the
-    other end.
+    Lengths that grow from piece to piece, up to an end of the line, are distances from its other
+    end.
     """
     pieces = [row for row in rows if "at" not in row.figures and "length" in row.figures]
     lengths = [row.figures["length"] for row in pieces]
@@ -226,8 +228,8 @@ def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
 def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) -> None:
     """Give every row its net force as buoyancy, positive up.
 
-    Weights are positive down; where they are negative for what sinks by its name, positive up.
-    Where what sinks has a positive buoyancy and all else a negative one, they are weights.
+    Weights are positive down, or positive up if those of sinking parts are negative. If sinking
+    parts have positive buoyancies and all others negative ones, the column holds weights.
     """
     rows = list(rows)
     sinking = [row.figures["weight"] for row in rows if row.sinks and row.figures.get("weight")]
@@ -254,7 +256,7 @@ def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) ->
 
 
 def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
-    """Make figures of lines per metre, where the list gives them of the whole length."""
+    """Divide figures of lines by their length if the list gives them for whole lines."""
     lines = [row for row in rows if row.is_line and row.figure("length") > 0.0]
     for what in _SPREAD:
         column = known.get(what) or (known.get("weight") if what == "buoyancy" else None)
@@ -280,7 +282,9 @@ def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
 
 
 def _same_for_all(lines: list[ListRow], what: str) -> bool:
-    """Return whether lines of one name have one weight, per metre then, at different lengths."""
+    """Return whether lines of the same name have the same figure at different lengths, which
+    means that the figure is per metre.
+    """
     seen: dict[str, tuple[float, float]] = {}
     for row in lines:
         length, value = seen.setdefault(row.name, (row.figures["length"], row.figures[what]))

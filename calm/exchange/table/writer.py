@@ -1,4 +1,4 @@
-"""Write a line as a list in CSV: a row for each piece and each clamp."""
+"""Write a line as a list in CSV, with a row for each piece and each clamp."""
 
 from calm.exchange.exported_parts import ExportedDesign, ExportedPart
 from calm.exchange.registry import Exported

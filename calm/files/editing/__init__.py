@@ -1,4 +1,4 @@
-"""Mooring and tow files as text that is edited: text in, text out. Nothing is computed here."""
+"""Edit mooring and tow files as text. No physics is computed here."""
 
 from calm.files.editing.changes import EditError
 from calm.files.editing.draft import Draft, History, clamps_of

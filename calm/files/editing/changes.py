@@ -1,4 +1,6 @@
-"""Changes to a text by location: the patches that make them, and what the text then says."""
+"""Changes of a text by location: the patches for them, and the data that the changed text must
+give.
+"""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -16,15 +18,15 @@ from calm.files.yaml_document import Location
 _BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MULTILINE)
 
 NAMED = ("components", "environments")
-"""Sections that hold definitions by name."""
+"""Sections that contain definitions by name."""
 
 
 class EditError(CalmError):
-    """Say that a change cannot be made to the text as it stands."""
+    """A change cannot be made to the present text."""
 
 
 class Page:
-    """Hold a text that ends in a line break, its nodes and how it is written."""
+    """A text that ends with a line break, with its nodes and the style in which it is written."""
 
     def __init__(self, text: str, root: Node, style: WritingStyle) -> None:
         self.text = text
@@ -32,14 +34,14 @@ class Page:
         self.style = style
 
     def node(self, location: Location) -> Node | None:
-        """Return what stands at a location, None where nothing does."""
+        """Return the node at a location; None if there is none."""
         node: Node | None = self.root
         for step in location:
             node = node.entry(step)[1] if node else None
         return node
 
     def put(self, location: Location, value: Value) -> list[Patch]:
-        """Put a value at a location, with the mappings that lead to it."""
+        """Set the value at a location, and add missing mappings above it."""
         outer: Node | None = None
         node = self.root
         for depth, step in enumerate(location):
@@ -71,7 +73,7 @@ class Page:
         return [writing.set_scalar(old, value, flow=outer.style == "flow")]
 
     def remove(self, location: Location) -> list[Patch]:
-        """Take a key out."""
+        """Remove a key."""
         outer = self.node(location[:-1])
         assert outer is not None
         if len(outer.keys) == 1:
@@ -81,7 +83,7 @@ class Page:
         return [items.patch()]
 
     def _add_entry(self, mapping: Node, name: str, value: Value, *, open: bool) -> Patch:
-        """Write a key that a mapping does not have, and its value, where the format has it."""
+        """Add a key and its value to a mapping, at its place in the order of the format."""
         inside = f"{written(name, flow=True)}: {inline(value)}"
         if not mapping.keys:
             return Patch(mapping.start, mapping.end, f"{{{inside}}}")
@@ -93,7 +95,7 @@ class Page:
         return items.patch()
 
     def items(self, location: Location) -> Items:
-        """Return the items of the list at a location, which has some."""
+        """Return the items of the nonempty list at a location."""
         node = self.node(location)
         assert node is not None
         return self._items(node)
@@ -101,12 +103,12 @@ class Page:
     def _items(self, node: Node) -> Items:
         items = items_of(self.text, node)
         if items is None:
-            message = f"line {node.line}: what stands here shares its lines with other things"
-            raise EditError(f"{message} or comments; change it in the text")
+            message = f"line {node.line}: this list or mapping shares lines with other items or"
+            raise EditError(f"{message} comments; change it in the text")
         return items
 
     def known(self, location: Location, indices: Iterable[int]) -> list[int]:
-        """Return the indices of items of a list in its order, each once."""
+        """Return the valid indices of items of a list, sorted and without repetitions."""
         node = self.node(location)
         count = len(node.children) if node is not None and node.kind == "sequence" else 0
         known = sorted(set(indices))
@@ -117,7 +119,7 @@ class Page:
         return known
 
     def copy(self, location: Location, indices: Iterable[int]) -> tuple[str, ...]:
-        """Return the text of items of a list by themselves, with their comments."""
+        """Return the text of items of a list, with their comments, each on its own."""
         known = self.known(location, indices)
         node = self.node(location)
         if not known or node is None:
@@ -129,13 +131,13 @@ class Page:
         return tuple(snippet_of(items.texts[i], items.column) for i in known)
 
     def add(self, location: Location, index: int, values: Sequence[Value]) -> list[Patch]:
-        """Put new items into a list, which may not exist yet.
+        """Insert new items into a list, which is created if necessary.
 
         Parameters
         ----------
-        location : of the list
-        index : of the first new item
-        values : the items; `Worded` keep their wording
+        location : location of the list
+        index : index of the first new item
+        values : the items; those of `Worded` keep their text
         """
         node = self.node(location)
         if node is None or not node.children:
@@ -157,7 +159,7 @@ class Page:
         return inline(value) if items.is_flow else self.style.item(value, items.column, block=block)
 
     def rows(self, location: Location, rows: Sequence[Value]) -> list[Patch]:
-        """Put in the items of a list; those that are there already stay as they stand."""
+        """Set the items of a list, where existing items keep their text."""
         node = self.node(location)
         if node is None or not node.children or not rows or node.kind != "sequence":
             return self.put(location, rows)
@@ -176,14 +178,16 @@ class Page:
 
 
 def _opens(location: Location, node: Node) -> bool:
-    """Return whether definitions are written a key a line, as the others of their section."""
+    """Return whether definitions of a section are written with one key per line, as the others
+    there.
+    """
     if location not in [(name,) for name in NAMED]:
         return False
     return not node.children or any(child.style == "block" for child in node.children)
 
 
 def nested(location: Location, value: Value) -> dict[str, Value]:
-    """Return the mappings that lead to a value."""
+    """Return a value wrapped in the mappings of a location."""
     for step in reversed(location):
         value = {str(step): value}
     assert isinstance(value, dict)
@@ -191,7 +195,7 @@ def nested(location: Location, value: Value) -> dict[str, Value]:
 
 
 def data_of(value: Value) -> Any:
-    """Return what is read again of a value."""
+    """Return the data that a value gives when it is read from a file."""
     if value is None or isinstance(value, str):
         return value
     if isinstance(value, Mapping):
@@ -200,15 +204,15 @@ def data_of(value: Value) -> Any:
 
 
 GONE = object()
-"""In place of a value: a key is taken out."""
+"""Used as a value: the key is removed."""
 
 
 def with_value(data: Any, location: Location, value: Any) -> Any:
-    """Return the data with another value at a location; mappings that lead to it are made.
+    """Return data with another value at a location; missing mappings above it are added.
 
     Parameters
     ----------
-    data : as `Node.data`
+    data : data, as in `Node.data`
     location : keys and indices that lead to the value
     value : Value, or `GONE`
     """
@@ -224,7 +228,7 @@ def with_value(data: Any, location: Location, value: Any) -> Any:
 
 
 def has_control(data: Any) -> bool:
-    """Return whether a text of some data has signs that only control how the others are shown."""
+    """Return whether any text in the data contains control characters."""
     if isinstance(data, str):
         return any(category(sign) in ("Cc", "Cf") for sign in data if sign not in "\t\n\r")
     parts = [*data, *data.values()] if isinstance(data, dict) else data or ()
@@ -234,9 +238,10 @@ def has_control(data: Any) -> bool:
 def cells_that_differ(
     old: Any, new: Sequence[Sequence[str | None]]
 ) -> list[tuple[int, int, str]] | None:
-    """Return the row, column and text of each value in which tables of the same shape differ.
+    """Return the row, column and text of each value that differs between two tables of the same
+    shape.
 
-    None where they have not the same shape, or a value goes without another in its place.
+    Returns None if the shapes differ, or if a value is removed.
     """
     rows = old if isinstance(old, list | tuple) else []
     if [len(row) if isinstance(row, list | tuple) else -1 for row in rows] != [*map(len, new)]:
@@ -255,14 +260,14 @@ _ENDINGS = ("\r\n", "\n", "\r")
 
 
 class EndedLine(NamedTuple):
-    """Hold what a line says, and the line break after it: none after the last."""
+    """Text of a line, and the line break after it, which is empty for the last line."""
 
     text: str
     line_break: str
 
 
 def lines_of(text: str) -> list[EndedLine]:
-    """Split a text as `str.splitlines` does; an empty line follows the last line break."""
+    """Split a text as `str.splitlines` does; a final line break is followed by an empty line."""
     lines = [EndedLine(one.splitlines()[0], one) for one in text.splitlines(keepends=True)]
     found = [EndedLine(text, whole[len(text) :]) for text, whole in lines]
     if not text or text.endswith(_ENDINGS):
@@ -271,10 +276,10 @@ def lines_of(text: str) -> list[EndedLine]:
 
 
 def retyped(text: str, lines: Sequence[str]) -> str:
-    """Return a text after an editor has made these lines of it.
+    """Return a text in which an editor has changed the lines to the given ones.
 
-    Lines that are as they were keep their line breaks, and so does one that another one took the
-    place of; those of new lines follow the manner of the file.
+    Unchanged lines keep their line breaks, and so do lines that replace another one. New lines have
+    the usual line break of the file.
     """
     old = lines_of(text)
     usual = WritingStyle.of(text, None).line_break
@@ -290,7 +295,9 @@ def retyped(text: str, lines: Sequence[str]) -> str:
 
 
 def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
-    """Return for each new line the old one that it is, or that it took the place of."""
+    """Return for each new line the index of the old line that it is or replaces; None for an added
+    line.
+    """
     # Comparing is slow, and most often only a line differs.
     head = _alike(old, new)
     tail = _alike(old[head:][::-1], new[head:][::-1])
@@ -304,6 +311,6 @@ def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
 
 
 def _alike(old: Sequence[str], new: Sequence[str]) -> int:
-    """Count the lines with which both begin."""
+    """Count the equal lines at the beginning."""
     pairs = enumerate(zip(old, new, strict=False))
     return next((i for i, (one, other) in pairs if one != other), min(len(old), len(new)))

@@ -1,5 +1,5 @@
-"""A mooring or tow file as text that is edited, and its history: what is not touched stays byte for
-byte.
+"""A mooring or tow file edited as text, and its history. Parts that are not edited are kept byte
+for byte.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from calm.files.yaml_document import Location
 
 KEPT = "environment"
 VARIANTS = "environments"
-"""They are needed even where they say nothing."""
+"""Sections that are kept even if they are empty."""
 
 _CONTROL = "a control character cannot be written into the file"
-_ENTANGLED = "the file is written in a way that does not allow this change; make it in the text"
+_ENTANGLED = "the layout of the file does not allow this change; make it in the text"
 
 _EMPTY = """\
 # Every figure carries its unit: 12 mm, 1.5 knot, 35 kgf, 0.22 kgf/m, 30 deg, 1/2 in.
@@ -37,35 +37,35 @@ line: []                              # top to bottom
 
 
 def clamps_of(item: int) -> Location:
-    """Return where the clamps of an item of the line stand."""
+    """Return the location of an item's clamps."""
     return (*LINE, item, "clamps")
 
 
 @dataclass(frozen=True)
 class Draft:
-    """Represent a mooring or tow file as text.
+    """A mooring or tow file as text.
 
-    Every edit returns a new draft. Comments, order, quotes, brackets, indentation, line breaks
-    and a byte order mark stay as they are; what is new follows the manner of the file. A comment
-    directly above an item goes where the item goes. The result is read again, and nothing but
-    what was to change may have changed.
+    Every edit returns a new draft. Comments, order, quotes, brackets, indentation, line breaks and
+    a byte-order mark are kept; new text follows the style of the file. A comment directly above an
+    item belongs to the item. The changed text is read again, to check that nothing else has
+    changed.
 
     Parameters
     ----------
-    text : with its own line breaks, and its byte order mark if it has one
+    text : the text, with its line breaks and any byte-order mark
 
     Raises
     ------
     EditError
-        By every edit that cannot be made: there is no such item, the text has `problems`, or it
-        is written in a way that cannot be taken apart.
+        An edit cannot be made: there is no such item, the text has `problems`, or its layout does
+        not allow the change.
     """
 
     text: str
 
     @classmethod
     def empty(cls) -> Draft:
-        """Return a line of no pieces yet."""
+        """Return the text of a mooring without pieces."""
         return cls(_EMPTY)
 
     @cached_property
@@ -76,7 +76,9 @@ class Draft:
 
     @cached_property
     def problems(self) -> tuple[Problem, ...]:
-        """Return why the text cannot be edited but as text; the `path` of each is empty."""
+        """Return the reasons why the file can be edited only as plain text; the `path` of each is
+        empty.
+        """
         if self._root is not None:
             return ()
         try:
@@ -87,7 +89,7 @@ class Draft:
 
     @cached_property
     def items(self) -> tuple[LineItem, ...]:
-        """Return the items of `line` as written: not expanded, and whatever they say."""
+        """Return the items of `line`, neither expanded nor validated."""
         text, found = self._padded, []
         for rows, _ in self.lists.all if self._root is not None else ():
             node = self._page.node(rows)
@@ -101,41 +103,46 @@ class Draft:
 
     @cached_property
     def lists(self) -> LineLists:
-        """Return where the items of the line stand; an index in `LINE` counts through all legs."""
+        """Return the locations of the items of the line; an index in `LINE` counts through all
+        legs.
+        """
         return LineLists.of(self._root.data if self._root is not None else None)
 
     @property
     def is_tow(self) -> bool:
-        """Return whether the text says that it is a tow; False where it cannot be read."""
+        """Return whether the text describes a tow; False if it cannot be read."""
         return isinstance(self.value(()), dict) and "tow" in self.value(())
 
     def value(self, location: Location) -> Any:
-        """Return the text, mapping or list at a location; None without, or with `problems`."""
+        """Return the text, mapping or list at a location; None if there is none, or if there are
+        `problems`.
+        """
         if self._root is None:
             return None
         node = self._page.node(self.lists.real(location))
         return node.data if node else None
 
     def text_at(self, location: Location) -> str:
-        """Return a plain value at a location as it is written; empty where there is none."""
+        """Return the text of a plain value at a location; empty if there is none."""
         value = self.value(location)
         return value if isinstance(value, str) else ""
 
     def insert(
         self, index: int, values: Mapping[str, Value], rows: Location = LINE, *, above: bool = False
     ) -> Draft:
-        """Put a new item, of values by key, above that of an index, or below the last.
+        """Insert a new item with these values above an item, or below the last.
 
         Parameters
         ----------
-        rows : the list meant, here and below: the line, `clamps_of` an item, or another list
-        above : between two legs, the first of the lower one is meant, not the last of the upper one
+        rows : the list, here and below: the line, `clamps_of` an item, or another list
+        above : for an index between two legs, whether the item is the first of the lower leg
+            instead of the last of the upper leg
         """
         self._stands(rows)
         return self._add(*self.lists.place_in(rows, index, above=above), [values])
 
     def delete(self, indices: Iterable[int], rows: Location = LINE) -> Draft:
-        """Take some items out of a list."""
+        """Remove items from a list."""
         draft = self
         for own, each in reversed([*self.lists.grouped(indices, rows)]):
             draft = draft._without(each, own)
@@ -157,20 +164,20 @@ class Draft:
         return self._changed([items.patch()], rows, data)
 
     def move(self, index: int, to: int, rows: Location = LINE) -> Draft:
-        """Take an item to another place.
+        """Move an item to another index.
 
         Parameters
         ----------
-        index : of the item
-        to : its index then
+        index : index of the item
+        to : its new index
         rows : the list
 
-        EditError: they are in two legs.
+        EditError: the two places are in different legs.
         """
         places = [self.lists.place_in(rows, each, above=True) for each in (index, to)]
         if places[0][0] != places[1][0]:
             raise changes.EditError(
-                "a piece stays in its leg: cut it and paste it into the other one"
+                "a piece cannot be moved to another leg; cut it and paste it there"
             )
         (rows, index), (_, to) = places
         self._page.known(rows, [index, to])
@@ -183,20 +190,20 @@ class Draft:
         return self._changed([items.patch()], rows, data)
 
     def copy(self, indices: Iterable[int], rows: Location = LINE) -> tuple[str, ...]:
-        """Return the text of items by themselves, with their comments."""
+        """Return the text of items, with their comments, each on its own."""
         lists = self.lists.grouped(indices, rows)
         return tuple(text for own, each in lists for text in self._page.copy(own, each))
 
     def paste(
         self, index: int, snippets: Iterable[str], rows: Location = LINE, *, above: bool = False
     ) -> Draft:
-        """Put items as `copy` gives them above that of an index, or below the last.
+        """Insert items, as returned by `copy`, above an item or below the last.
 
         Parameters
         ----------
-        index : of the first new item
-        snippets : items as `copy` gives them
-        rows, above : as of `insert`
+        index : index of the first new item
+        snippets : items as returned by `copy`
+        rows, above : as in `insert`
         """
         self._stands(rows)
         worded = _worded(snippets)
@@ -204,13 +211,13 @@ class Draft:
         return self._add(*place, worded) if worded else self
 
     def put(self, index: int, key: str, value: Value | None, rows: Location = LINE) -> Draft:
-        """Give a value to a key of an item.
+        """Set a key of an item.
 
         Parameters
         ----------
-        index : of the item
-        key : of the item
-        value : None takes the key out
+        index : index of the item
+        key : the key
+        value : the value; None removes the key
         rows : the list
         """
         own, number = self.lists.place_in(rows, index, above=True)
@@ -218,10 +225,10 @@ class Draft:
         return self.put_at((*own, number, key), value)
 
     def put_at(self, location: Location, value: Value | None) -> Draft:
-        """Put a value anywhere in the file, with the mappings that lead to it.
+        """Set the value at a location, and add missing mappings above it.
 
-        None takes a key out, and a mapping that is empty then, but for `environment` and the
-        named environments.
+        None removes a key, and also the mappings above it that become empty, except `environment`
+        and the named environments.
         """
         page, location = self._page, self.lists.real(location)
         if value is not None:
@@ -240,13 +247,13 @@ class Draft:
     def put_table(
         self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str | None]]
     ) -> Draft:
-        """Put a table in; the rows that it has already stay as they are written.
+        """Set a table, where existing rows keep their text.
 
         Parameters
         ----------
-        location : of the table
+        location : location of the table
         columns : names with units
-        rows : of values; in a table of as many as before, each stays that does not change
+        rows : rows of values; if the shape is unchanged, only changed values are rewritten
         """
         old = self.value(location)
         if not isinstance(old, dict) or set(old) != {"columns", "rows"}:
@@ -263,21 +270,21 @@ class Draft:
         return draft.put_rows(place, rows)
 
     def put_rows(self, location: Location, rows: Sequence[Value]) -> Draft:
-        """Put in the items of a list; those that it has already stay as they are written."""
+        """Set the items of a list, where existing items keep their text."""
         return self._changed(self._page.rows(location, rows), location, rows)
 
     def put_component(self, id: str, values: Mapping[str, Value]) -> Draft:
-        """Define a component used only here, in place of one of that id."""
+        """Define a component in this file, or replace its definition of that id."""
         return self.put_at((changes.NAMED[0], id), values)
 
     def _stands(self, rows: Location) -> None:
-        """Raise where there is no item whose clamps a list is to be."""
+        """Raise EditError if a list of clamps belongs to an item that does not exist."""
         if rows[0] == LINE[0] and rows != LINE:
             own, index = self.lists.place(int(rows[1]), above=True)
             self._page.known(own, [index])
 
     def _add(self, location: Location, index: int, values: Sequence[Value]) -> Draft:
-        """Put new items into a list that may not exist yet."""
+        """Add new items to a list that may not exist yet."""
         page = self._page
         node = page.node(location)
         if node is not None and node.kind != "sequence" and node.data is not None:
@@ -290,7 +297,9 @@ class Draft:
         return self._changed(patches, location, data)
 
     def _changed(self, patches: Iterable[Patch], location: Location, value: Any) -> Draft:
-        """Return the draft with its text patched, which then differs at a location alone."""
+        """Return the draft with the patched text, after checking that it differs only at the
+        location.
+        """
         data = changes.with_value(self._data, location, value)
         text = patched(self._padded, patches)
         line_break = self._page.style.line_break
@@ -310,7 +319,7 @@ class Draft:
 
     @cached_property
     def _padded(self) -> str:
-        """Return the text with a last line break."""
+        """Return the text with a final line break."""
         ends = self.text.endswith("\n")
         return self.text if ends else self.text + WritingStyle.of(self.text, None).line_break
 
@@ -320,19 +329,19 @@ class Draft:
 
 
 def _worded(snippets: Iterable[str]) -> Worded:
-    """Read items as `Draft.copy` gives them."""
+    """Read items as returned by `Draft.copy`."""
     wordings = [read_snippet(snippet) for snippet in snippets]
     if None in wordings:
-        raise changes.EditError("what is to be pasted is not a list of items")
+        raise changes.EditError("the pasted text is not a list of items")
     return Worded(one for one in wordings if one is not None)
 
 
 class History:
-    """Keep a draft, the states before and after it, and the text that is saved.
+    """A draft with its undo history, and the text that is saved.
 
     Parameters
     ----------
-    draft : as it is saved
+    draft : the draft as saved
     """
 
     def __init__(self, draft: Draft) -> None:
@@ -344,16 +353,16 @@ class History:
 
     @property
     def changed(self) -> bool:
-        """Return whether the draft differs from what was saved."""
+        """Return whether the draft differs from the saved text."""
         return self.draft.text != self.saved_text
 
     @property
     def steps(self) -> tuple[str, ...]:
-        """Return what was done and can be taken back, the last first."""
+        """Return the labels of the changes that can be undone, the latest first."""
         return tuple(label for label, _ in reversed(self._done))
 
     def do(self, draft: Draft, label: str) -> None:
-        """Take a new state, and what it came of; an equal one is none."""
+        """Change to a new draft, with a label for the change; an equal draft changes nothing."""
         if draft.text == self.draft.text:
             return
         self._done.append((label, self.draft.text))
@@ -361,15 +370,15 @@ class History:
         self.draft = draft
 
     def undo(self) -> str | None:
-        """Go back a step; what was taken back."""
+        """Undo a change; return its label, or None if there is none."""
         return self._go(self._done, self._undone)
 
     def redo(self) -> str | None:
-        """Go forward again; what was done again."""
+        """Redo a change; return its label, or None if there is none."""
         return self._go(self._undone, self._done)
 
     def saved(self, text: str | None = None) -> None:
-        """Take the draft, or another text, for what is now saved."""
+        """Record the draft, or another text, as saved."""
         self.saved_text = self.draft.text if text is None else text
 
     def _go(self, source: list[tuple[str, str]], target: list[tuple[str, str]]) -> str | None:

@@ -1,7 +1,6 @@
-"""Lists and mappings in a text: taken apart into the texts of their items, rearranged, and put
-together.
+"""Rearrange lists and mappings in a text, as texts of their items.
 
-The items of a mapping are its entries. An item of a list can be copied as a text by itself, and
+The items of a mapping are its entries. An item of a list can be copied to a text of its own and
 pasted from one.
 """
 
@@ -19,27 +18,27 @@ from calm.files.editing.writing import Patch, Wording, first_on_line, inline, li
 from calm.files.yaml_document import Location
 
 LINE: Location = ("line",)
-"""Where the items of the line stand."""
+"""Location of the items of the line."""
 
 _LINE_BREAK = re.compile(r"\r\n|\n")
 
 
 @dataclass(frozen=True)
 class LineLists:
-    """Say where the items of a line stand: in one list, those of a net in one for each leg.
+    """Locations of the items of a line: one list, or one list for each leg of a net.
 
-    An index in `LINE` counts through all of them.
+    An index in `LINE` counts through all lists.
 
     Attributes
     ----------
-    all : the location of each list, and the number of its items
+    all : location and number of items of each list
     """
 
     all: tuple[tuple[Location, int], ...]
 
     @classmethod
     def of(cls, data: Any) -> LineLists:
-        """Return those of a file, as its data."""
+        """Return the lists in the data of a file."""
         data = data if isinstance(data, dict) else {}
         legs = data.get("legs")
         if "line" in data or not isinstance(legs, dict):
@@ -55,21 +54,22 @@ class LineLists:
 
     @property
     def legs(self) -> list[str]:
-        """Return the leg of each item; nothing of a line."""
+        """Return the name of the leg of each item; an empty name for a single line."""
         names = [(str(rows[1]) if len(rows) > 1 else "", count) for rows, count in self.all]
         return [name for name, count in names for _ in range(count)]
 
     def real(self, location: Location) -> Location:
-        """Return the location in the text of one that counts through all lists."""
+        """Return the location in the text for a location that counts through all lists."""
         if location[:1] != LINE or len(location) == 1:
             return location
         rows, index = self.place(int(location[1]), above=True)
         return (*rows, index, *location[2:])
 
     def place(self, index: int, *, above: bool) -> tuple[Location, int]:
-        """Return the list that an index is in, and the index there.
+        """Return the list that contains an index, and the index in that list.
 
-        Between two legs it is that of the lower one, `above` its first item, else the upper one's.
+        For an index between two legs this is the first item of the lower leg with `above`,
+        otherwise the end of the upper leg.
         """
         for rows, count in self.all[:-1]:
             if index < count or (index == count and not above):
@@ -78,13 +78,13 @@ class LineLists:
         return self.all[-1][0], index
 
     def place_in(self, rows: Location, index: int, *, above: bool) -> tuple[Location, int]:
-        """Return the same of an index of the line, or of any other list."""
+        """Return the result of `place` for the line, or the given index for any other list."""
         return self.place(index, above=above) if rows == LINE else (self.real(rows), index)
 
     def grouped(
         self, indices: Iterable[int], rows: Location
     ) -> Iterator[tuple[Location, list[int]]]:
-        """Yield the lists that items of a list are in, in their order, with their indices there."""
+        """Yield the lists that contain the items, each with the indices of its items."""
         if rows != LINE:
             yield self.real(rows), [*indices]
             return
@@ -95,15 +95,15 @@ class LineLists:
 
 @dataclass(frozen=True)
 class LineItem:
-    """Represent an item of a line, or a clamp of one.
+    """An item of a line, or a clamp of an item.
 
     Attributes
     ----------
-    line, column : where it stands, counted from 1: those of the pieces that it is read as
-    values : its keys with plain values, as written; empty text where there is no value. A
-        `length_at` is in it as people say it, `480 m at 2 kN`.
-    clamps : tuple of Item
-    text : the lines it takes, with the comments that belong to it
+    line, column : place of the item, counted from 1, also that of its pieces when read
+    values : keys with plain values, as written; empty for a key without value. A
+        `length_at` is written as `480 m at 2 kN`.
+    clamps : its clamps
+    text : its lines, with the comments that belong to it
     """
 
     line: int
@@ -114,13 +114,13 @@ class LineItem:
 
 
 def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
-    """Return the item that a node of a text is.
+    """Return the item of a node.
 
     Parameters
     ----------
-    node : of the item
-    text : it stands in
-    lines : its text, where it takes more than the node
+    node : node of the item
+    text : text that contains the node
+    lines : its lines, if they contain more than the node
     """
     entries = list(zip(node.keys, node.children, strict=False))
     values = {key.data: child.data or "" for key, child in entries if child.kind == "scalar"}
@@ -138,12 +138,12 @@ def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
 
 
 def snippet_of(text: str, column: int) -> str:
-    """Return the text of an item by itself, as an item of a block list that begins in column 1.
+    """Return the text of an item on its own, as an item of a block list in column 1.
 
     Parameters
     ----------
-    text : of the item
-    column : of its dash, from 1; 0 of an item in brackets, which has none
+    text : text of the item
+    column : column of its dash, from 1; 0 for an item in brackets
     """
     text = _LINE_BREAK.sub("\n", text)
     if not column:
@@ -152,7 +152,7 @@ def snippet_of(text: str, column: int) -> str:
 
 
 def read_snippet(snippet: str) -> Wording | None:
-    """Return the item that a text as that of `snippet_of` is; None where it is none."""
+    """Return the item in a text as returned by `snippet_of`; None if it contains no single item."""
     composition = compose(snippet)
     root = composition.root
     if root is None or composition.refusals or (root.kind, root.style) != ("sequence", "block"):
@@ -167,19 +167,19 @@ def read_snippet(snippet: str) -> Wording | None:
 
 @dataclass
 class Items:
-    """Hold the items of a list, or the entries of a mapping, of which there is at least one.
+    """The items of a nonempty list, or the entries of a nonempty mapping.
 
     Attributes
     ----------
-    start, end : what is rearranged of the text
-    is_flow : they stand in brackets
-    column : of the dashes, or of the items where there are none, counted from 1
-    texts : of each item: its lines, comments that belong to it included; in brackets what stands
+    start, end : span of the text that is replaced
+    is_flow : whether the collection is in brackets
+    column : column of the dashes, or of the items if there are none, counted from 1
+    texts : text of each item: its lines with its comments, or in brackets the text
         between its commas
-    gaps : what stands before each item and is not its own, as a comment further left
-    rest : what follows the last
-    separator : stands between two items in brackets
-    on_a_dash : the first entry of the mapping stands on the line of a dash, or of a `?`
+    gaps : text before each item that does not belong to it, such as a comment further left
+    rest : text after the last item
+    separator : text between two items in brackets
+    on_a_dash : whether the first entry of the mapping is on the line of a dash or of a `?`
     """
 
     start: int
@@ -193,7 +193,7 @@ class Items:
     on_a_dash: bool = False
 
     def remove(self, index: int) -> str:
-        """Take an item out. What is not its own stays in its place."""
+        """Remove an item and return its text. Text between items is kept."""
         text, gap = self.texts.pop(index), self.gaps.pop(index)
         if index == len(self.texts):
             self.rest = gap + self.rest
@@ -202,21 +202,24 @@ class Items:
         return text
 
     def insert(self, index: int, text: str) -> None:
-        """Put an item in."""
+        """Insert an item."""
         self.texts.insert(index, text)
         self.gaps.insert(index, "")
         if index == 0 and len(self.gaps) > 1:
             self.gaps[0], self.gaps[1] = self.gaps[1], ""
 
     def patch(self) -> Patch:
-        """Return what comes in place of the list."""
+        """Return the patch that replaces the collection."""
         parts = [gap + text for gap, text in zip(self.gaps, self.texts, strict=True)]
         text = self.separator.join(parts) + self.rest
         return Patch(self.start, self.end, text.lstrip(" ") if self.on_a_dash else text)
 
 
 def items_of(text: str, node: Node) -> Items | None:
-    """Take apart a collection in a text that ends in a line break; None where it is entangled."""
+    """Divide a collection into items; None if it shares lines with other text.
+
+    The text must end with a line break.
+    """
     spans = [(child.start, child.end) for child in node.children]
     if node.kind == "mapping":
         pairs = zip(node.keys, node.children, strict=True)
@@ -235,7 +238,8 @@ def _block(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
     if not on_a_dash:
         first = own_start(text, first, 0, None if is_list else node.column)
         if not is_list and node.column == 1 and first == line_start(text, 0):
-            first = line_start(text, node.start)  # those that a file begins with are about the file
+            # comments at the beginning of a file are about the file, not about its first entry
+            first = line_start(text, node.start)
     starts, ends = [first], []
     for (_, end), following in zip(spans, (*spans[1:], None), strict=True):
         ends.append(writing.own_end(text, end, node.column))
@@ -253,11 +257,11 @@ def _block(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
 
 
 def _flow(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
-    """Take apart a collection in brackets; None where comments stand between its items."""
+    """Divide a collection in brackets into items; None if there are comments between them."""
     between = [text[one[1] : other[0]] for one, other in pairwise(spans)]
     if any("#" in each for each in between):
         return None
-    # right behind the colon of an empty value a comma would be part of the key
+    # after the colon of an empty value a comma would be part of the key
     texts = [text[start:end] + " " * text.endswith(":", start, end) for start, end in spans]
     separator = between[0] if between and "\n" in between[0] else ", "
     gaps = [""] * len(texts)

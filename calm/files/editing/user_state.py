@@ -1,4 +1,6 @@
-"""Files that CALM keeps of a person between sessions: what is open, which components are liked."""
+"""Files in which CALM keeps the state of a user between sessions: open files, favourite
+components.
+"""
 
 import hashlib
 import json
@@ -12,13 +14,15 @@ from calm.files.editing.working_file import Keeper, state_folder
 
 
 class Presence:
-    """Says in the state folder which file is open here."""
+    """Record in the state folder which file this process has open."""
 
     def __init__(self) -> None:
         self._place: Path | None = None
 
     def say(self, path: Path | None) -> list[int]:
-        """Say it of another file, or of none; the processes that have that one open, too."""
+        """Record that a file is open, or none; return the numbers of other processes that have it
+        open.
+        """
         if self._place is not None:
             with suppress(OSError):
                 self._place.unlink(missing_ok=True)
@@ -46,12 +50,12 @@ _MOST_RECENT = 40
 
 
 class Remembered:
-    """Ids of components, each list the last one first; a file that cannot be read is none.
+    """Ids of components, the latest first; both lists are empty if their file cannot be read.
 
     Attributes
     ----------
-    favourites : marked by the person
-    recent : taken from the catalogue
+    favourites : ids marked by the user
+    recent : ids recently chosen from the catalogue
     """
 
     def __init__(self) -> None:
@@ -64,18 +68,18 @@ class Remembered:
         self.favourites, self.recent = ids
 
     def take(self, id: str) -> None:
-        """Note that one was taken; where it cannot be kept, for this session only."""
+        """Record that a component was chosen; if it cannot be saved, only for this session."""
         self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
         with suppress(OSError):
             self._keep()
 
     def mark(self, id: str) -> bool:
-        """Mark a favourite, or unmark it; returns whether it is one now.
+        """Mark a favourite, or remove the mark; return whether it is now a favourite.
 
         Raises
         ------
         OSError
-            It could not be kept, and is one in this session only.
+            The mark could not be saved, and applies to this session only.
         """
         is_new = id not in self.favourites
         self.favourites = [each for each in self.favourites if each != id]

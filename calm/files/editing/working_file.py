@@ -1,7 +1,7 @@
-"""The file that a person works on, and the copies of what is not saved of it.
+"""The file that a user is editing, and the copies of its unsaved text.
 
-A copy is the text itself below a first line, a comment, that shows the host, the process and what
-the file held when the work began. No two sessions keep their work under one name.
+A copy is the text below a first line, a comment, which records the host, the process and a digest
+of the file when the work began. Each session uses its own file name.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import os
 import re
 import socket
 import stat
+import sys
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -23,29 +24,29 @@ from calm.errors import CalmError, InputError
 from calm.whole_file import GRAIN, decoded, put, read_content, sweep
 
 _UNREADABLE = b"\0"
-"""Stands for the content of what is there and cannot be read; no text has it."""
+"""Content of an existing file that cannot be read; no text file contains it."""
 
 Stamp = tuple[int, int, int]
 
 
 class NotWritten(CalmError):
-    """Say that a file could not be written; what was there before is untouched."""
+    """A file could not be written; its previous content is unchanged."""
 
 
 class WorkingFile:
-    """Represent a mooring file that is worked on, and the copy of unsaved work beside it.
+    """A mooring file that is being edited, and the copy of its unsaved text.
 
-    The copy is this session's own; the copies of others are read, and removed
-    only where their work was taken over with `adopt`, or is given up.
+    The copy belongs to this session. Copies of other sessions are read, and removed only after
+    their work was adopted by `adopt` or discarded.
 
     Parameters
     ----------
-    path : None: it has no name yet; its copy is then kept in the user's state folder
-        (`XDG_STATE_HOME`), where also go copies that cannot be written beside the file
+    path : path of the file; None if it has no name yet, in which case its copy is in the user's
+        state folder (`XDG_STATE_HOME`), as are copies that cannot be written next to the file
 
     Attributes
     ----------
-    unsaved : what `keep` is to keep; None where nothing is unsaved
+    unsaved : the text that `keep` saves; None if nothing is unsaved
     """
 
     def __init__(self, path: str | Path | None) -> None:
@@ -58,12 +59,12 @@ class WorkingFile:
             folder / f"{stem}.{os.urandom(4).hex()}{SUFFIX}" for folder, stem in self._folders()
         ]
         self._adopted: Path | None = None
-        self._lock = RLock()  # a signal may ask for the copy while it is being removed
+        self._lock = RLock()  # a signal handler may use the copy while it is being removed
 
     def read(self) -> str:
-        """Return the text of the file, with its byte order mark and line breaks.
+        """Return the text of the file, with its byte-order mark and line breaks.
 
-        InputError: it cannot be read, or is no text.
+        InputError: it cannot be read, or is not text.
         """
         assert self.path is not None
         content = read_content(self.path)
@@ -73,18 +74,18 @@ class WorkingFile:
         return text
 
     def save(self, text: str) -> str:
-        """Write the file; a reader sees the old text or the new, never a part.
+        """Write the file; a reader sees either the old or the new text.
 
-        Its permissions stay as they are, and a symbolic link keeps pointing where it did.
+        Its permissions are kept, and a symbolic link still points to the same file.
 
         Returns
         -------
-        str : what of the file could not be kept, for people; empty as a rule
+        str : message about attributes of the file that could not be kept, usually empty
 
         Raises
         ------
         NotWritten
-            With the reason.
+            The file cannot be written; the message gives the reason.
         """
         assert self.path is not None
         content = text.encode()
@@ -100,36 +101,37 @@ class WorkingFile:
 
     @property
     def is_protected(self) -> bool:
-        """Return whether the file is there and may not be written."""
+        """Return whether the file exists and may not be written."""
         path = self.path
         return path is not None and _status(path) is not None and not os.access(path, os.W_OK)
 
     @property
     def stamp(self) -> Stamp | None:
-        """Return what tells one state of the file on the disk from another; None without a file."""
+        """Return values that identify the state of the file on the disk; None without a file."""
         status = None if self.path is None else _status(self.path)
         return status and (status.st_mtime_ns, status.st_size, status.st_ino)
 
     def changed_on_disk(self) -> bool:
-        """Return whether the file is another than that last read or saved; it may be gone.
+        """Return whether the file has changed since it was last read or saved; it may have been
+        removed.
 
-        It is read only where its time or size changed, and not where it is not a regular file.
+        The content is read only if the time or size has changed, and only from a regular file.
         """
         if self.path is None:
             return False
         stamp = self.stamp
         if stamp is None or stamp != self._looked:
             self._differs = self._content() != self._seen
-            # a file written this lately may be written again without its time telling
+            # a file written this recently may be changed again within the resolution of its time
             is_old = stamp is not None and time.time() - stamp[0] / 1e9 > GRAIN
             self._looked = stamp if is_old else None
         return self._differs
 
     def keep(self) -> Path | None:
-        """Bring the copy in line with `unsaved`; where it is. For any thread.
+        """Update the copy to `unsaved`, and return its path; may be called from any thread.
 
-        A copy that this session made goes where nothing is unsaved; none but that. NotWritten:
-        neither beside the file nor in the state folder.
+        The copy of this session is removed if the text is saved. NotWritten: the copy can be
+        written neither next to the file nor in the state folder.
         """
         with self._lock:
             if self.unsaved is None:
@@ -138,14 +140,16 @@ class WorkingFile:
             return self._keep(self.unsaved)
 
     def forget(self) -> None:
-        """Remove the copy, and that taken over: the work is saved, or given up."""
+        """Remove the copy and any adopted one, after the work was saved or discarded."""
         with self._lock:
             self.unsaved = None
             self._drop(*self._places, *([self._adopted] if self._adopted else []))
             self._adopted = None
 
     def left_behind(self) -> KeptWork | None:
-        """Return the latest work that no session keeps any more and that is not in the file."""
+        """Return the latest unsaved work of a session that has ended, if it differs from the
+        file.
+        """
         content = self._content()
         found = []
         for each in self._copies():
@@ -158,20 +162,20 @@ class WorkingFile:
         return max(found, key=lambda each: each.at, default=None)
 
     def is_open_elsewhere(self) -> bool:
-        """Return whether another session that is running has unsaved work of this file."""
+        """Return whether another running session has unsaved work on this file."""
         if self.path is None:
             return False
         own = set(self._places)
         return any(each.keeper.is_running and each.place not in own for each in self._copies())
 
     def is_of_another(self, kept: KeptWork) -> bool:
-        """Return whether the file is another than that which the work began with."""
+        """Return whether the file has changed since the kept work began."""
         return self.path is not None and kept.base != _digest(self._content())
 
     def adopt(self, kept: KeptWork) -> None:
-        """Go on with kept work: its copy stays until this is saved or given up.
+        """Continue with kept work; its copy is removed when the work is saved or discarded.
 
-        A file that is another than the work began with is then `changed_on_disk`.
+        If the file has changed since that work began, it is reported by `changed_on_disk`.
         """
         self._adopted = kept.place
         if self.is_of_another(kept):
@@ -193,12 +197,12 @@ class WorkingFile:
             return _UNREADABLE if _status(self.path) else None
 
     def _folders(self) -> list[tuple[Path, str]]:
-        """Return where the copy goes and how its name begins, the best place first."""
+        """Return the folders for the copy and the beginning of its name, the best first."""
         if self.path is None:
             return [(state_folder(), "unnamed")]
         target = Path(os.path.realpath(self.path))
         sign = hashlib.sha256(os.fsencode(target)).hexdigest()[:12]
-        # a long name leaves no room for more beside the file
+        # the name may be too long for an addition in the folder of the file
         away = state_folder(), f"{target.name[:40]}-{sign}"
         return [(target.parent, f".{target.name}"), away]
 
@@ -227,7 +231,7 @@ class WorkingFile:
 
 
 def state_folder() -> Path:
-    """Return where CALM keeps of a user what belongs to no file."""
+    """Return the folder in which CALM keeps the state of a user."""
     state = os.environ.get("XDG_STATE_HOME") or os.path.expanduser("~/.local/state")
     return Path(state) / "calm"
 
@@ -239,7 +243,7 @@ def _replace(target: Path, content: bytes, like: os.stat_result | None) -> None:
 
 
 def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
-    """Return what a file could not take over from the one that it replaced; empty as a rule."""
+    """Return a message about attributes that a file did not take over from the one it replaced."""
     if before is None or after is None:
         return ""
     losses = []
@@ -251,7 +255,7 @@ def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
 
 
 def _status(path: Path) -> os.stat_result | None:
-    """Return what the system says of a file; None where it is missing."""
+    """Return the status of a file; None if it cannot be obtained."""
     try:
         return path.stat()
     except (OSError, ValueError):
@@ -265,13 +269,13 @@ _TOKEN = re.compile(r"\.[0-9a-f]{8}" + re.escape(SUFFIX))
 
 @dataclass(frozen=True)
 class Keeper:
-    """Represent the process that keeps a copy.
+    """The process that keeps a copy.
 
     Attributes
     ----------
-    host : its machine
-    process : its number there
-    started : when it began, as that machine counts; empty where this cannot be known
+    host : name of the machine
+    process : process number
+    started : its starting time in the units of that machine; empty if unknown
     """
 
     host: str
@@ -280,40 +284,43 @@ class Keeper:
 
     @classmethod
     def this(cls) -> Keeper:
-        """Return the process that asks."""
+        """Return this process."""
         return cls(socket.gethostname(), os.getpid(), _started(os.getpid()))
 
     @property
     def is_here(self) -> bool:
-        """Return whether it is, or was, on this machine."""
+        """Return whether the process belongs to this machine."""
         return self.host == socket.gethostname()
 
     @property
     def is_running(self) -> bool:
-        """Return whether it is known to be running still; of another machine this is not known."""
-        if not self.is_here or os.name != "posix":
+        """Return whether the process is known to be running; False for one on another machine.
+
+        A web page has one process for successive sessions.
+        """
+        if not self.is_here or os.name != "posix" or sys.platform == "emscripten":
             return False
         try:
             os.kill(self.process, 0)
         except (ProcessLookupError, OverflowError):
             return False
         except OSError:
-            pass  # it is another person's
-        # a number is given again, in a container soon
+            pass  # the process belongs to another user
+        # process numbers are reused, in a container after a short time
         return self.started == _started(self.process)
 
 
 @dataclass(frozen=True)
 class KeptWork:
-    """Hold unsaved work as it was found.
+    """Unsaved work found in a copy.
 
     Attributes
     ----------
-    place : where it is
-    text : of the mooring file
-    keeper : whose it is
-    base : the `_digest` of what the file held when the work began
-    at : when it was kept [s since 1970]
+    place : path of the copy
+    text : text of the mooring file
+    keeper : process that keeps it
+    base : `_digest` of the content of the file when the work began
+    at : time of the copy [s since 1970]
     """
 
     place: Path
@@ -324,12 +331,12 @@ class KeptWork:
 
 
 def _digest(content: bytes | None) -> str:
-    """Return a short sign of a content; empty of none."""
+    """Return a short hash of a content; empty for None."""
     return "" if content is None else hashlib.sha256(content).hexdigest()[:16]
 
 
 def _kept_in(folder: Path, stem: str) -> Iterator[KeptWork]:
-    """Return the copies of a name in a folder; what is no copy is passed over."""
+    """Yield the copies of a file in a folder; other files are ignored."""
     with contextlib.suppress(OSError):
         for place in sorted(folder.iterdir()):
             ends = place.name.removeprefix(stem)
@@ -351,14 +358,14 @@ def _read(place: Path) -> KeptWork:
 
 
 def _started(process: int) -> str:
-    """Return when a process began, in ticks since this machine did; empty where that is not known.
+    """Return the starting time of a process in ticks since the machine started; empty if unknown.
 
-    It is not known of one that has ended, though its parent has not asked for that yet.
+    It is unknown for a process that has ended, even if its parent has not yet collected its status.
     """
     try:
         stat = Path(f"/proc/{process}/stat").read_text()
     except (OSError, ValueError):
         return ""
-    # behind the name, which stands in brackets and may hold anything
+    # after the name, which is in brackets and may contain anything
     values = stat.rpartition(")")[2].split()
     return "" if values[0] in "ZX" else values[19]

@@ -1,9 +1,8 @@
-"""Writing of values into a file: after its manner, in the order of the keys in the models,
-and put into its text, or taken out of it, at the places where libyaml found them.
+"""Write values into the text of a file, in its style and in the order of the keys in the models.
 
-A word is plain where that reads back, and in quotes where it would not. A text is never written
-anew: what emitters of YAML keep of it (ruamel.yaml by round trip keeps most comments) is less than
-a person put there, such as figures in columns and line ends of Windows.
+A word is written without quotes if it can be read back without them. The text is never emitted
+again by a YAML library, because that would lose part of its layout, such as aligned columns and
+Windows line ends; even ruamel.yaml, which preserves most comments, does.
 """
 
 from __future__ import annotations
@@ -20,10 +19,10 @@ from calm.files.mooring_file import Solver
 from calm.files.reader import MooringKeys
 from calm.files.water import TableKeys
 
-# Read otherwise by YAML, or by other programs that read it.
+# Words that YAML, or other programs that read it, interpret as something else.
 _WORD = re.compile(r"(?:~|=|<<|null|true|false|yes|no|on|off)?", re.IGNORECASE)
 
-# What may stand without quotes: no sign of YAML at its beginning, no `: ` nor ` #` within.
+# Text that needs no quotes: no special character of YAML at the beginning, no `: ` and no ` #`.
 _BEGINNING = r"(?:[^\s\-?:,\[\]{}#&*!|>'\"%@`]|-(?=[^\s,\[\]{}]))"
 _PLAIN = re.compile(_BEGINNING + r"(?:[^\S\r\n\t](?=[^\s#])|:(?=\S)|[^\s:])*")
 _NOT_IN_FLOW = re.compile(r"[,\[\]{}?]|:(?=[,\[\]{}]|$)")
@@ -31,17 +30,17 @@ _ESCAPED = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
 Value = str | None | Mapping[str, "Value"] | Sequence["Value"]
-"""What a file can hold: text, nothing, or a mapping or list of what it can hold."""
+"""The values in a file: text, nothing, or a mapping or list of values."""
 
 
 class Wording(NamedTuple):
-    """Hold an item of a list as it is written.
+    """An item of a list with its text.
 
     Attributes
     ----------
     value : Value
-    lines : in a block list that begins in column 1, with its comments
-    inline : its text within brackets, without comments
+    lines : its lines in a block list in column 1, with its comments
+    inline : its text in brackets, without comments
     """
 
     value: Value
@@ -50,7 +49,7 @@ class Wording(NamedTuple):
 
 
 class Worded(list[Value]):
-    """Hold items of a list that keep their wording."""
+    """Items of a list that keep their text."""
 
     def __init__(self, wordings: Iterable[Wording]) -> None:
         self.wordings = tuple(wordings)
@@ -58,7 +57,7 @@ class Worded(list[Value]):
 
 
 SECTIONS = frozenset(MooringKeys.model_fields) - {"name", "description", "position", "tow"}
-"""Keys whose values are written below them, a line each."""
+"""Keys whose values are written below them, one per line."""
 
 _ORDERS: tuple[tuple[str, ...], ...] = (
     tuple(MooringKeys.model_fields),
@@ -79,13 +78,13 @@ _LAST = "clamps"
 
 @dataclass(frozen=True)
 class WritingStyle:
-    """Hold how a file is written: its line breaks and indentation.
+    """The style of a file: line breaks and indentation.
 
     Attributes
     ----------
     line_break : str
-    step : columns by which what is below a key is indented
-    dash : the same for the dashes of a list
+    step : number of columns by which values below a key are indented
+    dash : the same for the dashes of a list below a key
     """
 
     line_break: str = "\n"
@@ -94,7 +93,7 @@ class WritingStyle:
 
     @classmethod
     def of(cls, text: str, root: Node | None) -> WritingStyle:
-        """Return the manner of a text, as its first places show it."""
+        """Return the style of a text, as found at its first places."""
         ending = text.find("\n")
         line_break = "\r\n" if ending > 0 and text[ending - 1] == "\r" else "\n"
         step = dash = None
@@ -109,27 +108,27 @@ class WritingStyle:
         return cls(line_break, step, step if dash is None else dash)
 
     def entry(self, name: str, value: Value, column: int, *, open: bool = False) -> str:
-        """Write the lines of an entry of a block mapping whose keys stand in a column (from 1).
+        """Return the lines of an entry of a block mapping.
 
         Parameters
         ----------
         name : the key
         value : Value
-        column : of the key, from 1
-        open : write a mapping below its key even where it is short
+        column : column of the key, from 1
+        open : whether a mapping is written below its key even if it is short
         """
         key = " " * (column - 1) + written(name, flow=False) + ":"
         head, below = self.parts(name, value, column, open=open)
         return key + head + self.line_break + below
 
     def parts(self, name: str, value: Value, column: int, *, open: bool = False) -> tuple[str, str]:
-        """Write what follows the colon of a key, and the lines below it.
+        """Return the text after the colon of a key, and the lines below the key.
 
         Parameters
         ----------
         name : the key
         value : Value
-        column : of the key, from 1
+        column : column of the key, from 1
         open : as for `entry`
         """
         if value is None:
@@ -150,18 +149,18 @@ class WritingStyle:
         return "", "".join(self.item(one, column + self.dash) for one in value)
 
     def moved(self, lines: str, column: int) -> str:
-        """Move lines that begin in column 1 to another one."""
+        """Return lines that begin in column 1, moved to another column."""
         indented = re.sub(r"^(?=[^\n])", " " * (column - 1), lines, flags=re.MULTILINE)
         return indented.replace("\n", self.line_break)
 
     def item(self, value: Value, column: int, *, block: bool = False) -> str:
-        """Write the lines of an item whose dash stands in a column.
+        """Return the lines of an item of a list.
 
         Parameters
         ----------
         value : Value
-        column : of the dash, from 1
-        block : write a key a line, as is done of an item that has items of its own
+        column : column of the dash, from 1
+        block : whether keys are written one per line, as for an item with items of its own
         """
         indent = " " * (column - 1)
         if isinstance(value, Mapping) and value and (block or _is_deep(value)):
@@ -171,7 +170,7 @@ class WritingStyle:
 
 
 def inline(value: Value) -> str:
-    """Write a value on one line, as it stands within brackets."""
+    """Return a value on one line, in the form used in brackets."""
     if value is None:
         return "null"
     if isinstance(value, str):
@@ -185,7 +184,7 @@ def inline(value: Value) -> str:
 
 
 def read_inline(text: str) -> Value:
-    """Read what `inline` writes; a text that is nothing of the kind is itself the value."""
+    """Read a text written by `inline`; any other text is returned unchanged."""
     composition = compose(text)
     root = composition.root
     if root is None or composition.refusals or root.style != "flow":
@@ -195,7 +194,7 @@ def read_inline(text: str) -> Value:
 
 
 def place_of(name: str, names: Sequence[str]) -> int:
-    """Return where a new key goes among others: in the order of the format, else at the end."""
+    """Return the index for a new key among others: in the order of the format, or at the end."""
     order = next((one for one in _ORDERS if name in one), ())
     if name in order:
         before = order[: order.index(name)]
@@ -208,7 +207,7 @@ def place_of(name: str, names: Sequence[str]) -> int:
 
 
 def _is_deep(value: Mapping[str, Value]) -> bool:
-    """Return whether a mapping holds more than texts and short lists of texts."""
+    """Return whether a mapping contains more than texts and short lists of texts."""
     return any(
         isinstance(one, Mapping)
         or (one is not None and not isinstance(one, str) and any(map(_is_long, one)))
@@ -221,7 +220,7 @@ def _is_long(value: Value) -> bool:
 
 
 def _below_keys(node: Node) -> Iterator[tuple[Node, Node]]:
-    """Return the block collections that stand below a key: with the mapping of the key."""
+    """Yield each block collection below a key, with the mapping of the key."""
     for child in node.children:
         if child.style == "block":
             if node.kind == "mapping":
@@ -230,13 +229,13 @@ def _below_keys(node: Node) -> Iterator[tuple[Node, Node]]:
 
 
 def written(text: str, *, flow: bool, quote: str = "") -> str:
-    """Write a text as a scalar of YAML.
+    """Return a text as a YAML scalar.
 
     Parameters
     ----------
     text : str
-    flow : it is to stand within brackets, where commas and brackets end a plain text
-    quote : the sign it was quoted with so far, which is kept
+    flow : whether it is in brackets, where commas and brackets end a plain text
+    quote : the present quotation mark, which is kept
     """
     if quote == "'" and text.isprintable():
         return "'" + text.replace("'", "''") + "'"
@@ -259,7 +258,7 @@ _COMMENT = re.compile(r"[ \t]*#[^\n]*(?:\n|\Z)")
 
 
 class Patch(NamedTuple):
-    """Hold a part of a text, from start to end, and what comes in its place."""
+    """A part of a text, from start to end, and its replacement."""
 
     start: int
     end: int
@@ -267,7 +266,9 @@ class Patch(NamedTuple):
 
 
 def patched(text: str, patches: Iterable[Patch]) -> str:
-    """Return a text with parts of it replaced; of two at one place the first comes first."""
+    """Return a text with parts of it replaced; two patches at one place are applied in their
+    order.
+    """
     pieces: list[str] = []
     done = 0
     for patch in sorted(patches, key=lambda one: one[:2]):
@@ -277,29 +278,29 @@ def patched(text: str, patches: Iterable[Patch]) -> str:
 
 
 def line_start(text: str, place: int) -> int:
-    """Return where the line of a place begins."""
+    """Return the index of the beginning of the line that contains a place."""
     return text.rfind("\n", 0, place) + 1 or int(text.startswith("\ufeff"))
 
 
 def line_end(text: str, place: int) -> int:
-    """Return where the line after that of a place begins."""
+    """Return the index of the beginning of the next line."""
     found = text.find("\n", place)
     return len(text) if found < 0 else found + 1
 
 
 def first_on_line(text: str, place: int) -> bool:
-    """Return whether only spaces stand before a place on its line."""
+    """Return whether there are only blanks before a place on its line."""
     return not text[line_start(text, place) : place].strip(" \t")
 
 
 def own_end(text: str, place: int, column: int) -> int:
-    """Return where the lines of something end, comments of its own included.
+    """Return the index of the end of an item's lines, including its own comments.
 
     Parameters
     ----------
-    text : it ends in a line break
+    text : the text, which ends with a line break
     place : the end of the value
-    column : of the thing, from 1; comments below it that stand further right are its own
+    column : column of the item, from 1; comments below it and further right belong to it
     """
     end = line_end(text, place)
     while (comment := _COMMENT.match(text, end)) and end < len(text):
@@ -310,14 +311,14 @@ def own_end(text: str, place: int, column: int) -> int:
 
 
 def own_start(text: str, place: int, least: int, column: int | None = None) -> int:
-    """Return where the lines of something begin, comments of its own included.
+    """Return the index of the beginning of an item's lines, including its own comments.
 
     Parameters
     ----------
-    text : it ends in a line break
-    place : the beginning, the first on its line
-    least : comments above this are not its own
-    column : nor are those further right than this, from 1
+    text : the text, which ends with a line break
+    place : the beginning of the item, the first on its line
+    least : comments before this index do not belong to it
+    column : comments to the right of this column, from 1, do not belong to it, either
     """
     start = line_start(text, place)
     while start > least:
@@ -338,16 +339,16 @@ def _column(line: str) -> int:
 def set_value(
     text: str, mapping: Node, at: int, value: Value, style: WritingStyle, *, open: bool = False
 ) -> list[Patch]:
-    """Give a key another value.
+    """Return the patches that set another value for a key.
 
     Parameters
     ----------
-    text : it ends in a line break
-    mapping : in it
-    at : number of the entry, from 0
+    text : the text, which ends with a line break
+    mapping : the mapping that contains the key
+    at : index of the entry
     value : Value
-    style : of the file
-    open : write a mapping below its key even where it is short
+    style : style of the file
+    open : whether a mapping is written below its key even if it is short
     """
     key, old = mapping.keys[at], mapping.children[at]
     if isinstance(value, str) and old.kind == "scalar" and old.data is not None:
@@ -372,19 +373,19 @@ def set_value(
 
 
 def set_scalar(old: Node, value: str, *, flow: bool) -> Patch:
-    """Write another text for a scalar, quoted as it was.
+    """Return the patch that sets another text for a scalar, with the same quotation marks.
 
     Parameters
     ----------
     old : the scalar
     value : the new text
-    flow : it stands within brackets
+    flow : whether it is in brackets
     """
     quote = old.style if old.style in "'\"" else ""
     return Patch(old.start, old.end, written(value, flow=flow, quote=quote))
 
 
 def _colon(text: str, place: int) -> int | None:
-    """Return the place after the colon of a key that ends at a place; None where it has none."""
+    """Return the index after the colon of a key that ends at a place; None if there is no colon."""
     found = re.compile(r"\s*:").match(text, place)
     return found.end() if found else None

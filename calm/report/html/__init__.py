@@ -64,8 +64,15 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters |= {"set_apart": set_apart, "breakable": _breakable, "kinds": _kinds}
+    environment.filters["css_text"] = _css_text
     environment.tests["of"] = lambda block, kind: type(block).__name__ == kind
     return environment
+
+
+def _css_text(text: str) -> str:
+    """A text as a string of a style sheet: whatever is no letter or figure by its number."""
+    signs = (one if one.isascii() and one.isalnum() else f"\\{ord(one):x} " for one in text)
+    return f'"{"".join(signs)}"'
 
 
 def _breakable(text: str) -> str:

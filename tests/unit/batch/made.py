@@ -34,6 +34,7 @@ class MadeRecord:
     """Profiles in memory; where there are more than four, the fifth has no current."""
 
     notes = ("made for a test",)
+    cards = ()
     source = {"file": "made"}  # noqa: RUF012
 
     def __init__(self, count=40, seed=1):

@@ -63,7 +63,7 @@ def test_what_is_told_carries_its_time_and_name(dataset):
 
 
 def test_an_unknown_label_gets_the_nearest(dataset):
-    with pytest.raises(UsageError, match=r"called `metre`; did you mean `meter`"):
+    with pytest.raises(UsageError, match=r"label `metre`; did you mean `meter`"):
         dataset.calm.knockdown("metre")
 
 

@@ -98,7 +98,7 @@ def test_the_first_worker_is_waited_for(tmp_path, started):
         mooring, MadeRecord(100), tmp_path / "r.nc", block=16, scheduler=address, tell=tell
     )
     assert counts["converged"] == 99
-    assert told == [f"the scheduler at {address} has no worker yet: waiting for the first"]
+    assert told == [f"the scheduler at {address} has no workers yet; waiting for the first worker"]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills a process as POSIX has it")
@@ -139,20 +139,3 @@ def test_nobody_at_the_address(tmp_path, monkeypatch):
         with pytest.raises(UsageError, match="no scheduler answers"):
             run_batch(mooring, record, tmp_path / "r.nc", scheduler=address)
         assert [path.name for path in tmp_path.glob("*.nc*")] == []
-
-
-def test_without_dask_it_says_what_to_install(tmp_path):
-    program = (
-        "import sys; sys.modules['distributed'] = None\n"
-        "from pathlib import Path\n"
-        "from calm.batch.cluster import on_cluster\n"
-        "from calm.errors import UsageError\n"
-        "try:\n"
-        "    next(on_cluster('tcp://127.0.0.1:9', None, iter(()), print))\n"
-        "except UsageError as error:\n"
-        "    print(error)\n"
-    )
-    finished = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
-    )
-    assert "pip install 'calm-mooring[cluster]'" in finished.stdout

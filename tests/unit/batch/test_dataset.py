@@ -84,7 +84,7 @@ APPENDIX_A = {
 variable; then where they may stand, G globally, C with coordinates, D with other variables.
 Auxiliary coordinates, such as `depth_top`, are variables of both kinds."""
 
-OWN = {"summary", "calm", "input", "currents", "notes", "input_resolved", "input_sha256"}
+OWN = {"summary", "calm", "input", "currents", "notes", "read", "input_resolved", "input_sha256"}
 """Attributes that the conventions leave to everybody."""
 
 

@@ -11,6 +11,7 @@ from calm.batch.statistics.limits import NOT_JUDGED, limits_of
 from calm.batch.statistics.series import ResultColumns
 from calm.case import Design
 from calm.checks.assess import RULES, STANDING
+from calm.checks.assessment import Acceptance, estimated_result
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
 from calm.files.check_limits import Checks, MinimumTensions
@@ -43,18 +44,25 @@ def judged_here(mooring, result):
             if np.isnan(value).any():
                 found.setdefault(key, (State.UNKNOWN, None, None))
                 continue
-            state = limit.criterion.beyond if limit.broken(value)[0] else State.PASS
-            if key not in found or state.severity > found[key][0].severity:
-                found[key] = state, float(value[0]), limit.criterion.limit
+            state = State.ESTIMATED if limit.on_estimate else State.PASS
+            if limit.broken(value)[0]:
+                state = State.UNKNOWN if limit.on_estimate else limit.criterion.beyond
+            most = float(value[0]), limit.criterion.limit
+            before = found.get(key, (State.PASS, None, None))
+            alike = before[1] is not None and state is before[0] and not limit.criterion.least
+            tighter = alike and most[0] * before[2] > before[1] * most[1]  # of two criteria
+            if before[1] is None or state.severity > before[0].severity or tighter:
+                found[key] = state, *most
     return found
 
 
 def judged_there(result):
+    acceptance = Acceptance.of_file(replace(result.file, accepts=()), None)
     return {
-        (rule.name, verdict.component): (verdict.state, verdict.value, verdict.limit)
+        (rule.name, one.component): (one.state, one.value, one.limit)
         for rule in STANDING
         if rule.name not in NOT_JUDGED
-        for verdict in rule.judge(result.leg)
+        for one in acceptance.findings(rule, rule.judge(estimated_result(result.leg)), "m", "own")
     }
 
 

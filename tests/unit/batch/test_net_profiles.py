@@ -151,17 +151,20 @@ def test_a_step_solves_its_equations(size: int) -> None:
     slopes, found = rng.normal(size=(size, size)), rng.normal(size=size)
     slopes[0, 0] = 0.0 if size > 1 else 2.0
     net: Any = SimpleNamespace(
-        slopes=slopes.tolist(), paper=np.zeros((size, size + 1)).tolist(), order=[0] * size,
-        way=[0.0] * size,
+        slopes=slopes.tolist(), matrix=np.zeros((size, size + 1)).tolist(), order=[0] * size,
+        update=[0.0] * size,
     )  # fmt: skip
     most = newton_step(net, found.tolist())
-    assert net.way == pytest.approx(-np.linalg.solve(slopes, found), rel=1e-9)
-    assert most == pytest.approx(np.linalg.norm(net.way))
+    assert net.update == pytest.approx(-np.linalg.solve(slopes, found), rel=1e-9)
+    assert most == pytest.approx(np.linalg.norm(net.update))
 
 
 def test_an_unknown_of_which_the_slopes_say_nothing_stays() -> None:
     net: Any = SimpleNamespace(
-        slopes=[[2.0, 0.0], [0.0, 0.0]], paper=[[0.0] * 3, [0.0] * 3], order=[0, 0], way=[9.0, 9.0]
+        slopes=[[2.0, 0.0], [0.0, 0.0]],
+        matrix=[[0.0] * 3, [0.0] * 3],
+        order=[0, 0],
+        update=[9.0, 9.0],
     )
     assert newton_step(net, [4.0, 0.0]) == 2.0
-    assert net.way == [-2.0, 0.0]
+    assert net.update == [-2.0, 0.0]

@@ -1,12 +1,13 @@
 """Records are read as `calm run` reads one time of them, whatever their layout."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from calm.errors import InputError, UsageError
+from calm.errors import InputError, UsageError, how_to_install
 from calm.files import CurrentTable
 from calm.records.current_file import open_record, read_current_file
 from calm.records.current_terms import Terms
@@ -184,7 +185,8 @@ def test_notes_tell_the_rules(tmp_path: Path) -> None:
         assert record.notes == (
             "the current is not given above 40.0 m and below 250.0 m: the value of the nearest "
             "level is used there, in 300.0 m of water",
-            "the strongest of 20 currents is 0.0092 m/s: cm/s or another unit read as m/s?",
+            "the strongest of 20 currents is 0.0092 m/s in the declared unit, cm/s; are they in "
+            "m/s or kn?",
             "levels where the current or their depth has no value are left out of their profile",
             "levels above the surface are left out",
             "levels below the seabed are used where they have a value: the current at the seabed "
@@ -285,6 +287,7 @@ def test_no_record_at_all(tmp_path: Path, name: str) -> None:
 
 def test_zarr_that_is_not_installed_is_named(tmp_path: Path, monkeypatch) -> None:
     path = write("glorys", tmp_path, "zarr")
-    monkeypatch.setattr("calm.records.cf_files.find_spec", lambda name: None)
-    with pytest.raises(InputError, match=r"glorys.zarr: is zarr; to read it: pip install"):
+    monkeypatch.setitem(sys.modules, "zarr", None)
+    with pytest.raises(ModuleNotFoundError) as caught:
         opened(path)
+    assert how_to_install(caught.value) == "this needs zarr: pip install 'calm-mooring[cluster]'"

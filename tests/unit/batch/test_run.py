@@ -165,7 +165,7 @@ def test_memory_does_not_grow_with_the_record(tmp_path):
 
 
 def test_no_profile_is_no_batch(tmp_path, mooring):
-    with pytest.raises(UsageError, match="no profile in the period"):
+    with pytest.raises(UsageError, match="no profile in the requested period"):
         run_batch(mooring, MadeRecord(0), tmp_path / "r.nc")
 
 

@@ -188,7 +188,7 @@ def test_another_part_can_be_explained(solve):
 def test_a_part_that_is_not_there(solve):
     with pytest.raises(UsageError, match="did you mean `logger`"):
         explain(solve(stream()), "loger")
-    with pytest.raises(UsageError, match="no part of the line is called `block`"):
+    with pytest.raises(UsageError, match="no part of the line has the label `block`"):
         explain(solve(stream()), "block")
 
 

@@ -58,7 +58,7 @@ def test_of_a_leg_only_what_it_has_is_said(net):
     said = {leg.name: str((summary_of(leg), quality_of(leg))) for leg in net.solve().legs}
     assert "unknown" not in "".join(said.values())
     assert "nchor" not in said["stem"] and "lower end missed by" in said["stem"]
-    assert "Anchor pulled by" in said["west"] and "off the anchor" in said["west"]
+    assert "sideways" in said["west"] and "off the anchor" in said["west"]
     assert all(leg.strumming_band is None for leg in net.solve().legs)
 
 
@@ -68,3 +68,16 @@ def test_it_is_judged_and_its_launch_is_refused(net):
         calm.drop_plan(net)
     with pytest.raises(calm.UsageError, match="is a tow; this is for moorings"):
         calm.check(calm.load(shipped_folder("lines") / "helicopter-bird.yaml"))
+
+
+def test_a_leg_without_an_anchor_has_no_load_on_one(net):
+    anchors = {leg.name: leg.anchor for leg in net.solve().legs}
+    assert anchors["stem"] is None
+    assert anchors["west"].tension > 0.0
+
+
+def test_a_tow_has_no_anchor():
+    tow = calm.load(shipped_folder("lines") / "helicopter-bird.yaml").solve()
+    assert tow.leg.anchor is None
+    with pytest.raises(calm.UsageError, match="has no anchor"):
+        tow.anchor  # noqa: B018

@@ -93,7 +93,7 @@ def test_a_piece_at_the_end_of_the_wire_is_a_stop(tmp_path):
     [
         ("between: [lower stop, upper stop]", "give the upper stop first"),
         ("between: [uper stop, lower stop]", "did you mean `upper stop`?"),
-        ("between: [wire, lower stop]", "`wire` is no stop on `wire`"),
+        ("between: [wire, lower stop]", "`wire` is neither a clamp on `wire`"),
         ("between: [upper stop]", "between"),
         ("at: 3 m", "it travels `between` two stops"),
         ("serial: 12", "needs `between: [upper stop, lower stop]`"),

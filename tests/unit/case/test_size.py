@@ -136,9 +136,9 @@ def test_a_target_beyond_the_anchor(mooring):
     # 2 kN under the line, 100 N of them held by the glass; found to 1e-7 of the range of 80 kN
     best = DRAG / 2000.0
     nearest = LENGTH * (1.0 - 1.0 / sqrt(1.0 + best**2))
-    assert f"The nearest is {nearest:.4g}" in sizing.message
+    assert f"The closest is {nearest:.4g}" in sizing.message
     assert "float.buoyancy at 1900 N" in sizing.message or "1899.9" in sizing.message
-    assert "Above that: anchor-lifts: The vertical pull of the line is" in sizing.message
+    assert "Above that: anchor-lifts: The vertical load of the line is" in sizing.message
     assert "--between" in sizing.advice
 
 
@@ -151,7 +151,7 @@ def test_a_range_that_ends_too_soon(mooring):
 def test_a_change_that_does_nothing(mooring):
     sizing = size(mooring(), "tension(block) >= 2 kN", "thread.length")
     assert sizing.status == "not-met"
-    assert sizing.message.startswith("The present value comes nearest, with 948.683 N")
+    assert sizing.message.startswith("The present value is closest, with 948.683 N")
 
 
 def test_a_mooring_without_equilibrium_can_be_mended(mooring):
@@ -226,7 +226,7 @@ def test_the_document_is_plain_json(mooring):
         ("knockdown(top) <= 2", "float.buoyancy", None, "`2` needs a unit: `2 m`?"),
         ("knockdown(top) <= 2 kg", "float.buoyancy", None, "`2 kg` is a mass; a length"),
         ("tilt(CDT) <= 2 deg", "float.buoyancy", None, "did you mean `CTD`?"),
-        ("tilt(glass) <= 2 deg", "float.buoyancy", None, "2 parts are called `glass`; name one"),
+        ("tilt(glass) <= 2 deg", "float.buoyancy", None, "2 parts have the label `glass`"),
         ("required_weight(top) <= 2 N", "float.buoyancy", None, "leave out the brackets"),
         ("tilt <= 2 deg", "float", None, "there is no field to change; allowed: buoyancy, count"),
         ("tilt <= 2 deg", "float.bouyancy", None, "did you mean `buoyancy`?"),
@@ -235,7 +235,7 @@ def test_the_document_is_plain_json(mooring):
         ("tilt <= 2 deg", "float.length", None, "only cables and chains are cut to length"),
         ("tilt <= 2 deg", "CTD.count", None, "clamped instruments are not counted"),
         ("tilt <= 2 deg", "block.count", None, "a line has one anchor"),
-        ("tilt <= 2 deg", "CTD.buoyancy", None, "CTD.buoyancy is 0; give its range with --between"),
+        ("tilt <= 2 deg", "CTD.buoyancy", None, "CTD.buoyancy is 0; set its range with --between"),
         ("tilt(glass 1) <= 2 deg", "glass.count", None, "set the target for another part"),
         ("tilt(thread) = 2 deg", "glass.count", None, "glass.count changes in steps"),
         ("tilt <= 2 deg", "float.buoyancy", ("1 m", "2 N"), "`1 m` is a length; a force"),
@@ -254,7 +254,7 @@ def test_a_caret_stands_under_each_mistake(mooring):
     with pytest.raises(UsageError) as caught:
         size(mooring(), "tilt(CDT) <= 2 deg", "float.bouyancy")
     assert str(caught.value).splitlines() == [
-        "--target: no part of the line is called `CDT`; did you mean `CTD`?",
+        "--target: no part of the line has the label `CDT`; did you mean `CTD`?",
         "  tilt(CDT) <= 2 deg",
         "       ^",
         "--change: unknown field `bouyancy`; did you mean `buoyancy`?",
@@ -273,5 +273,5 @@ def test_parts_of_an_assembly_are_not_counted(mooring):
 
 def test_a_piece_cut_to_fit_has_no_length_to_change(mooring):
     fit = mooring(change=("length: 100 m", "length: fit, top_depth: 100 m"))
-    with pytest.raises(UsageError, match="give it a length in the file first"):
+    with pytest.raises(UsageError, match="set a length in the file first"):
         size(fit, "tilt(thread) <= 2 deg", "thread.length")

@@ -269,7 +269,7 @@ def test_samples_without_equilibrium_are_counted_and_left_out():
 def test_no_sample_stands():
     text = PLUMB.replace("weight: 20 kN", "weight: 3.61 kN")
     text = text.replace("{UNSURE}", "{buoyancy: [20 %, 30 %]}")
-    with pytest.raises(NoEquilibrium, match="vertical pull"):
+    with pytest.raises(NoEquilibrium, match="vertical load"):
         uncertain(calm.load("light.yaml", text=text).solve(), 64)
 
 
@@ -288,7 +288,7 @@ def test_the_figures_are_those_of_their_seed_however_they_are_shared_out():
     ("samples", "near"), [(1000, 1024), (0, 64), (-5, 64), (63, 64), (2**21, 2**20)]
 )
 def test_samples_are_a_power_of_two(samples, near):
-    with pytest.raises(UsageError, match=f"{samples} is not a power of two .* take {near}"):
+    with pytest.raises(UsageError, match=f"{samples} is not a power of two .* use {near}"):
         uncertain(calm.load(LINES / "s1000.yaml").solve(), samples)
 
 

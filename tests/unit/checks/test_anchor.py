@@ -50,7 +50,7 @@ def test_an_anchor_is_judged_where_what_it_weighs_in_water_is_known(load, figure
     weight = 5000.0 if density is None else 1000.0 * G * (1.0 - 1025.0 / density)
     assert mooring.leg.anchor_weight == pytest.approx(weight)
     result = mooring.solve()
-    warned = [each for each in result.warnings if "is taken as steel, 7850 kg/m³" in each]
+    warned = [each for each in result.warnings if "is assumed to be steel (7850 kg/m³)" in each]
     assert len(warned) == (not known)
     assessment = check(mooring)
     found = {one.rule: one for one in assessment.stands[0].findings if one.rule in RULES}

@@ -118,18 +118,6 @@ def test_what_can_only_flatter_is_refused(more, message, tmp_path):
     assert message in str(error.value)
 
 
-def test_a_rope_that_floats_below_the_release_is_told(tmp_path):
-    text = SOUND.replace("  - {use: weight}", "  - {use: tail, length: 10 m}\n  - {use: weight}")
-    text = text.replace(
-        "  rope:", "  tail: {kind: cable, diameter: 10 mm, buoyancy: 0.05 N/m}\n  rope:"
-    )
-    mooring = load(tmp_path / "m.yaml", text=text.replace("CURRENT", HALF))
-    found = assessment_of("m", stands_of(mooring, "m")).findings
-    assert "tail floats, but below the release: it stays on the anchor." in (
-        one.message for one in found if one.rule == "release-present"
-    )
-
-
 def test_strumming_that_lessens_drag_is_refused(tmp_path):
     with pytest.raises(InputError, match=r"`factor: 0.1` must be at least 1"):
         of(tmp_path, more="solver: {strumming: {factor: 0.1}}\n")

@@ -9,7 +9,7 @@ from calm.checks.assessment import Assessment
 from calm.checks.design_check import check
 from calm.checks.finding import Finding, State
 from calm.errors import InputError
-from calm.report.check_report import check_document
+from calm.report.check_files import check_document
 
 LINE = """\
 name: estimates

@@ -37,7 +37,7 @@ def test_clamps_listed_from_below_are_judged_by_their_own_limits(tmp_path: Path)
         path = tmp_path / "mooring.yaml"
         path.write_text(text, encoding="utf-8")
         mooring = calm.load(path)
-        verdicts = {one.component: one for one in depth_rating.judge(mooring.solve())}
+        verdicts = {one.component: one for one in depth_rating.judge(mooring.solve().leg)}
         judged.append({label: verdicts[label].limit for label in ("first", "second")})
     # half the rating at most, and 100 m, are kept as a margin
     assert judged == [{"first": 200.0, "second": 5900.0}] * 2

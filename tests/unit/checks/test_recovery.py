@@ -180,17 +180,23 @@ def test_what_hangs_right_below_a_float_hangs_there_whatever_the_rounding():
     assert recovery.depth_at(3, 0.5) == pytest.approx(25.0)
 
 
-def test_the_first_float_alone_rises_as_with_the_others(tmp_path, recovered):
-    for text in (FILE, FILE.replace("buoyancy: 2000 N", "buoyancy: 1200 N")):
-        whole = recovered(text)
-        mooring = calm.load(tmp_path / "m.yaml")
-        first = recovery_of(mooring.leg, mooring.solve().leg, first_only=True)
-        assert first.rise_speed == whole.rise_speed
-        assert first.time_to_surface == whole.time_to_surface
-        assert first.order == whole.order[:1]
-
-
 def test_minutes_until_what_is_hauled_in_comes_up():
     lowest = SimpleNamespace(label="releases", place=None)
     found = _hauled_in(lowest, 600.0, SimpleNamespace(rise_speed=1.0))
     assert "releases comes up after 10 minutes" in found.message
+
+
+def test_a_buoyant_rope_tail_comes_up_after_its_floats(recovered):
+    """Between the last float and the end of the line nothing pulls along the rope."""
+    rope = "  - {use: thin, length: 50 m, weight: -0.1 N/m, diameter: 13 mm, ct: 0.013}"
+    text = FILE.replace("role: release, ", "").replace("-300 N", "-30 N")
+    recovery = recovered(text.replace("  - {use: thin, length: 50 m}", rope))
+    friction = 512.5 * np.pi * 0.013 * 0.013
+    assert recovery.order == (0, 2)  # the opener is heavier than the tail is buoyant
+    tail = text.replace("  - {use: opener, label: release}\n", "").replace(
+        "  - {use: thin, length: 100 m}\n", ""
+    )
+    recovery = recovered(tail.replace("  - {use: thin, length: 50 m}", rope))
+    assert recovery.order == (0, 2, 3)
+    after = recovery.arrival[3] - recovery.arrival[2]
+    assert after == pytest.approx(50.0 / sqrt(0.1 / friction))

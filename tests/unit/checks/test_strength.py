@@ -22,7 +22,7 @@ line:
   - {use: rope, label: lower, length: 100 m, working_load: LOWER}
   - {use: weight}
 components:
-  ball: {kind: sphere, role: float, diameter: 1 m, buoyancy: 3 kN}
+  ball: {kind: sphere, role: float, diameter: 1 m, buoyancy: 5 kN}
   rope: {kind: cable, diameter: 8 mm, weight: 1.6 N/m, stiffness: 3000 kN}
   link: {kind: body, role: connector, length: 0.1 m, buoyancy: -5 N, kn: 1 N/(m/s)^2,
          inclination: insensitive}
@@ -120,3 +120,11 @@ def test_a_synthetic_rope_is_judged_by_its_breaking_load() -> None:
         keys | {"material": "steel", "working_load": "2390 N", "breaking_load": "28.6 kN"}
     )
     assert allowable_load(steel, factors, surface=False) == pytest.approx(2390.0)
+
+
+def test_what_bears_less_than_half_of_its_load_is_no_weak_link(tmp_path: Path) -> None:
+    """The ball pulls with some 5 kN, less than half of what the link is good for."""
+    text = LINE.replace("UPPER", "60 kN").replace("LINK", "11 kN").replace("LOWER", "60 kN")
+    (tmp_path / "m.yaml").write_text(text, encoding="utf-8")
+    found = list(strength_steps.judge(calm.load(tmp_path / "m.yaml").solve().leg))
+    assert not [one for one in found if one.state is State.WARN]

@@ -242,7 +242,7 @@ def test_a_drag_that_changes_with_depth_cuts_the_segment(tmp_path):
         middle += piece.length
     assert len(ropes) == 12
     assert all(
-        "guessed: its drag at the depth" in each
+        "guessed: drag at its depth" in each
         for each in made.text.splitlines()
         if "use: rope" in each
     )
@@ -278,7 +278,7 @@ def test_an_anchor_that_would_be_lifted_holds(anchor, tmp_path):
 
 def test_a_rope_in_inches_is_pointed_out(tmp_path):
     made = imported(tmp_path, SMALL.replace("d = 0.01", "d = 0.375"))
-    assert "kept as it is" in made.guessed[0].what
+    assert "unchanged: one metre" in made.guessed[0].what
     short = SMALL.replace("length = 50", "length = 5").replace("d = 0.01", "d = 0.375")
     assert imported(tmp_path, short).guessed == ()
 
@@ -297,7 +297,7 @@ REFUSED = {
         "branch = { segment = { length = 5 } } segment = { length = 50",
         "the layout has no `terminal` at the end of a line",
     ),
-    "both ends anchored": ("{ buoy = ball }", "{ anchor = clump }", "nothing stands between"),
+    "both ends anchored": ("{ buoy = ball }", "{ anchor = clump }", "there is nothing between"),
     "horizontal": ("subsurface", "horizontal", "`type = horizontal`"),
     "drifter": ("subsurface", "drifter", "`type = drifter`"),
     "horizontal drifter": ("subsurface", "horizontal-drifter", "`type = horizontal-drifter`"),
@@ -306,12 +306,12 @@ REFUSED = {
     "platform": ("type = sphere", "type = platform", "platform"),
     "thrust": ("{ buoy = ball }", "{ buoy = ball x-thrust = 100 }", "`x-thrust` pulls"),
     "loop": ("{ buoy = ball }", "{ buoy = ball node = 5 }", "a loop"),
-    "no material": ("material = rope", "material = hemp", "`hemp` is defined nowhere"),
+    "no material": ("material = rope", "material = hemp", "`hemp` is not defined"),
     "no such node": ("(51, 1.0)", "(51, 1.0) attachments = meter : (99)", "nodes 1 to 51"),
     "twice defined": ("Anchors", "spare wet = 1 ball d = 2 Anchors", "`ball` is defined twice"),
     "no depth": ("depth = 100", "", "no `depth`"),
     "an unknown name": ("d = 0.01", "d = DIAMETER", "-D DIAMETER="),
-    "an odd sign": ("length = 50", "length = 50 @", "`@` has no place"),
+    "an odd sign": ("length = 50", "length = 50 @", "`@` is not allowed"),
     "no end of a block": ("{ buoy = ball }", "{ buoy = ball", "missing before `End`"),
     "no gravity": ("gravity = 9.81", "gravity = 0", "its gravity is 0"),
     "a light sea": ("rho = 1025", "rho = -1", "its density is -1"),
@@ -331,7 +331,7 @@ def test_all_macros_that_are_missing_are_named_at_once(tmp_path):
     text = SMALL.replace("d = 0.01", "d = WIDE").replace("length = 50", "length = 2*LONG + MORE")
     told = refusal(tmp_path, text.replace("wet = 2.0", "wet = HEAVY"))
     for name in ("WIDE", "LONG", "MORE", "HEAVY"):
-        assert told.count(f"Give it with -D {name}=") == 1
+        assert told.count(f"define it by -D {name}=") == 1
     assert len(told.splitlines()) == 4
     given = {"WIDE": "0.01", "LONG": "20", "MORE": "10", "HEAVY": "2.0"}
     made = imported(tmp_path, text.replace("wet = 2.0", "wet = HEAVY"), defines=given)
@@ -340,7 +340,7 @@ def test_all_macros_that_are_missing_are_named_at_once(tmp_path):
 
 def test_a_macro_without_a_number_ends_the_search_for_others(tmp_path):
     told = refusal(tmp_path, SMALL.replace("d = 0.01", "d = ON"), defines={"ON": "OFF"})
-    assert told.count("Give it with -D OFF=") == 1
+    assert told.count("define it by -D OFF=") == 1
 
 
 def test_macros_come_from_the_file_and_from_outside(tmp_path):
@@ -405,7 +405,7 @@ def test_currents_of_a_file_are_those_at_the_anchor_now(tmp_path):
     ]
     told = "\n".join(str(each) for each in made.dropped)
     assert "times after the first" in told
-    assert "how it varies horizontally" in told
+    assert "horizontal variation" in told
     assert made.guessed == ()
 
 

@@ -162,7 +162,7 @@ def test_an_anchor_that_would_be_lifted_is_made_heavy_enough(tmp_path):
     lift[0, -1] = 50.0
     made = imported(tmp_path, mooring(B=lift))
     (guess,) = made.guessed
-    assert "490.33 N would be lifted" in guess.what
+    assert "exceeds the weight of 490.33 N" in guess.what
     result = load(tmp_path / "design.yaml", text=made.text).solve().to_dict()
     assert result["anchor"]["weight"] >= result["anchor"]["required_weight"]
     assert result["anchor"]["weight"] <= 1.1 * result["anchor"]["required_weight"]
@@ -224,7 +224,7 @@ def test_a_placeholder_size_is_kept_and_pointed_out(tmp_path):
     size = np.array(HEIGHT)
     size[:, 0] = (1.5, 0.01, 0.01, 2.0)
     made = imported(tmp_path, mooring(H=size))
-    assert "diameter: 10 mm  # guessed: kept as it is, a placeholder" in made.text
+    assert "diameter: 10 mm  # guessed: kept, but a placeholder" in made.text
     assert len(made.guessed) == 1
 
 

@@ -141,9 +141,9 @@ REFUSED = {
     "a sinking end": ("100    0.6", "1000   0.6", "does not float"),
     "a loose lower end": ("1     Fixed ", "1     Free  ", "both ends are free"),
     "a ring": (
-        "1    rope       1        2 ", "1    rope       3        2 ", "a ring that nothing holds"
+        "1    rope       1        2 ", "1    rope       3        2 ", "a ring without a fixed point"
     ),
-    "an unknown type": ("2    rope", "2    hemp", "`hemp` is defined nowhere"),
+    "an unknown type": ("2    rope", "2    hemp", "`hemp` is not defined"),
     "an unknown point": ("2        3        40", "2        7        40", "`7` is not a point"),
     "no number": ("0.02    0.6", "wide    0.6", "`diameter` is `wide`"),
     "a body": (

@@ -12,6 +12,7 @@ from calm.exchange.importing import import_file
 from calm.exchange.model import ImportOptions
 from calm.exchange.table.cells import number
 from calm.files import Catalogue
+from calm.files.pieces import parts_of
 
 SITE = """\
 environment:
@@ -140,7 +141,7 @@ def test_names_without_a_heading_units_below_and_no_anchor(read, tmp_path):
     told = [str(each) for each in made.guessed]
     assert "line.anchor: the list has none" in told
     assert any("from its name" in each for each in told)
-    assert any("gives no size" in each for each in told)
+    assert any("has no size" in each for each in told)
     assert any("without length and weight" in str(each) for each in made.dropped)
     tenex = pieces(made, tmp_path)[2].component
     assert tenex.diameter == pytest.approx(0.00635)
@@ -201,7 +202,7 @@ def test_diameters_of_zero_are_none(read, tmp_path):
     made = read(ENGLISH.replace("100,8,24", "100,0,24").replace("1.0,130,22", "1.0,0,22"))
     told = {each.where: each.what for each in made.guessed}
     assert told["components.8-mm-wire.diameter"] == "from its name"
-    assert "no drag" in told["components.ar861-release.drag_area"]
+    assert "the drag is 0" in told["components.ar861-release.drag_area"]
     assert pieces(made, tmp_path)[3].component.diameter == 0.008
 
 
@@ -298,7 +299,6 @@ def test_what_a_library_cannot_give_is_named(case, read, tmp_path):
 def test_a_workbook_may_bring_its_water(tmp_path):
     """As those of Mooring Design & Dynamics do: the elements, and a sheet of heights and speeds."""
     openpyxl = pytest.importorskip("openpyxl", reason="writes the workbook")
-    pytest.importorskip("python_calamine", reason="needs the extra `sheets`")
     book = openpyxl.Workbook()
     for row in (
         ("Element", "Buoyancy", "Length", "Width", "Diameter", "Flag", "Cd", "ME"),
@@ -347,10 +347,11 @@ REFUSED = {
     "a line without length": (ENGLISH.replace("8 mm wire,100", "8 mm wire,"), "needs its length"),
     "no weight": (ENGLISH.replace(",-433,", ",,"), "its buoyancy is missing"),
     "nothing floats": (
-        "Item,Length,Wet weight (kg)\nbar,1,3\nrod,1,3\n", "no end of the list is a float"
+        "Item,Length,Wet weight (kg)\nbar,1,3\nrod,1,3\n", "neither end of the list is a float"
     ),
     "a tow": (
-        "Item,kind,Length,Wet weight (kg)\nwire,cable,100,30\nfish,body,1,80\n", "towed is not read"
+        "Item,kind,Length,Wet weight (kg)\nwire,cable,100,30\nfish,body,1,80\n",
+        "a tow cannot be read",
     ),
     "one piece": ("Item,Length,Wet weight (kg)\nAnchor,1,300\n", "has 1 pieces"),
     "no table": ("a,b,c\nd,e,f\ng,h,i\n", "no headings"),
@@ -376,7 +377,6 @@ def test_an_environment_is_needed(read):
 
 def test_a_workbook_is_read(read, tmp_path):
     openpyxl = pytest.importorskip("openpyxl", reason="writes the workbook")
-    pytest.importorskip("python_calamine", reason="needs the extra `sheets`")
     book = openpyxl.Workbook()
     for row in ENGLISH.splitlines():
         cells = [
@@ -582,7 +582,7 @@ def test_no_piece_is_lost_without_a_word(read, tmp_path):
     assert any("`TOTALS`, a sum" in each for each in dropped)
     assert any("row 7: `ditto` read as `17 in glass`" in each for each in guessed)
     assert made.text.count("kind: cable") == read(ENGLISH).text.count("kind: cable")
-    assert any("not as 3 of them" in each for each in guessed)
+    assert any("not as 3 pieces" in each for each in guessed)
     german = read(ENGLISH.replace("Total,", "Summe,"))
     assert len(pieces(german, tmp_path)) == len(labels) - 4
 
@@ -651,14 +651,14 @@ def test_a_weight_of_all_that_is_given_as_of_one_is_refused(read):
 
 def test_a_float_that_lifts_more_than_it_displaces_is_reported(read):
     made = read(SHORT.replace("-350", "-900"))
-    assert any("lifts 900 kg, its size displaces 80" in str(each) for each in made.guessed)
+    assert any("lifts 900 kg but displaces 80" in str(each) for each in made.guessed)
 
 
 def test_a_count_times_a_length(read):
     with pytest.raises(InputError, match="`2 x 200 m` is a count and a figure"):
         read(SHORT.replace("1,100,8", "1,2 x 200 m,8"))
     made = read(SHORT.replace("Wire rope", "2 x 50 m wire rope"))
-    assert any("not as 2 of them" in str(each) for each in made.guessed)
+    assert any("not as 2 pieces" in str(each) for each in made.guessed)
 
 
 def test_norwegian_tables_with_headings_and_parts(read, tmp_path):
@@ -677,7 +677,6 @@ Anker\t0,8\t900\t900
 
 def test_other_sheets_and_what_is_hidden_are_reported(read):
     openpyxl = pytest.importorskip("openpyxl", reason="writes the workbook")
-    pytest.importorskip("python_calamine", reason="needs the extra `sheets`")
     book = openpyxl.Workbook()
     old, new = book.active, book.create_sheet("rev C & D")
     for row in SHORT.splitlines():
@@ -728,3 +727,42 @@ def test_a_chain_keeps_its_grade(tmp_path, site):
         other = "80" if grade == "30" else "30"
         assert not any(f"g{grade}" in each for each in matched(f"G{other}", weight, ""))
         assert not any(f"g{other}" in each for each in matched("alloy", weight, load))
+
+
+PLANNED = """\
+Name,Depth (m),Length (m),Diameter (mm),Weight in water (kg),Clamped at (m),Qty
+Float,50,1,1000,-350,,1
+RCM,51,0.8,130,15,,1
+Wire rope,52,100,8,16,,1
+Logger,60,0.3,60,2,8,1
+Glass ball,152,0.43,430,-25,,4
+Release,155,0.9,130,25,,1
+Anchor,156,0.8,900,900,,1
+"""
+
+
+@pytest.mark.parametrize("heading", ["Depth (m)", "Planned depth [m]", "Tiefe (m)", "Profondeur"])
+def test_a_column_of_depths_gives_the_planned_depths(heading, read, tmp_path):
+    found = parts_of(pieces(read(PLANNED.replace("Depth (m)", heading)), tmp_path))
+    planned = {part.label: part.planned_depth for part in found}
+    assert {name: depth for name, depth in planned.items() if depth is not None} == {
+        "float": 50.0, "rcm": 51.0, "logger": 60.0,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("Depth (m)", "Depth rating (m)"), (",51,", ",6000,"), ("Depth (m)", "Rated to")],
+)
+def test_depths_that_are_no_places_plan_nothing(old, new, read, tmp_path):
+    made = read(PLANNED.replace(old, new))
+    assert all(part.planned_depth is None for part in parts_of(pieces(made, tmp_path)))
+    told = [str(each) for each in made.guessed]
+    assert (new == ",6000,") == ("column Depth (m): does not grow down the line: left out" in told)
+
+
+@pytest.mark.parametrize("heading", ["Länge kumuliert [m]", "Distance from anchor (m)"])
+def test_lengths_from_an_end_are_refused_by_their_heading(heading, read):
+    text = ENGLISH.replace("Length (m)", heading)
+    with pytest.raises(InputError, match="counts lengths from an end of the line"):
+        read(text)

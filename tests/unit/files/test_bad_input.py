@@ -104,7 +104,7 @@ ONE_MISTAKE = {
     ),
     "nothing but an anchor": (
         GOOD[: GOOD.index("  - {use: ball")] + ANCHORED,
-        (10, 5, "nothing stands above the anchor"),
+        (10, 5, "there is no piece above the anchor"),
     ),
     "two fits": (
         changed("480 m", "fit, top_depth: 90 m").replace(
@@ -282,7 +282,12 @@ ONE_MISTAKE = {
     ),
     "override of an assembly": (
         changed("{use: plate}", "{use: pair, mass: 3 kg}"),
-        (12, 17, "`mass` cannot be set on an assembly; allowed: count, label, use"),
+        (
+            12,
+            17,
+            "`mass` cannot be set on an assembly; allowed: breaking_load, count, depth_rating, "
+            "grip, label, max_tilt, opening_load, source, sources, use, working_load",
+        ),
     ),
     "drag misspelt": (
         GOOD + "solver: {drag: reynold}\n",

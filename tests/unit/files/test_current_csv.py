@@ -43,7 +43,10 @@ def problems(path: Path, text: str) -> list[Place]:
 def test_components(csv: Path) -> None:
     table, notices = profile(csv, "depth[m],u[cm/s],v[m/s],w[m/s]\n0, 50 ,0.1,0\n\n100,20,0,-.01\n")
     assert table == CurrentTable((0.0, 100.0), (0.5, 0.2), (0.1, 0.0), (0.0, -0.01))
-    assert notices == []
+    assert notices == [
+        "1 of 2 levels with values are deeper than the water, 60.0 m: the deepest is at 100.0 m "
+        "(30.5 m, if these are feet)"
+    ]
 
 
 def test_speed_and_direction(csv: Path) -> None:

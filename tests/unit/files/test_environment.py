@@ -202,7 +202,7 @@ WIND = "wind: {speed: 9 m/s, toward: 0, "
             ],
             (6, 74, "depth 3 m comes after 9 m; depths must increase"),
         ),
-        (["fluid: air"], (4, 10, "`fluid: air` is for tows; a mooring stands in water")),
+        (["fluid: air"], (4, 10, "`fluid: air` is for tows; a mooring is in water")),
         (
             ["fluid: ari"],
             (4, 10, "`fluid: ari` must be one of water"),

@@ -92,7 +92,7 @@ def test_a_release_that_is_not_in_the_line_is_reported(read: Read) -> None:
     line = GOOD.replace("{use: plate}", "{use: plate, role: release, serial: 5}")
     assert read(line + "releases: [{serial: 5, codes: 1}]\n").notices == ()
     (notice,) = read(line + "releases: [{serial: 6, codes: 1}]\n").notices
-    assert notice == "`releases`: no release of the line has the serial number 6"
+    assert notice == "`releases`: no release of the line has the serial number 6."
 
 
 @pytest.mark.parametrize(
@@ -100,7 +100,7 @@ def test_a_release_that_is_not_in_the_line_is_reported(read: Read) -> None:
     [
         (
             with_rope(f"  - {{use: rope-12, length: 5 m, {AT}}}\n"),
-            (11, 33, "gives both `length` and `length_at`; one says how long it is cut"),
+            (11, 33, "gives both `length` and `length_at`, which exclude each other"),
         ),
         (
             with_rope("  - {use: rope-12, length_at: 480 m}\n"),

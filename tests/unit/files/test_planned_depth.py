@@ -47,6 +47,9 @@ def test_a_label_names_a_depth(label: str, depth: float) -> None:
         "SBE37 SN 12345",
         "SBE37 S/N 1234 m",
         "SBE37_1729",
+        "SBE37_1700",
+        "MC_1729",
+        "MC-1730",
         "SBE37 1729",
         "SBE56 12345678",
         "serial 400 m",
@@ -82,8 +85,8 @@ def test_a_label_names_no_depth(label: str) -> None:
 
 
 def test_a_serial_number_or_a_depth_rating_is_no_plan() -> None:
-    assert isnan(depth_in_label("CTD_1729", serial="1729"))
-    assert depth_in_label("CTD_1729", serial="1730") == 1729.0
+    assert isnan(depth_in_label("CTD_1700", serial="1700"))
+    assert depth_in_label("CTD_1700", serial="1729") == 1700.0
     assert isnan(depth_in_label("Aquadopp 6000 m", rating=6000.0))
     assert depth_in_label("SBE37 @ 350 m", rating=350.0) == 350.0
     assert depth_in_label("Aquadopp 6000 m @ 1500 m", rating=6000.0) == 1500.0
@@ -104,7 +107,7 @@ LINE = """\
   - {use: wire-jacketed-8, length: 100 m, label: wire 100 m, clamps: [
       {use: sbe37, at: 10 m, label: CTD 160 m}, {use: sbe37, at: 20 m},
       {use: sbe37, at: 30 m, label: CTD 180 m, planned_depth: 185 m},
-      {use: sbe37, at: 40 m, label: CTD_1729, serial: 1729}]}
+      {use: sbe37, at: 40 m, label: CTD_1700, serial: 1700}]}
   - {use: rcm11, label: meter, planned_depth: 250 m}
   - {use: wire-jacketed-8, length: 100 m, planned_depth: 251 m}
   - {use: glass-17in, count: 3, label: glass 350 m}

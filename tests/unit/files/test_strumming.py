@@ -91,7 +91,7 @@ NAMES = "none, bourget-marichal, vandiver, blevins, skop-griffin"
         (
             "{factor: 1.5, cn: 2}",
             21,
-            "`strumming` gives `factor` and `cn`; one of them is needed",
+            "`strumming` has `factor` and `cn`, which exclude each other",
         ),
         ("{factor: 0}", 30, "`factor: 0` must be at least 1"),
         ("{factor: -1}", 30, "`factor: -1` must be at least 1"),

@@ -325,8 +325,8 @@ def test_in_air_a_net_force_in_water_has_to_do_for_a_mass(read: Read) -> None:
     assert file.pieces[0].component.net_buoyancy == -0.7
     assert file.pieces[1].component.net_buoyancy == -500.0
     assert file.notices == (
-        "wire: no mass is known; its net force in water is taken as its weight in air",
-        "bird: no mass is known; its net force in water is taken as its weight in air",
+        "wire: the mass is unknown; its net force in water is used as its weight in air",
+        "bird: the mass is unknown; its net force in water is used as its weight in air",
     )
 
 
@@ -379,4 +379,4 @@ def test_in_water_a_mass_is_not_enough(mistakes: Mistakes) -> None:
 
 def test_a_mooring_stands_in_water(mistakes: Mistakes) -> None:
     text = GOOD.replace("  depth:", "  fluid: air\n  depth:")
-    assert mistakes(text) == [(3, 10, "`fluid: air` is for tows; a mooring stands in water")]
+    assert mistakes(text) == [(3, 10, "`fluid: air` is for tows; a mooring is in water")]

@@ -1,5 +1,6 @@
 """Depths on a copy of a user's own file: what it must hold, and what the copy holds."""
 
+import gsw
 import h5netcdf
 import numpy as np
 import pytest
@@ -86,6 +87,11 @@ def test_text_of_an_instrument_becomes_a_dataset(tmp_path):
         assert copy["TIME"].values[1] == START + HOUR
         assert copy["PRES"].values == pytest.approx([152.0, np.nan], nan_ok=True)
         assert copy["CNDC"].attrs["units"] == "mS/cm" and float(copy["NOMINAL_DEPTH"]) == 150.0
+        assert copy["NOMINAL_DEPTH"].attrs["units"] == "m"
+        # by the estimated depth where no pressure was measured
+        pressure = [152.0, gsw.p_from_z(-151.0, 45.0)]
+        expected = gsw.SP_from_C([33.1, 33.2], [4.5, 4.6], pressure)
+        assert copy["PSAL"].values == pytest.approx(expected, abs=1e-9)
         assert copy.attrs["serial_number"] == "22" and "DEPTH estimated" in copy.attrs["history"]
 
 
@@ -145,6 +151,28 @@ def single(path, *, dims=("TIME",), attrs=None, **more):
         path, engine="h5netcdf"
     )
     return path
+
+
+def test_a_copy_keeps_to_cf_as_its_original(tmp_path):
+    path = single(tmp_path / "a.nc", NOMINAL_DEPTH=((), 150.0, {"units": "m"}),
+                  attrs={"instrument_serial_number": "22"})  # fmt: skip
+    with xarray.open_dataset(path, engine="h5netcdf", decode_coords=False) as file:
+        whole = file.load()
+    whole["INSTRUMENT_DEPTH"] = ("TIME", [1.0, 2.0, 3.0], {"units": "m"})
+    whole["TEMP"].attrs |= {"coordinates": "TIME NOMINAL_DEPTH INSTRUMENT_DEPTH",
+                            "ancillary_variables": "DEPTH_quality_control"}  # fmt: skip
+    whole["LATITUDE"] = ("LATITUDE", [48.0], {"units": "degrees_north"})
+    whole["LATITUDE"].encoding["_FillValue"] = None
+    for name in whole.variables:
+        whole[name].encoding.pop("coordinates", None)
+    whole.to_netcdf(path, engine="h5netcdf")
+    (read,), _ = read_instruments(path, LINE)
+    write_depths(read, result(), GAP, tmp_path / "copy.nc")
+    with h5netcdf.File(tmp_path / "copy.nc") as copy:
+        assert copy["TEMP"].attrs["coordinates"] == "TIME NOMINAL_DEPTH"
+        assert "ancillary_variables" not in copy["TEMP"].attrs
+        assert "_FillValue" not in copy["LATITUDE"].attrs
+        assert "axis" not in copy["DEPTH"].attrs
 
 
 NOMINAL = {"DEPTH": ("DEPTH", [152.0], {"units": "m", "axis": "Z"})}

@@ -105,7 +105,6 @@ def out_of_time():
 @pytest.mark.parametrize(("dataset", "said"), [
     (lambda: instrument("DEPTH", "depth", "m", comment=INFERRED), "is not a measurement"),
     (lambda: instrument("DEPTH", "depth", "m", long_name="depth estimated by CALM"), "by calm"),
-    (ragged, "2 instruments one after the other"),
     (with_ids, "2 instruments one after the other (`sensor_id` says whose"),
     (out_of_time, "-712224.4 among its times"),
     (lambda: instrument(units=""), "unit"),
@@ -116,6 +115,19 @@ def test_what_is_no_pressure_of_one_instrument_is_refused(tmp_path, dataset, sai
     with pytest.raises(InputError) as refused:
         read(tmp_path, dataset())
     assert said in str(refused.value)
+
+
+def test_instruments_one_after_the_other_are_split(tmp_path):
+    whole = ragged()
+    whole["instrument_id"] = ("INSTRUMENT", np.array(["M1; SBE37; 101", "M1; SBE37; 102"], object))
+    whole.to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
+    found = read_sensors([str(tmp_path / "a.nc")], frozenset({1, 2}), -32.0, 60.0)
+    assert [(one.nominal, one.serial, len(one.time)) for one in found] == [
+        (20.0, "101", TIMES // 2), (50.0, "102", TIMES // 2)
+    ]  # fmt: skip
+    assert np.concatenate([one.value for one in found]) == pytest.approx(
+        depth_of(np.asarray(whole["PRES_REL"]), -32.0), nan_ok=True
+    )
 
 
 @pytest.mark.parametrize(("unit", "factor"), [("dbar", 1.0), ("bar", 0.1), ("kPa", 10.0)])

@@ -14,7 +14,7 @@ from calm.physics import compiled
 from calm.physics.drag import drag_share
 from calm.physics.passing import pass_line
 from calm.solve.leg_closing import do_task
-from calm.solve.mooring import find_asked
+from calm.solve.mooring import run_search
 
 
 def test_a_folder_that_cannot_be_written_is_done_without(
@@ -79,7 +79,7 @@ def called_by(law: Callable[..., Any], known: set[Any]) -> Iterator[Any]:
             yield named
 
 
-@pytest.mark.parametrize("law", [find_asked, pass_line, do_task, solve_rows, solve_net_rows])
+@pytest.mark.parametrize("law", [run_search, pass_line, do_task, solve_rows, solve_net_rows])
 def test_laws_call_laws_and_functions_of_numbers_alone(law: Callable[..., Any]) -> None:
     """Arrays are handed from law to law in a form that numba's own functions do not know."""
     numbers = {abs, len, max, min, range, bool, float, int, tuple}

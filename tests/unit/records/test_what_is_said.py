@@ -1,9 +1,11 @@
 """What a record says of itself, or shows by its values, is said with a count or refused."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 import xarray as xr
@@ -11,6 +13,7 @@ import xarray as xr
 from calm.errors import InputError
 from calm.records.current_file import open_record, read_current_file
 from calm.records.current_terms import Terms
+from calm.records.instrument_series import read_series
 from calm.records.record import RULES, made_record
 
 SEABED = 300.0
@@ -56,36 +59,6 @@ def test_a_good_record_is_not_spoken_of(record: xr.Dataset, tmp_path: Path) -> N
     assert said(record.assign(u_qc=flags).assign_attrs(told), tmp_path) == []
 
 
-@pytest.mark.parametrize("words", [
-    {"title": "Tidal currents predicted from harmonic constituents"},
-    {"history": "t_tide prediction of 8 constituents"}, {"title": "Currents of TPXO9"},
-    {"title": "95th percentiles of the current"}, {"title": "Standard deviation of currents"},
-    {"summary": "Velocity anomalies"}, {"history": "cdo ymonmean in.nc out.nc"},
-    {"comment": "Means over 1993 to 2016"}, {"history": "low-pass filtered, 40 h"},
-    {"comment": "velocities are relative to the ship"}, {"summary": "glider-relative currents"},
-    {"summary": "Currents (shear only)"}, {"summary": "rotated to along shore"},
-    {"source": "detided with t_tide"}, {"comment": "25-hour running mean"},
-    {"history": "subtracted the 1993-2012 mean"}, {"title": "Baroclinic profiles"},
-    {"comment": "velocities in beam coordinates"},
-])  # fmt: skip
-def test_words_of_the_whole_file_refuse_it(record, tmp_path, words) -> None:
-    record.assign_attrs(words).to_netcdf(tmp_path / "r.nc", engine="h5netcdf")
-    (name,) = words
-    assert f"by its {name}: {words[name]}" in refusal(tmp_path / "r.nc")
-
-
-@pytest.mark.parametrize(("words", "meaning"), [
-    ({"title": "Daily mean currents"}, "the peaks are higher than the means"),
-    ({"history": "cdo daymean a.nc b.nc"}, "the peaks are higher than the means"),
-    ({"summary": "100-year return values"}, "extremes by statistics are no currents of one time"),
-    ({"comment": "Daily means"}, "the peaks are higher than the means"),
-    ({"title": "Tidal currents"}, "where it is the tide alone, the rest of the current is missing"),
-])  # fmt: skip
-def test_words_of_the_whole_file_that_are_said(record, tmp_path, words, meaning) -> None:
-    ((name, text),) = words.items()
-    assert said(record.assign_attrs(words), tmp_path) == [f"its {name} says `{text}`: {meaning}"]
-
-
 def every_day(record: xr.Dataset) -> xr.Dataset:
     return record.isel(time=slice(None, None, 24))
 
@@ -98,32 +71,41 @@ def of_attribute(name: str, attribute: str, value: Any) -> Callable[[xr.Dataset]
     return lambda record: record.assign({name: record[name].assign_attrs({attribute: value})})
 
 
-ZONE = "all 720 times are taken as they stand, in UTC"
+def copied(record: xr.Dataset) -> xr.Dataset:
+    """The readings of four days stand once more, ten days later."""
+    for name in ("u", "v"):
+        record[name].values[300:400] = record[name].values[50:150]
+    return record
+
+
+def poor(record: xr.Dataset) -> xr.Dataset:
+    """Three of ten levels have one good ping in thirty."""
+    share = np.where(np.arange(10) < 3, 3.0, 95.0) + np.zeros((720, 1))
+    return record.assign(PERG=(("time", "depth"), share, {"units": "percent"}))
 
 
 @pytest.mark.parametrize(("make", "expected"), [
     (every_day, "its 30 profiles are 24 h apart, means or samples: tides and peaks between them"),
-    (lambda one: one * 0 + one * 0, "7200 of 7200 currents are exactly 0"),
-    (with_values("v", lambda one: -one["u"].values), "values: is one a copy of the other?"),
-    (with_values("v", lambda one: 0 * one["u"].values), "are along one axis, their other compon"),
+    (lambda one: one * 0 + one * 0, "10 of 10 levels keep one value for a tenth of the record"),
     (with_values("u", lambda one: one["u"].values[:1] + 0 * one["u"].values), None),
     (of_attribute("u", "valid_range", [-0.12, 0.12]), "values of `u` are left out, outside its v"),
-    (of_attribute("time", "comment", "in local time"), f"`time` says `in local time`: {ZONE}"),
-    (lambda one: one.assign_attrs(time_zone="CEST"), f"`time` says `CEST`: {ZONE}"),
-    (lambda one: one.assign_attrs(comment="Times are local (UTC+2)"), ZONE),
-    (of_attribute("time", "long_name", "time, Eastern Daylight Time"), ZONE),
-    (of_attribute("time", "comment", "clock of the logger, CEST"), ZONE),
-    (lambda one: one.assign_attrs(keywords="FES2014, barotropic tide"), "its keywords say `FES201"),
+    (lambda one: one.assign_attrs(time_zone="CEST"), "`time_zone` is `CEST`: the times are taken"),
     (of_attribute("u", "units", "kn"), "have different units, `kn` and `m s-1`"),
-    (lambda one: one.where(one["depth"] != 40.0, 0.1), "levels have the same current throughout"),
-    (lambda one: one.where(one["time"].values[:, None] % 3 > 0, 0.0), "2400 of 7200 currents are"),
+    (lambda one: one.where(one["depth"] != 40.0, 0.1), "1 of 10 levels keep one value for a tent"),
+    (lambda one: one.where(one["time"] > 80, one.isel(time=0)), "at 4 m, 81 readings from 2026-0"),
+    (lambda one: one.where(one["time"].values[:, None] % 2 > 0, 0.4 - one), "10 of 10 series loo"),
+    (copied, "100 readings from 2026-03-13T12:00 are the same as those from 2026-03-03T02:00"),
+    (lambda one: one.sel(time=(one["time"] < 300) | (one["time"] > 500)), "1 gap in time: the lo"),
+    (of_attribute("time", "units", "hours since 1949-12-31T20:00"), "4 of 720 times are before 1"),
+    (of_attribute("time", "units", "hours since 2126-03-01"), "720 of 720 times are before 1950"),
+    (poor, "2160 of 7200 currents have less than half of their pings good"),
     (lambda one: one.where(one["time"].values[:, None] % 9 > 0, -2.0), "800 of 7200 currents to"),
     (lambda one: one.isel(depth=[0, 1, 2]), "is not given below 24.0 m: the value of the"),
     (lambda one: one.isel(depth=[5, 9]), "is not given above 90.0 m: the value of the near"),
 ])  # fmt: skip
 def test_values_that_are_said(record, tmp_path, make, expected) -> None:
     dataset = make(record)
-    for name in dataset.variables:
+    for name in record.variables:
         dataset[name].attrs = {**record[name].attrs, **dataset[name].attrs}
     notes = said(dataset, tmp_path)
     assert (expected is None and notes == []) or any(expected in note for note in notes), notes
@@ -133,11 +115,15 @@ def test_records_that_stand_still_or_are_of_another_unit(record, tmp_path) -> No
     still = record.copy(deep=True)
     for name in ("u", "v"):
         still[name][:] = record[name].values[:1]
-    assert said(still, tmp_path) == ["719 of 720 profiles are the same as the one before"]
+    assert said(still, tmp_path) == [
+        "10 of 10 levels keep one value for a tenth of the record, or for most pairs of readings: "
+        "the longest stretch at 4 m, 720 readings from 2026-03-01T00:00 to 2026-03-30T23:00"
+    ]
     for name in ("u", "v"):
         record[name].values[:] /= 100.0
     (weak,) = said(record, tmp_path)
     assert weak.startswith(f"the strongest of {MANY} currents is 0.00")
+    assert weak.endswith("in the declared unit, m s-1")
 
 
 def test_flags_leave_out_what_is_bad_with_a_count(record, tmp_path) -> None:
@@ -175,19 +161,6 @@ def test_flags_may_be_bits(record, tmp_path) -> None:
     ]
     with open_record(tmp_path / "r.nc", Terms(SEABED)) as read:
         assert read.flags(0, 1)[0, :4].tolist() == [1, 1, 4, 4]
-
-
-def test_distances_along_the_beam_are_no_heights(record, tmp_path) -> None:
-    bins = record.rename(depth="bin").assign_coords(
-        bin=(
-            "bin",
-            np.arange(10) * 8.0,
-            {"units": "m", "long_name": "distance along the beam", "axis": "Z"},
-        ),
-        DEPTH=((), 100.0, {"units": "m", "positive": "down", "standard_name": "depth"}),
-    )
-    bins.to_netcdf(tmp_path / "r.nc", engine="h5netcdf")
-    assert "`bin` is the distance along the beam, which is longer" in refusal(tmp_path / "r.nc")
 
 
 NAMES = [
@@ -262,37 +235,48 @@ def notes_of(path: Path) -> list[str]:
     with open_record(path, Terms(SEABED)) as read:
         notes = [note for note in read.notes if note not in RULES]
     _, profile = read_current_file(path, "2026-03-01T05:00", Terms(water_depth=SEABED))
-    assert [note for note in notes if note.startswith("its comment")] == profile
+    assert profile == []
     return notes
-
-
-@pytest.mark.parametrize(("comment", "said_of_it"), [
-    ("# daily means", "`daily means`: the peaks are higher than the means"),
-    ("# times in CET", "`times in CET`: the times are taken as UTC"),
-    ("# Time: UTC+2", "`Time: UTC+2`: the times are taken as UTC"),
-    ("# depth is height above the seabed", "`depth is height above the seabed`: the depths are"),
-    ("# ADCP, true north, converted from CET to UTC, depths below the surface", None),
-])  # fmt: skip
-def test_comments_above_a_table_are_said(tmp_path, comment, said_of_it) -> None:
-    (tmp_path / "r.csv").write_text(table("u[m/s],v[m/s]", components_of, comment))
-    notes = notes_of(tmp_path / "r.csv")
-    assert len(notes) == (said_of_it is not None)
-    assert all(said_of_it in note for note in notes)
-
-
-@pytest.mark.parametrize("comment", [
-    "# barotropic tide only", "# low-pass filtered, 40 h", "# ADCP velocities in beam coordinates",
-    "# compass: magnetic, declination not applied",
-])  # fmt: skip
-def test_comments_above_a_table_refuse_it(tmp_path, comment) -> None:
-    (tmp_path / "r.csv").write_text(table("u[m/s],v[m/s]", components_of, comment))
-    assert "by its comment" in refusal(tmp_path / "r.csv")
 
 
 @pytest.mark.parametrize(("turn", "told"), [(np.radians, True), (float, False)])
 def test_directions_in_radians_are_said(tmp_path, turn, told) -> None:
     text = table("speed[m/s],toward[deg]", lambda i, z: f"0.3,{turn(5 * i + z / 100):.4f}")
     (tmp_path / "r.csv").write_text(text)
-    assert [note.endswith("radians read as degrees?") for note in notes_of(tmp_path / "r.csv")] == [
-        True
-    ] * told
+    assert [
+        note.endswith("is the direction in radians, or in tens of degrees?")
+        for note in notes_of(tmp_path / "r.csv")
+    ] == [True] * told
+
+
+def test_more_values_than_are_read_at_once_are_refused_before_reading(record, tmp_path) -> None:
+    record.to_netcdf(tmp_path / "r.nc", engine="h5netcdf")
+    with h5py.File(tmp_path / "r.nc", "a") as file:
+        file.create_dataset("burst", (2_000_000_000,), "f8", chunks=(1_000_000,))
+    assert (tmp_path / "r.nc").stat().st_size < 1_000_000
+    assert "`burst` has 2,000,000,000 values to be read at once" in refusal(tmp_path / "r.nc")
+    with h5py.File(tmp_path / "r.nc", "a") as file:
+        del file["burst"]
+        file.create_dataset("wide", (10**5, 10**5), "f4", chunks=(10**5, 10**3))
+    assert "`wide` has 100,000,000 values" in refusal(tmp_path / "r.nc")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes with a name")
+def test_a_pipe_is_no_regular_file(tmp_path) -> None:
+    os.mkfifo(tmp_path / "p.nc")
+    assert "is not a regular file" in refusal(tmp_path / "p.nc")
+    with pytest.raises(InputError, match="is not a regular file"):
+        read_series([str(tmp_path / "p.nc")], ["temperature"], frozenset({1}), SEABED)
+    with pytest.raises(InputError, match="is not a regular file"):
+        read_current_file(tmp_path / "p.nc", None, Terms())
+
+
+def test_a_nominal_depth_that_fills_a_gap_is_none(tmp_path) -> None:
+    rows = "\n".join(f"2026 3 {1 + i // 24} {i % 24}.0 {20 + i} {i}" for i in range(48))
+    text = f"InstrDepth = -999\nColumns = YY:MM:DD:HH:U:V\n{rows}\n"
+    (tmp_path / "m.use").write_text(text)
+    told = "the depths of its levels, `INSTRUMENT_DEPTH`, have no value"
+    assert told in refusal(tmp_path / "m.use")
+    (tmp_path / "m.use").write_text(text.replace("-999", "120"))
+    with open_record(tmp_path / "m.use", Terms(SEABED)) as read:
+        assert np.ravel(read.profiles(0, 1)[0]).tolist() == [120.0]

@@ -111,7 +111,7 @@ def build_result(**changes):
         miss=1.2e-7, closure=3e-12, accuracy=Record(depth=0.003, tension=0.8, anchor=None),
         top=Record(depth=113.2, x=61.0, y=4.0, knockdown=8.25, used_buoyancy=1.0, reserve=0.0,
                    draft=None, freeboard=None),
-        anchor=Record(tension=5210.0, vertical=5100.0, horizontal=1060.0, angle=11.74,
+        anchor_load=Record(tension=5210.0, vertical=5100.0, horizontal=1060.0, angle=11.74,
                       required_weight=10300.0, weight=9800.0, grounded_length=0.0),
         components=components, clamps=clamps, shape=shape, still_shape=still,
         warnings=("adcp leans 16.0°, its warning is at 15°",),
@@ -164,7 +164,12 @@ def build_tow_result(**changes):
         solver=Record(strumming=BourgetMarichalKeys()), legs=(),
         tow=Record(speed=1.0289, toward=90.0, height=3.0),
     )  # fmt: skip
-    water = Record(level=np.array([0.0, 100.0]), u=np.array([0.5, 0.0]), v=np.array([0.0, 0.0]))
+    water = Record(
+        depth=300.0,
+        level=np.array([0.0, 100.0]),
+        u=np.array([0.5, 0.0]),
+        v=np.array([0.0, 0.0]),
+    )
     along = np.linspace(1.0, 0.0, 12)
     shape = Record(depth=-3.0 + 124.5 * along, x=-140.5 * along, y=10.0 * along * (1.0 - along))
     fields = dict(

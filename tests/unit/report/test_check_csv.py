@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from calm.report.check_report import CHECKS_HEADER, INVENTORY_HEADER, checks_csv, inventory_csv
+from calm.checks.finding import State, governing_of_each_rule
+from calm.report.check_files import CHECKS_HEADER, INVENTORY_HEADER, checks_csv, inventory_csv
 from tests.judged import FORMULA, LINES, LONG, RIGHT_TO_LEFT, SCRIPT, judged, judged_hostile
 
 
@@ -18,13 +19,44 @@ def rows_of(text):
 
 
 def test_a_row_for_every_finding(assessment):
-    rows = rows_of(checks_csv([assessment]))
-    findings = list(assessment.all_findings())
+    rows = rows_of(checks_csv([assessment], every=True))
+    findings = list(assessment.every_finding())
     assert len(rows) == len(findings)
     assert tuple(rows[0]) == CHECKS_HEADER
     for row, finding in zip(rows, findings, strict=True):
         assert (row["rule"], row["state"]) == (finding.rule, finding.state.value)
         assert row["value"] == ("" if finding.value is None else f"{finding.value:.12g}")
+        assert row["sense"] == (finding.sense or "") and row["case"] == (finding.case or "")
+
+
+def test_rows_are_what_governs_and_what_does_not_pass(assessment):
+    rows = rows_of(checks_csv([assessment]))
+    assert len(rows) < len(list(assessment.every_finding()))
+    for lead in governing_of_each_rule(assessment.every_finding()):
+        (row,) = [one for one in rows if one["rule"] == lead.rule and one["governing"] == "yes"]
+        assert row["component"] == (lead.component or "") and row["case"] == (lead.case or "")
+    states = {(one.rule, one.component, one.state) for one in assessment.every_finding()
+              if one.state not in (State.PASS, State.NOT_JUDGED)}  # fmt: skip
+    assert states <= {(row["rule"], row["component"] or None, row["state"]) for row in rows}
+
+
+def test_a_cluster_that_fails_is_one_row(tmp_path):
+    path = tmp_path / "cluster.yaml"
+    text = (LINES / "upward-adcp-300m.yaml").read_text(encoding="utf-8")
+    glass = "{use: glass-17in, count: 12, label: back-up glass, depth_rating: 1000 m}"
+    text = text.replace("{use: glass-cluster-4, count: 3, label: back-up glass}", glass)
+    path.write_text(text, encoding="utf-8")
+    assessment = judged(path)
+    failed = [one for one in assessment.all_findings()
+              if one.rule == "depth-rating" and one.state is State.FAIL
+              and (one.component or "").startswith("back-up glass")]  # fmt: skip
+    assert len(failed) == 12
+    rows = [
+        row
+        for row in rows_of(checks_csv([assessment]))
+        if row["rule"] == "depth-rating" and row["component"].startswith("back-up glass")
+    ]
+    assert len(rows) == 1
 
 
 def test_values_have_their_unit(assessment):

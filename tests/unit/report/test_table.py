@@ -43,7 +43,7 @@ def test_marks_do_not_hang_on_colour(result):
     plain = text(result, 80)
     assert "28.4!" in plain
     assert "16.0~" in plain
-    assert "10300 N needed !" in plain
+    assert "10300 N required (106 %) !" in plain
 
 
 def test_colour_only_on_a_terminal_that_wants_it(result):
@@ -99,26 +99,42 @@ def test_safety_marks(make_result, index, mooring_type, factor, utilisation, mar
 def test_draft_where_the_hull_is_known(make_result):
     result = make_result(type="surface")
     result.top.used_buoyancy, result.top.draft, result.top.freeboard = 0.5, 0.614, 0.386
-    assert "\nHull: draft 0.61 m, freeboard 0.39 m\n" in text(result, 100)
+    assert " draft 0.61 m, freeboard 0.39 m\n" in text(result, 100)
 
 
 @pytest.mark.parametrize(
     ("kind", "band", "told"),
     [
-        ("subsurface", ("converged", 118.0, 13.05, 5333.3), "knockdown 13.1 m, anchor 5333 N"),
-        ("surface", ("converged", 0.0, 0.0, 5333.3), "top at the surface, anchor 5333 N"),
-        ("surface", ("converged", -0.4, 0.0, 5333.3), "top at the surface, anchor 5333 N"),
-        ("surface", ("converged", 2.0, 2.0, 5333.3), "knockdown 2.0 m, anchor 5333 N"),
-        ("surface", ("converged", 2.0, None, 5333.3), "top 2.0 m deep, anchor 5333 N"),
+        ("subsurface", ("converged", 118.0, 13.05, 5333.3), "knockdown 13.1 m"),
+        ("surface", ("converged", 0.0, 0.0, 5333.3), "top at the surface"),
+        ("surface", ("converged", -0.4, 0.0, 5333.3), "top at the surface"),
+        ("surface", ("converged", 2.0, 2.0, 5333.3), "knockdown 2.0 m"),
+        ("surface", ("converged", 2.0, None, 5333.3), "top 2.0 m deep"),
         ("subsurface", ("no-equilibrium",), "no-equilibrium"),
     ],
 )
 def test_what_strumming_would_do(make_result, kind, band, told):
     result = make_result(type=kind, strumming_band=StrummingBand(1.5, *band))
-    assert f"If the cables strum, Cn × 1.5: {told}\n" in text(result, 100)
+    assert f"with strumming (normal drag of the cables × 1.5): {told}\n" in text(result, 100)
 
 
 def test_what_strumming_does(make_result):
     result = make_result(strumming=Strumming(frequency=12.3, cn_min=1.95, cn_max=1.95))
-    assert "Strumming at up to 12.30 Hz, Cn from 1.950 to 1.950\n" in text(result, 100)
-    assert "If the cables strum" not in text(result, 100)
+    assert "strumming at up to 12.30 Hz, Cn from 1.950 to 1.950\n" in text(result, 100)
+    assert "with strumming" not in text(result, 100)
+
+
+def test_the_legend_is_that_of_the_marks_that_occur(make_result):
+    result = make_result()
+    legend = text(result, 100).splitlines()[-1]
+    assert legend == "~ near a limit. ! beyond a limit."
+    for row in result.components:
+        row.safety_factor, row.utilisation, row.tilt = 20.0, 0.1, 1.0
+    for clamp in result.clamps:
+        clamp.tilt = 1.0
+    assert text(result, 100).splitlines()[-1].endswith("Tension: the largest in it.")
+
+
+def test_the_error_of_the_figures_is_said_where_it_is_asked_for(result):
+    assert "Good to" not in text(result, 100)
+    assert "Good to 0.003 m and 0.8 N." in text(result, 100, verbose=True)

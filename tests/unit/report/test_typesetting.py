@@ -16,8 +16,16 @@ def test_both_fonts_have_what_reports_write(name):
     assert all(ord(sign) in held for sign in "✓◦≈?▲✗°×−–…→≤≥±²³φ′₀₁√\u2003\ufffd")
 
 
-def test_the_fonts_bring_their_licence():
+@pytest.mark.parametrize("name", ["Regular", "Semibold", "It"])
+def test_source_sans_has_what_papers_write(name):
+    held = TTFont(FONTS / f"SourceSans3-{name}.otf").getBestCmap()
+    assert all(ord(sign) in held for sign in "✓≈?▲°×–−…→≤≥±²³′○“”’\u00a0")
+
+
+def test_the_fonts_bring_their_licences():
     assert "Bitstream" in (FONTS / "LICENSE").read_text(encoding="utf-8")
+    ofl = (FONTS / "SourceSans3-LICENSE.md").read_text(encoding="utf-8")
+    assert "SIL OPEN FONT LICENSE Version 1.1" in ofl and "Adobe" in ofl
 
 
 def test_a_sign_that_the_fonts_lack_is_marked():

@@ -24,8 +24,8 @@ STACK = "{use: small, count: 1000}, {use: rope, length: 20 m}"
 @pytest.mark.parametrize(
     ("depth", "line", "status", "why"),
     [
-        (1, LONG, "not-converged", "The line, 4201 m, is 4201 times as long as the water is deep"),
-        (8, LONG, "not-converged", "525 times as long as the water is deep; up to 500 times"),
+        (1, LONG, "not-converged", "The line is 4201 m long, 4201 times the water depth"),
+        (8, LONG, "not-converged", "525 times the water depth; the limit is 500 times"),
         (100, STACK, "above-surface", "More than 16 floats would lie at the surface"),
     ],
 )

@@ -10,7 +10,7 @@ from calm.errors import NoEquilibrium
 from calm.physics.drag import Friction
 from calm.physics.line import Water
 from calm.physics.reynolds import DragCurve, sphere_coefficient
-from calm.solve import part_of, solve_rise
+from calm.solve import part_of, plumb_speed, solve_rise
 from tests.unit.solve.simple import line, rigid, rope, water
 
 CLOSED = 1e-8  # ten times what is left of the forces, as a share of the net weight
@@ -122,7 +122,7 @@ def test_friction_by_pode_is_that_of_the_whole_speed():
 
 
 def test_without_any_drag_nothing_limits_the_speed():
-    with pytest.raises(NoEquilibrium, match="Nothing limits the rise speed") as refusal:
+    with pytest.raises(NoEquilibrium, match="rise speed of the line is unlimited") as refusal:
         solve_rise(line(rigid(0.0, 100.0)), STILL, 100.0)
     assert refusal.value.status == "no-equilibrium"
 
@@ -132,3 +132,76 @@ def test_a_part_of_a_line_keeps_its_clamps():
     assert part.length == pytest.approx([500.0, 0.8, 300.0])
     assert (part.clamp_piece.tolist(), part.clamp_at.tolist()) == ([0], [200.0])
     assert len(part_of(MOORING, 2, 6).clamp_piece) == 0
+
+
+def trailing(*below):
+    """Glass above a steel cable, and what trails from it."""
+    ball = rigid(0.5, 225.0, drag=100.0, tangential=100.0)
+    return line(ball, ball, rope(18.0, weight=1.8, diameter=0.011, ct=0.005), ball, ball, *below)
+
+
+TAILS = [
+    pytest.param(rope(20.0, weight=-0.0867, diameter=0.013, ct=0.013), id="buoyant"),
+    pytest.param(rope(200.0, weight=0.2, diameter=0.019, ct=0.013, stiffness=1e5), id="sinking"),
+    pytest.param(rope(300.0, weight=0.0, diameter=0.008, ct=0.01), id="neutral"),
+]
+
+
+@pytest.mark.parametrize("tail", TAILS)
+def test_a_rope_tail_rises_where_the_loads_cancel(tail):
+    """Summed over the parts by hand, without a march: weight, buoyancy and drag along the line.
+
+    The cable doubles back above a float that is faster than it.
+    """
+    trail = trailing(tail)
+    along = np.where(trail.directional, trail.tangential_drag, trail.normal_drag)
+    stretch = 1.001  # of the sinking rope, by which its drag grows
+    drag = float((along * np.where(trail.flexible, trail.length, 1.0)).sum())
+    expected = sqrt(float(trail.total_buoyancy.sum()) / drag)
+    motion = solve_rise(trail, STILL, 30.0)
+    assert motion.velocity[2] == pytest.approx(expected, rel=stretch - 1.0)
+    assert plumb_speed(trail, STILL, 30.0) == pytest.approx(expected, rel=1e-9)
+    assert motion.solution.closure < 1e-8
+
+
+@pytest.mark.parametrize("lift, ct", [(0.0867, 0.013), (0.0049, 0.0087)])
+def test_a_bare_buoyant_rope_rises_at_the_speed_at_which_nothing_pulls_along_it(lift, ct):
+    bare = line(rope(322.5, weight=-lift, diameter=0.013, ct=ct))
+    friction = 512.5 * np.pi * 0.013 * ct
+    assert plumb_speed(bare, STILL, 0.0) == pytest.approx(sqrt(lift / friction), rel=1e-9)
+
+
+def test_a_plumb_speed_counts_clamps_density_and_lift():
+    sea = Water(1000.0, [0.0, 1000.0], *np.zeros((3, 2)), [1000.0, 1050.0])
+    mixed = replace(
+        line(
+            rigid(0.0, 800.0, drag=100.0, volume=0.2),
+            rope(100.0),
+            clamps=[(1, 50.0, -90.0, 9.0)],
+        ),
+        lift=[3.0, 0.0],
+    )
+    share = np.array([1020.0, 1022.5]) / 1025.0
+    lift = 800.0 - 90.0 + (1020.0 - 1025.0) * 9.80665 * 0.2
+    friction = share @ [100.0 - 3.0, 9.0 + 100.0 * mixed.tangential_drag[1]]
+    assert plumb_speed(mixed, sea, 400.0) == pytest.approx(sqrt(lift / friction), rel=1e-9)
+    assert solve_rise(mixed, sea, 400.0).velocity[2] == pytest.approx(
+        plumb_speed(mixed, sea, 400.0), rel=1e-4
+    )
+
+
+def test_a_plumb_speed_of_smooth_spheres_is_that_of_the_march():
+    curve = DragCurve(0.3)
+    ball = replace(line(rigid(0.0, 60.0, drag=18.0)), drag_curve=(curve,))
+    assert plumb_speed(ball, STILL, 100.0) == pytest.approx(
+        float(solve_rise(ball, STILL, 100.0).velocity[2]), rel=1e-8
+    )
+
+
+def test_a_shackle_that_leans_on_the_float_below_it_tangles_with_nothing():
+    """Of a chain with glass on it, the part above the first ball falls back; it is short."""
+    top = rigid(0.0, -5.0, drag=1.0), rope(1.0, weight=20.0, diameter=0.03)
+    float_below = rigid(0.5, 2000.0, drag=200.0), rope(100.0, 2.0)
+    assert solve_rise(line(*top, *float_below), STILL, 100.0).tangles == ()
+    longer = rigid(0.0, -5.0, drag=1.0), rope(3.0, weight=20.0, diameter=0.03)
+    assert 1 in solve_rise(line(*longer, *float_below), STILL, 100.0).tangles

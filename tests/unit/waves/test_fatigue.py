@@ -157,7 +157,7 @@ def test_which_curve_is_whose():
 @pytest.mark.parametrize(
     ("component", "reason"),
     [
-        (rope(material="nylon", breaking_load="50 kN"), "no curve"),
+        (rope(material="nylon", breaking_load="50 kN"), "no published curve"),
         (rope(material="polyester"), "breaking load"),
         (rope(material="steel", fatigue={"curve": "dnv-stud-chain"}), "stress"),
     ],

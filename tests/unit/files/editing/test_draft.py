@@ -363,7 +363,7 @@ def test_the_items_of_a_net_count_through_its_legs():
     without = NET.replace("    - use: rope   # long\n      length: 10 m\n", "")
     assert draft.delete([1, 3]).text == without.replace(", {use: weight}", "")
     assert draft.move(2, 3).lists.legs == draft.lists.legs
-    with pytest.raises(EditError, match="stays in its leg"):
+    with pytest.raises(EditError, match="cannot be moved to another leg"):
         draft.move(1, 2)
 
 

@@ -1,0 +1,78 @@
+"""Drag coefficients beyond their range, and the effect of the curve of a smooth shape."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import hypot
+
+from calm.case.design import Design
+from calm.case.leg_result import LegResult
+from calm.case.warnings import fast_pieces, power_text
+from calm.checks.finding import State, Verdict, rule, verdict_on
+from calm.errors import NoEquilibrium
+from calm.files import Piece
+from calm.quantities import say
+
+NOTICED = 1.05
+"""Factor on the knockdown, or the offset, from which the curve of a smooth shape is a warning."""
+
+_Told = tuple[LegResult, Verdict]
+
+
+@rule("drag-coefficient")
+def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_Told]:
+    """Spheres and cylinders whose flow is faster than their constant coefficient holds for.
+
+    One verdict on a mooring, with the result that it is of: that of the environment with the
+    greatest Reynolds number beyond its range. It is a warning if the curve of a smooth shape lets
+    the line be knocked down further, and else not judged.
+    """
+    fast = [(result, fast_pieces(result)) for result in results]
+    found = [(rows[0], result, rows) for result, rows in fast if rows]
+    if not found:
+        return
+    (row, limit), result, rows = max(found, key=lambda one: one[0][0].reynolds / one[0][1])
+    others = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
+    message = (
+        f"The Reynolds number of {row.label}{others} is {power_text(row.reynolds)}; the drag "
+        f"coefficient holds up to {power_text(limit)}."
+    )
+    effect, worse = _effect(result, {one.index for one, _ in rows})
+    remedy = "Check its drag coefficient."
+    state = State.WARN if worse else State.NOT_JUDGED
+    yield result, verdict_on(row.part, state, f"{message}{effect}", remedy)
+
+
+def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
+    """What the curves of smooth shapes for the fast pieces make of the knockdown, or of the offset
+    of a line at the surface; and whether that is worse.
+    """
+    file = result.file
+    if file.solver.drag == "reynolds" or result.leg.of_several:
+        return "", False
+    solver = file.solver.model_copy(update={"drag": "reynolds"})
+    pieces = tuple(_smooth(piece) if piece.index in fast else piece for piece in file.pieces)
+    try:
+        smooth = (
+            Design(replace(file, solver=solver, pieces=pieces), result.leg.for_surface).solve().leg
+        )
+    except NoEquilibrium as failure:
+        return f" With the curve of a smooth shape: {failure.status}.", True
+    name, before, after = "offset", _offset(result), _offset(smooth)
+    down, then = result.top.knockdown, smooth.top.knockdown
+    if result.type != "surface" and down is not None and then is not None:
+        name, before, after = "knockdown", down, then
+    told = f"{say(name, after)} instead of {say(name, before)}"
+    return f" With the curve of a smooth shape the {name} is {told}.", after > NOTICED * before
+
+
+def _smooth(piece: Piece) -> Piece:
+    own = dict.fromkeys(("cx", "cn", "ct", "kn", "kt"))
+    given = {name: None for name in own if hasattr(piece.component, name)}
+    component = piece.component.model_copy(update={"surface": "smooth", **given})
+    return replace(piece, component=component)
+
+
+def _offset(result: LegResult) -> float:
+    return hypot(result.top.x, result.top.y)

@@ -1,0 +1,98 @@
+"""The rule `environment`: doubtful values in the environments of a mooring.
+
+Each environment is judged by its `Environment.doubts`. Compared with each other, environments show
+a storm that is weaker than the ordinary current, and a missing wind on a float with a wind area.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from calm.case.leg import Leg
+from calm.checks.finding import State, Verdict, rule, verdict_on
+from calm.checks.posture import reaches_the_surface
+from calm.files import CurrentTable
+from calm.physics.line import Floats
+from calm.quantities import say
+
+Found = tuple[Leg, Verdict]
+
+_STRONG = re.compile(
+    r"storm|gale|hurricane|typhoon|cyclone|extreme|surviv|surge|strong|worst|max(imum)?\b|\d+.?year"
+    r"|return|sturm|tempête",
+    re.IGNORECASE,
+)
+"""Names of environments with a stronger current than the ordinary environment."""
+
+WEAKER = 0.5
+"""Share of the ordinary current below which a storm's current is doubtful."""
+
+_LEAST = 0.05
+"""Ordinary current below which a weaker one is no matter [m/s]."""
+
+_CHECK = "Check its values and units."
+
+
+@rule("environment")
+def environment(legs: Sequence[Leg]) -> Iterator[Found]:
+    """Yield warnings about the environments of a mooring, each with the leg in that environment."""
+    said: set[str] = set()
+    for leg in legs:
+        for doubt in leg.file.environment.doubts:
+            if doubt not in said:
+                said.add(doubt)
+                yield leg, verdict_on(None, State.WARN, doubt, _CHECK)
+    for leg in legs[1:]:
+        yield from _weaker_than(legs[0], leg)
+    yield from _no_wind(legs)
+
+
+def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
+    """Yield a warning if the stronger current has much weaker levels than the ordinary one.
+
+    A current is the stronger one by the name of its environment, or by its maximum. If only the
+    maximum says so, the upper and lower ends of the profile may be weaker.
+    """
+    first, second = (each.file.environment for each in (ordinary, other))
+    levels = np.union1d(first.current.depth, second.current.depth)
+    levels = levels[levels <= other.water.depth]
+    before, after = (_speeds(each.current, levels) for each in (first, second))
+    weaker = (after < WEAKER * before) & (before >= _LEAST)
+    if not weaker.any():
+        return
+    name = second.name or ""
+    stronger = np.flatnonzero(after >= before)
+    if not _STRONG.search(name):
+        if not len(stronger) or after.max() <= before.max():
+            return
+        weaker[: stronger[0]] = weaker[stronger[-1] :] = False
+        if not weaker.any():
+            return
+    at = int(np.argmin(np.where(weaker, after / np.maximum(before, _LEAST), np.inf)))
+    message = (
+        f"The current of {name} is {say('speed', float(after[at]))} at "
+        f"{say('depth', float(levels[at]))}, that of the ordinary environment "
+        f"{say('speed', float(before[at]))}."
+    )
+    remedy = f"Check the levels of {name}: a decimal point, or rows exchanged?"
+    yield other, verdict_on(None, State.WARN, message, remedy)
+
+
+def _speeds(current: CurrentTable, levels: Floats) -> Floats:
+    depth, speed = np.array(current.depth), np.hypot(current.u, current.v)
+    between: Floats = np.interp(levels, depth, speed)
+    return between
+
+
+def _no_wind(legs: Sequence[Leg]) -> Iterator[Found]:
+    """Yield a warning if a surface float has a wind area and no environment has wind."""
+    top = legs[0].file.pieces[0]
+    area = getattr(top.component, "wind_area", None)
+    calm = all(leg.file.environment.wind is None for leg in legs)
+    if area and calm and reaches_the_surface(legs[0]):
+        message = f"No environment has a `wind`: its pull on {top.label} is not judged."
+        remedy = "Give the `wind` of the site, and of its storm."
+        yield legs[0], verdict_on(top, State.WARN, message, remedy)

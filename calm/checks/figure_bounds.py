@@ -1,0 +1,253 @@
+"""Bounds of component figures by class: density, strength, drag, sign of the buoyancy.
+
+The rules of a catalogue and of a design share this table: `DRAG_BOUNDS`, the constants here, and
+the densities and strengths of `calm.physics.materials`. `docs/reference/catalogue.md` prints it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import inf, pi
+
+from calm.files import Anchor, Cable, Chain, Component, Flexible, Sphere
+from calm.files.components import Outline
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+from calm.files.rigid import Rigid
+from calm.physics import materials
+from calm.physics.materials import STEEL_DENSITY, Material, materials_in
+from calm.quantities import say
+
+GREATEST_STRENGTH = 4e9
+"""Greatest tensile strength of any fibre or wire, for a cable of unknown material [Pa]."""
+
+ROPE_EFFICIENCY = 0.6
+"""Maximum breaking stress of a rope over its nominal section, as a share of its yarn strength.
+
+About 0.7 of the section is fibre, and a rope keeps 0.85 of the yarn strength (McKenna, Hearle and
+O'Hear 2004, Handbook of Fibre Rope Technology). Ropes in the catalogue have 0.12 to 0.44."""
+
+WEAKEST_ROPE = 0.05
+"""Minimum breaking stress of a rope, as a share of its yarn strength."""
+
+LEAST_SHARE = 0.1
+"""Minimum share of fibre or wire in a rope's nominal section.
+
+Ropes in the catalogue have 0.14 (a fibre core in a thick sheath) to 0.98."""
+
+WEAKEST_WIRE = 200e6
+"""Minimum breaking stress of a wire rope in its metal [Pa]; wires in the catalogue have 1.1e9."""
+
+STRONGEST_CHAIN = 1300e6
+"""Maximum breaking stress in the two bars of a chain [Pa]; grade 120 has 1200 MPa."""
+
+GRADE_STRESS = 10e6
+"""Nominal breaking stress in the bars of a chain per unit of its grade [Pa].
+
+Grade 30 has 300 MPa, grade 80 has 800 MPa (EN 818, ISO 1834)."""
+
+GRADE_ROUNDING = 0.85, 1.25
+"""Bounds of the breaking stress over the nominal stress of the grade.
+
+Chains in the catalogue have 0.88 to 1.08."""
+
+_GRADE = re.compile(r"\b(?:grade[ -]?|gr\.? ?|g)(30|40|43|50|63|70|80|100|120)\b", re.IGNORECASE)
+_BUOYANT = re.compile(
+    r"float|buoy|foam|glass|syntactic|vinyl|sphere|package|frame|glider|hydrofoil", re.IGNORECASE
+)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Minimum and maximum plausible value of a figure, and their source."""
+
+    least: float
+    most: float
+    source: str
+
+
+_CRISIS = "smooth flow beyond the drag crisis: sphere 0.06 (Katz, Automotive Aerodynamics, figure "
+_CRISIS += "6.19), cylinder 0.2 (Roshko 1961, Journal of Fluid Mechanics 10, 345-356)"
+_STRUMMING = "1.2 of a cylinder, 2.5 times that as it vibrates (Griffin 1985, ASME OMAE)"
+_CHAIN = "2.4 to 2.6 on the diameter (DNV-OS-E301, table 2-1), half and twice that"
+
+DRAG_BOUNDS = {
+    ("sphere", "cx"): Bounds(0.06, 2.0, _CRISIS),
+    ("cylinder", "cn"): Bounds(0.2, 4.0, f"{_CRISIS}; {_STRUMMING}"),
+    ("cylinder", "ct"): Bounds(0.001, 2.0, "skin friction of a smooth wall; a blunt end"),
+    ("cable", "cn"): Bounds(0.05, 4.0, f"a streamlined section around it; {_STRUMMING}"),
+    ("cable", "ct"): Bounds(0.0005, 1.0, "skin friction of a smooth wall; a string of balls"),
+    ("chain", "cn"): Bounds(1.0, 6.0, _CHAIN),
+}
+"""Drag coefficients by kind and key. Zero is no figure of these classes; the law of friction
+`hoerner` may have it for `ct`."""
+
+
+def drag_out_of_bounds(component: Component) -> Iterator[str]:
+    """Yield drag coefficients outside `DRAG_BOUNDS`."""
+    for (kind, key), bounds in DRAG_BOUNDS.items():
+        value = getattr(component, key, None)
+        if component.kind != kind or value is None:
+            continue
+        if value == 0.0:
+            if isinstance(component, Flexible) and key == "cn":
+                yield "has no drag across it (`cn: 0`)"
+        elif not bounds.least <= value <= bounds.most:
+            kinds = f"a {kind} has {bounds.least:g} at least, {bounds.most:g} at most"
+            yield f"has `{key}: {value:g}`; {kinds}"
+
+
+def density_out_of_bounds(rope: Cable) -> Iterator[str]:
+    """Yield that a rope floats though its material sinks, or is too light for its diameter."""
+    load_bearing = _load_bearing(rope)
+    if not load_bearing:
+        return
+    section = rope_section(rope)
+    excess = -rope.net_buoyancy / (STANDARD_GRAVITY * section)
+    densities = [one.density for one in load_bearing if one.density is not None]
+    names = " and ".join(dict.fromkeys(one.name for one in load_bearing))
+    heavier = min(densities) - CATALOGUE_DENSITY
+    net = f"{abs(rope.net_buoyancy):.4g} N/m in water"
+    if heavier > 0.0 and excess < LEAST_SHARE * heavier:
+        least = LEAST_SHARE * heavier * section * STANDARD_GRAVITY
+        what = f"weighs {net}" if excess > 0.0 else f"floats with {net}"
+        yield f"{what}; a rope of {names} of its diameter weighs {least:.4g} N/m at least"
+
+
+def load_bounds(component: Component) -> tuple[float, float, str] | None:
+    """Return the minimum and maximum breaking load of a cable or chain [N], and their basis.
+
+    None for other kinds.
+    """
+    if isinstance(component, Chain):
+        bars = 2.0 * rope_section(component)
+        grade = _GRADE.search(words_of(component))
+        if grade is None:
+            return 0.0, STRONGEST_CHAIN * bars, "diameter"
+        load = GRADE_STRESS * float(grade[1]) * bars
+        least, most = (share * load for share in GRADE_ROUNDING)
+        return least, most, f"diameter and grade {grade[1]}"
+    if not isinstance(component, Cable):
+        return None
+    section = rope_section(component)
+    strengths = [one.strength for one in _load_bearing(component) if one.strength is not None]
+    if not strengths:
+        return 0.0, GREATEST_STRENGTH * section, "diameter"
+    metals = [one for one in _load_bearing(component) if one.family == "metal"]
+    if metals:
+        heavier = (metals[0].density or STEEL_DENSITY) - CATALOGUE_DENSITY
+        share = -component.net_buoyancy / (STANDARD_GRAVITY * heavier * section)
+        # a weight that is wrong itself says nothing about the section of metal
+        least, most = (share, share) if LEAST_SHARE <= share <= 1.0 else (LEAST_SHARE, 1.0)
+        stress = 1.1 * max(strengths)
+        return WEAKEST_WIRE * least * section, stress * most * section, "weight in water"
+    yarn = ROPE_EFFICIENCY * max(strengths) * section
+    return WEAKEST_ROPE * min(strengths) * section, yarn, "diameter and material"
+
+
+def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator[str]:
+    """Yield loads too great for this kind and size, and breaking loads far too small.
+
+    Parameters
+    ----------
+    most, size : greatest load of a component that is no cable or chain [N], inf if unknown, and
+        its basis
+    """
+    least = 0.0
+    if (bounds := load_bounds(component)) is not None:
+        least, most, size = bounds
+    load = max(component.breaking_load or 0.0, component.working_load or 0.0)
+    breaking = inf if component.breaking_load is None else component.breaking_load
+    if load > most:
+        told, bears = say("tension", load), say("tension", most)
+        yield f"bears {told}; no {component.kind} of its {size} bears more than {bears}"
+    elif breaking < least:
+        told, bears = say("tension", breaking), say("tension", least)
+        yield f"breaks at {told}; a {component.kind} of its {size} bears {bears} at least"
+
+
+def wet_weight_out_of_bounds(component: Component) -> Iterator[str]:
+    """Yield that an anchor or connector weighs more in water than its mass and material allow."""
+    solid = materials.density_of(component.material)
+    solid = getattr(component, "density", None) or solid
+    if not (isinstance(component, Anchor) or component.role == "connector"):
+        return
+    if component.mass is None or solid is None or solid <= CATALOGUE_DENSITY:
+        return
+    weight = (1.0 - CATALOGUE_DENSITY / solid) * component.mass * STANDARD_GRAVITY
+    if -component.net_buoyancy > 1.08 * weight:
+        yield (
+            f"weighs {say('tension', -component.net_buoyancy)} in water for {component.mass:.4g} "
+            f"kg; {component.material} of that mass weighs {say('tension', weight)} there"
+        )
+
+
+LIFTS = 10.0
+"""Buoyancy below which the sign is not doubted: loggers are made to hang weightless [N]."""
+
+WIND_AREA = 0.02, 20.0
+"""Bounds of a float's wind area over its displaced volume to the power 2/3.
+
+Meteorological buoys in the catalogue have 2."""
+
+
+def doubtful_figures(component: Component | Outline) -> Iterator[str]:
+    """Yield figures that are possible but usually mistakes: a floating instrument, a wind area."""
+    if not isinstance(component, Rigid) or isinstance(component, Anchor):
+        return
+    net, role = component.net_buoyancy, component.role
+    sinks = role in ("instrument", "release", "connector") and not isinstance(component, Sphere)
+    said = "role" in component.model_fields_set  # without one, it may be a float
+    doubted = sinks and said and component.mass is None and net > LIFTS
+    if doubted and not _BUOYANT.search(words_of(component)):
+        floating = f"floats with {say('tension', net)}, with `role: {role}`"
+        yield f"{floating}; most weigh something in water"
+    area, volume = component.wind_area, component.displaced_volume
+    if volume is None:
+        volume = net / (CATALOGUE_DENSITY * STANDARD_GRAVITY)
+    if area and volume > 0.0:
+        least, most = (share * volume ** (2 / 3) for share in WIND_AREA)
+        if not least <= area <= most:
+            yield (
+                f"has a `wind_area` of {area:.3g} m²; one that displaces {volume:.2g} m³ has "
+                f"{least:.2g} to {most:.2g} m²"
+            )
+
+
+def contradicted_material(component: Component | Outline) -> Iterator[str]:
+    """Yield that the `name` and the `material` of a component name different materials."""
+    named = {one.name: one for one in materials_in(component.name)}
+    made_of = {one.name: one for one in materials_in(component.material)}
+    if not named or not made_of or named.keys() & made_of.keys():
+        return
+    one, other = next(iter(named.values())), next(iter(made_of.values()))
+    if _alike(one, other):
+        return
+    yield f"is called `{component.name}`, but its `material` is {component.material}"
+
+
+def _alike(one: Material, other: Material) -> bool:
+    """Whether two materials are about equally dense, so that either name will do."""
+    if one.density is None or other.density is None:
+        return one.family == other.family or one.density is other.density
+    return abs(one.density - other.density) < 0.1 * other.density
+
+
+def words_of(component: Component | Outline) -> str:
+    """Join the name, material and note of a component."""
+    return " ".join(filter(None, (component.name, component.material, component.note)))
+
+
+def rope_section(component: Flexible) -> float:
+    """Compute the area of a bar of the nominal diameter [m²]."""
+    return pi / 4 * component.diameter**2
+
+
+def _load_bearing(rope: Cable) -> list[Material]:
+    """Return the metals of a rope except lead, else its fibres; none if a density is unknown."""
+    named = materials_in(rope.material)
+    metals = [one for one in named if one.family == "metal" and one.name != "lead"]
+    found = metals or [one for one in named if one.family == "fibre"]
+    weighted = not metals and any(one.name == "lead" for one in named)
+    return [] if weighted or any(one.density is None for one in found) else found

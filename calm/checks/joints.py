@@ -1,0 +1,59 @@
+"""The rule `joints`: connecting hardware between unlike pieces of metal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from calm.checks.assessment import Handling
+from calm.checks.finding import State, Verdict, rule, verdict_on
+from calm.files import Cable, Piece
+from calm.files.pieces import STAND_IN
+from calm.physics.materials import materials_in
+
+MOST_NAMED = 5
+"""Joints that the message names."""
+
+
+@rule("joints", once=True)
+def joints(handling: Handling) -> Iterator[Verdict]:
+    """Yield one warning for all joints without a shackle, link or swivel.
+
+    Exempt are ropes, which are spliced or made fast, equal pieces that follow each other, and wires
+    that give their `termination`. The rule `hardware` warns if a line lists no hardware at all.
+    """
+    pieces = handling.leg.file.pieces
+    if not any(piece.component.role == "connector" for piece in pieces):
+        return
+    bare = bare_joints(pieces)
+    if not bare:
+        return
+    named = [f"{one.label} to {other.label}" for one, other in bare[:MOST_NAMED]]
+    if len(bare) > MOST_NAMED:
+        named.append(f"{len(bare) - MOST_NAMED} more")
+    what = "This joint has" if len(bare) == 1 else f"{len(bare)} joints have"
+    message = f"{what} no shackle, link or swivel: {'; '.join(named)}."
+    remedy = "Add the hardware, or give the `termination` of the wire."
+    yield verdict_on(bare[0][0], State.WARN, message, remedy)
+
+
+def bare_joints(pieces: Sequence[Piece]) -> list[tuple[Piece, Piece]]:
+    """Return neighbouring pieces that lack hardware between them, down the line."""
+    return [pair for pair in pairwise(pieces) if _needs_hardware(*pair)]
+
+
+def _needs_hardware(one: Piece, other: Piece) -> bool:
+    roles = {one.component.role, other.component.role}
+    if one.place.row == other.place.row or "connector" in roles or roles == {"float"}:
+        return False
+    if STAND_IN in (one.use, other.use) or (one.use == other.use and roles != {"line"}):
+        return False
+    return _is_hard(one) and _is_hard(other)
+
+
+def _is_hard(piece: Piece) -> bool:
+    """Whether only hardware can join a piece: chain, wire and rigid pieces."""
+    if not isinstance(piece.component, Cable):
+        return True
+    metal = any(one.family == "metal" for one in materials_in(piece.component.material))
+    return metal and piece.equipment.termination is None

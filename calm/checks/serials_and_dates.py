@@ -1,0 +1,133 @@
+"""The rule `serials-and-dates`: contradictions between labels, serial numbers, codes and days.
+
+No figure depends on these entries, but sheets and labels print them.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from calm.checks.assessment import Handling
+from calm.checks.finding import State, Verdict, rule, verdict_on
+from calm.files import Clamp, MooringFile, Piece
+from calm.files.logbook import DocumentKeys
+from calm.files.mooring_file import unknown_releases
+from calm.files.pieces import parts_of
+
+Part = Piece | Clamp
+
+
+@rule("serials-and-dates", once=True)
+def serials_and_dates(handling: Handling) -> Iterator[Verdict]:
+    """Yield warnings about repeated labels and serial numbers, and days in the wrong order."""
+    file = handling.leg.file
+    parts = parts_of(file.pieces)
+    yield from _repeated_labels(parts)
+    yield from _repeated_serials(parts)
+    yield from _releases(file)
+    yield from _days_of_parts(parts, file)
+    if file.document is not None:
+        for message in _document(file.document):
+            yield _warning(None, message, "Check the `document` and its `history`.")
+
+
+def _repeated_labels(parts: Sequence[Part]) -> Iterator[Verdict]:
+    """Yield labels that several rows of the line give; connectors and anchors may share one."""
+    rows: dict[str, dict[tuple[int, int], Part]] = defaultdict(dict)
+    for part in parts:
+        if part.place.part >= 0 and part.place.is_clamp:
+            continue  # labels inside an assembly are those of the catalogue
+        if part.named and part.component.role not in ("connector", "anchor"):
+            rows[part.named].setdefault((part.place.item, part.place.clamp), part)
+    for label, found in rows.items():
+        if len(found) > 1:
+            first = next(iter(found.values()))
+            yield _warning(
+                first,
+                f"{len(found)} rows of the line have the label `{label}`: was one copied?",
+                "Give each its own label, or leave the extra row out.",
+            )
+
+
+def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
+    """Yield serial numbers that several items of one component have."""
+    items: dict[tuple[str, str], list[Part]] = defaultdict(list)
+    for part in parts:
+        if part.serial is not None:
+            items[part.use, part.serial].append(part)
+    for (use, serial), found in items.items():
+        # one text for a count, or for the parts of an assembly, is that of all of them
+        alone = {(one.place.item, one.place.clamp) for one in found}
+        if len(alone) > 1:
+            names = " and ".join(one.label for one in found[:2])
+            yield _warning(
+                found[0],
+                f"{names} have the same serial number, {serial} of {use}.",
+                "Check both serial numbers.",
+            )
+
+
+def _releases(file: MooringFile) -> Iterator[Verdict]:
+    """Yield release codes without a release in the line, and codes given twice."""
+    for message in unknown_releases(file.releases, file.pieces, file.deployed):
+        yield _warning(None, message, "Check the serial numbers of the releases.")
+    serials = [one.serial for one in file.releases if one.serial is not None]
+    for serial in dict.fromkeys(one for one in serials if serials.count(one) > 1):
+        message = f"`releases` gives codes for serial number {serial} twice."
+        yield _warning(None, message, "Keep the row with the right codes.")
+    codes = [one.code_lines for one in file.releases if one.code_lines]
+    if len(set(codes)) < len(codes):
+        message = "Two releases have the same codes: both would answer, and open."
+        yield _warning(None, message, "Check the codes of the releases.")
+
+
+def _days_of_parts(parts: Sequence[Part], file: MooringFile) -> Iterator[Verdict]:
+    """Yield batteries that end too early and calibrations after the deployment."""
+    deployed = file.deployed.date[:10] if file.deployed and file.deployed.date else None
+    for part in parts:
+        battery, calibrated = part.equipment.battery_until, part.equipment.calibrated
+        if battery and deployed and battery <= deployed:
+            message = f"The battery of {part.label} ends on {battery}, and it is deployed on "
+            message += f"{deployed}."
+            yield _warning(part, message, "Check both days, or change the battery.")
+        if battery and calibrated and battery <= calibrated:
+            message = f"The battery of {part.label} ends on {battery}, before its calibration on "
+            message += f"{calibrated}."
+            yield _warning(part, message, "Check both days.")
+        if calibrated and deployed and calibrated > deployed:
+            message = f"{part.label} is calibrated on {calibrated}, after its deployment on "
+            message += f"{deployed}."
+            yield _warning(part, message, "Check both days: is it the calibration after recovery?")
+
+
+def _document(document: DocumentKeys) -> Iterator[str]:
+    """Yield contradictions between the title block and its history."""
+    history = document.history
+    dated = [one for one in history if one.date is not None]
+    for earlier, later in pairwise(dated):
+        if (later.date or "") < (earlier.date or ""):
+            yield (
+                f"Revision {later.revision} of {later.date} follows revision {earlier.revision} of "
+                f"{earlier.date}."
+            )
+    names = [one.revision for one in history]
+    for name in dict.fromkeys(one for one in names if names.count(one) > 1):
+        yield f"Revision {name} occurs {names.count(name)} times in the `history`."
+    if not history:
+        return
+    if document.revision is not None and document.revision != names[-1]:
+        yield (
+            f"The document is revision {document.revision}, and its `history` ends with revision "
+            f"{names[-1]}."
+        )
+    elif document.date and dated and document.date < (dated[-1].date or ""):
+        yield (
+            f"The document is dated {document.date}, before its revision {dated[-1].revision} of "
+            f"{dated[-1].date}."
+        )
+
+
+def _warning(part: Part | None, message: str, remedy: str) -> Verdict:
+    return verdict_on(part, State.WARN, message, remedy)

@@ -1,0 +1,45 @@
+"""``calm page``: the line builder as a web page."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from calm.cli.outputs import ExitCode, narrate
+
+
+def page(
+    *,
+    output: Annotated[Path, Parameter(alias="-o")],
+    runtime: Path | None = None,
+) -> ExitCode:
+    """Write the line builder as a web page, which needs no installation.
+
+    Any web server can offer the folder. Files that are opened in the page, and what it makes of
+    them, stay in the browser. Once loaded, the page works without a network.
+
+    Parameters
+    ----------
+    output
+        The folder to write.
+    runtime
+        A folder with a release of Pyodide and with xterm.js and xterm.css, copied into the page,
+        so that it loads nothing from elsewhere. By default the page loads them from Pyodide's
+        address.
+
+    Examples
+    --------
+      calm page -o site/try
+      calm page -o ship --runtime pyodide/
+    """
+    from calm.page.folder import write_page
+    from calm.report.folder import check_folder
+
+    check_folder(output)
+    written = write_page(output, runtime)
+    size = sum((output / name).stat().st_size for name in written) / 1e6
+    narrate(
+        f"the page is in {output} ({size:.1f} MB); "
+        f"to see it: python -m http.server -d {output}, then http://localhost:8000"
+    )
+    return ExitCode.DONE

@@ -1,0 +1,105 @@
+"""A list of instruments assigned to the parts of a line: serial numbers, in its `deployed`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from calm.case import load
+from calm.errors import UsageError
+from calm.exchange.instrument_list import read_instrument_list
+from calm.files import read_mooring
+from calm.files.editing import Draft, EditError, WorkingFile
+from calm.files.mooring_file import refuse_all_but_moorings
+from calm.motion.line_response import instruments_of
+from calm.motion.matching import CERTAIN, in_order, named_point, places_of
+from calm.records.instrument_series import Identity
+
+ASTRAY = 0.02, 5.0
+"""Tolerance between nominal and still-water depth, as a share and in metres."""
+_ITEMS = ("deployed", "items")
+
+
+@dataclass(frozen=True)
+class AssignedInstruments:
+    """A mooring file with the instruments of a list.
+
+    Attributes
+    ----------
+    text : of the file
+    assigned : a sentence for each instrument that has a part
+    doubts : what is odd, and the instruments without a part
+    """
+
+    text: str
+    assigned: tuple[str, ...]
+    doubts: tuple[str, ...]
+
+
+def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstruments:
+    """Return a mooring file whose `deployed` has the serial numbers of a list.
+
+    An instrument is the part of its name or serial number, or else the one at its nominal depth, in
+    their order down the line. The rest of the file is unchanged.
+
+    Raises
+    ------
+    InputError
+        A file has mistakes, or the list is of no form that is read.
+    UsageError
+        The mooring is a tow, or has several legs; the order of the instruments is not the only one;
+        or the file is written in a way that does not allow the change.
+    """
+    mooring = load(path)
+    refuse_all_but_moorings(mooring.file)
+    line = places_of(mooring)
+    listed = read_instrument_list(list_of_instruments, float(line.still[-1]))
+    given = [Identity(one.name, one.serial, one.nominal, one.where) for one in listed]
+    named = {i: named_point(one, line) for i, one in enumerate(given)}
+    points = {i: at for i, at in named.items() if at is not None}
+    rest = [i for i in named if i not in points and np.isfinite(given[i].nominal)]
+    floats = {
+        line.clamps + i
+        for i, piece in enumerate(mooring.file.pieces)
+        if piece.component.kind == "sphere"
+    }
+    free = [at for at in instruments_of(mooring) if at not in {*points.values(), *floats}]
+    order, _ = in_order([given[i] for i in rest], line, free, 1.0, 0.0, CERTAIN)
+    points |= {rest[i]: at for i, at in order.items()}
+    draft = Draft(WorkingFile(path).read())
+    before = draft.value(_ITEMS) or []
+    if not isinstance(before, list):
+        raise UsageError(f"{path}: `deployed: items` is not a list")
+    rows: dict[str, dict[str, Any]] = {str(row["label"]): dict(row) for row in before}
+    assigned = []
+    doubts = [f"{one.where}: {one.name} {one.serial} is at no place of the line"
+              for i, one in enumerate(listed) if i not in points]  # fmt: skip
+    twice = {at for at in points.values() if [*points.values()].count(at) > 1}
+    for i, at in sorted(points.items(), key=lambda pair: line.still[pair[1]]):
+        one, label, still = listed[i], line.label[at], float(line.still[at])
+        if at in twice:
+            doubts.append(f"{one.where}: two instruments are `{label}`: neither is assigned")
+            continue
+        row = rows.setdefault(label, {"label": label})
+        if one.serial:
+            row["serial"] = one.serial
+        if one.clock is not None:
+            late = "late" if one.clock >= 0.0 else "early"
+            row["remark"] = f"clock {abs(one.clock):g} s {late}"
+        name = " ".join(filter(None, (one.name, one.serial)))
+        depth = "" if np.isnan(one.nominal) else f", nominally at {one.nominal:g} m"
+        assigned.append(f"{one.where}: {name}{depth}: `{label}`, at {still:.1f} m")
+        if abs(one.nominal - still) > max(ASTRAY[0] * still, ASTRAY[1]):
+            doubts.append(
+                f"{one.where}: {name} is {abs(one.nominal - still):.0f} m from its nominal depth"
+            )
+    kept = [row for row in rows.values() if len(row) > 1]
+    try:
+        text = draft.put_at(_ITEMS, kept).text
+    except EditError as error:
+        raise UsageError(f"{path}: {error}") from None
+    read_mooring(path, text=text)
+    return AssignedInstruments(text, tuple(assigned), tuple(doubts))

@@ -1,0 +1,231 @@
+"""The line builder inside a page: messages of the page in, files and documents out."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+import traceback
+from collections.abc import Callable, Mapping
+from pathlib import Path, PurePosixPath
+from typing import Any, NamedTuple
+
+from calm.errors import CalmError, InputError, unexpected
+from calm.files.editing import KeptWork
+from calm.files.editing.working_file import SUFFIX
+from calm.page import documents, driver
+from calm.shipped import shipped_folder
+from calm.tui.app import BuildApp
+from calm.tui.key_table import ACTIONS
+from calm.tui.session import Session
+from calm.tui.start import open_session
+
+Post = Callable[[str, str, bytes | None], object]
+"""Sends the page a message: its kind, a text (often a name), and the content of a file."""
+
+
+class Button(NamedTuple):
+    """A common action, for people who use a mouse: its words and the name of the action."""
+
+    title: str
+    action: str
+
+
+BAR = (
+    Button("Save", "app.save"),
+    Button("Undo", "undo"),
+    Button("Redo", "redo"),
+    Button("Add a piece", "search('below')"),
+    Button("Delete", "delete"),
+    Button("Water", "water"),
+    Button("Advice", "advise"),
+    Button("Name", "sheet('mooring')"),
+    Button("Text", "text"),
+    Button("Help", "app.help"),
+)
+
+FIRST = "upward-adcp-300m.yaml"
+"""The example that a first visit shows; a later one goes on with the file written last."""
+NEW = "mooring.yaml"
+"""Name of a new file."""
+
+
+class PageBuilder(BuildApp):
+    """The line builder, which hands every file that it saves to the page."""
+
+    def __init__(self, session: Session, kept: KeptWork | None, page: WebPage) -> None:
+        super().__init__(session, kept=kept)
+        self.workspace.papers_elsewhere = (
+            "The buttons above the line make its report, diagram and bill"
+        )
+        session.after_save = page.hand_over
+
+    def get_driver_class(self) -> type[driver.PageDriver]:
+        """The driver of the page: Textual's own need a terminal."""
+        return driver.PageDriver
+
+
+class WebPage:
+    """One page: a folder of files in its memory, and the builder of one of them.
+
+    Parameters
+    ----------
+    post : sends a message: `write` (text for the terminal), `open` (name of the file that is
+        built), `saved` and `document` (name and content of a file), `told` and `failed` (a
+        sentence)
+    folder : where its files are
+    columns, rows : size of the terminal
+    """
+
+    def __init__(self, post: Post, folder: str | Path, columns: int, rows: int) -> None:
+        self._post, self._folder = post, Path(folder)
+        self._app: PageBuilder | None = None
+        self.terminal = driver.terminal = driver.PageTerminal(self._write, columns, rows)
+        self._folder.mkdir(parents=True, exist_ok=True)
+        os.chdir(self._folder)
+        earlier = sorted(self._folder.glob("*.yaml"), key=_touched)
+        if earlier:
+            self._path = earlier[-1]
+        else:
+            self._path = self._folder / FIRST
+            self._path.write_bytes((shipped_folder("lines") / FIRST).read_bytes())
+
+    def _write(self, text: str) -> None:
+        self._post("write", text, None)
+
+    def hand_over(self, path: Path, text: str) -> None:
+        """Give the page a file that has been saved."""
+        self._path = path
+        self._post("saved", path.name, text.encode())
+
+    # the builder
+
+    async def run(self) -> None:
+        """Build one file after the other, without end: in a page there is nothing to go back to."""
+        while True:
+            await self.build()
+
+    async def build(self) -> None:
+        """Build the file that was opened last, until another is opened or the person leaves."""
+        try:
+            session, kept = open_session(self._path)
+        except CalmError as error:
+            self._post("failed", str(error), None)
+            self._path = _free(self._folder)
+            session, kept = open_session(self._path)
+        self._app = PageBuilder(session, kept, self)
+        self._post("open", self._path.name, None)
+        await self._app.run_async()
+        self._app = None
+
+    @property
+    def app(self) -> PageBuilder | None:
+        """The builder that runs."""
+        return self._app
+
+    def receive(self, message: Mapping[str, Any]) -> None:
+        """Take a message of the page.
+
+        `type` (text of keys and mouse), `resize` (columns, rows), `act` (action of `BAR`), `open`
+        (names and contents of files), `example` (name of a file of `lines`), `new`, `document`
+        (kind).
+        """
+        kind, app = message["kind"], self._app
+        if kind == "type":
+            self.terminal.type(message["text"])
+        elif kind == "resize":
+            self.terminal.resize(message["columns"], message["rows"])
+        elif kind == "act" and app is not None:
+            self._act(app, message["text"])
+        elif kind == "open":
+            self._open({str(name): bytes(content) for name, content in message["files"]})
+        elif kind == "example":
+            name = message["text"]
+            self._open({name: (shipped_folder("lines") / name).read_bytes()})
+        elif kind == "new":
+            path = _free(self._folder)
+            path.touch()  # so that a later visit finds what is kept of it
+            self._turn_to(path)
+        elif kind == "document":
+            self._make(message["text"])
+
+    def _act(self, app: PageBuilder, name: str) -> None:
+        """Do what a button says: of the line, by the key of the action."""
+        if name.startswith("app."):
+            app.call_later(app.run_action, name)
+        elif app.screen is not app.builder:
+            self._post("told", "Finish what is open first: Esc leads back to the line", None)
+        else:
+            app.take_typed()
+            actions = (each for place in ("line", "anywhere") for each in ACTIONS[place])
+            action = next(each for each in actions if each.name == name)
+            app.call_later(app.simulate_key, action.keys.partition(",")[0])
+
+    def _open(self, files: Mapping[str, bytes]) -> None:
+        """Put files into the folder and build the first mooring among them."""
+        paths = []
+        for name, content in files.items():
+            path = self._folder / PurePosixPath(name.replace("\\", "/")).name
+            path.write_bytes(content)
+            paths.append(path)
+        moorings = [each for each in paths if _is_mooring(each)]
+        others = [each.name for each in paths if each not in moorings[:1]]
+        if others:
+            self._post("told", f"{', '.join(others)} can be named in a mooring file now", None)
+        if moorings:
+            self._turn_to(moorings[0])
+
+    def _turn_to(self, path: Path) -> None:
+        """End the builder, which keeps what is not saved, and build another file."""
+        self._path = path
+        if self._app is not None:
+            self._app.take_typed()
+            self._app.exit(0)
+
+    def _make(self, kind: str) -> None:
+        """Make a document once what was typed has been solved."""
+        app = self._app
+        if app is None:
+            return
+        app.take_typed()
+        if not app.workspace.is_fresh:
+            asyncio.get_running_loop().call_later(0.1, self._make, kind)
+            return
+        view = app.workspace.view
+        assert view is not None
+        try:
+            name, content = documents.document(kind, view)
+        except InputError as error:
+            self._post("failed", error.problems[0].message, None)
+        except CalmError as error:
+            self._post("failed", str(error), None)
+        except Exception as error:
+            traceback.print_exc(file=sys.__stderr__)  # the console of the browser
+            self._post("failed", unexpected(error), None)
+        else:
+            self._post("document", name, content)
+
+
+def _is_mooring(path: Path) -> bool:
+    """Whether a file is YAML with a line or legs; other files may be named by one."""
+    from calm.files import yaml_document
+
+    if path.suffix not in (".yaml", ".yml"):
+        return False
+    try:
+        data = yaml_document.compose(str(path), path.read_text("utf-8")).data
+    except (CalmError, UnicodeError):
+        return True  # the builder shows its mistakes
+    return isinstance(data, dict) and bool({"line", "legs", "tow", "name"} & set(data))
+
+
+def _touched(path: Path) -> float:
+    """When a file, or what was kept of it unsaved, was written last."""
+    kept = path.parent.glob(f".{path.name}.*{SUFFIX}")
+    return max(each.stat().st_mtime for each in (path, *kept))
+
+
+def _free(folder: Path) -> Path:
+    """A name for a new file."""
+    names = [NEW, *(f"mooring-{number}.yaml" for number in range(2, 1000))]
+    return next(path for path in map(folder.joinpath, names) if not path.exists())

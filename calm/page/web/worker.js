@@ -1,0 +1,91 @@
+// Python of the page: loads the runtime and CALM, then passes messages between the page and the builder.
+const FOLDER = "/moorings";
+// Pyodide's event loop names tasks by a function that its Python 3.13 does not have.
+const BEGIN = `
+import asyncio.tasks
+if not hasattr(asyncio.tasks, "_set_task_name"):
+    asyncio.tasks._set_task_name = lambda task, name: task.set_name(name) if name else None
+from calm.page.builder import WebPage
+WebPage
+`;
+const early = [];
+let builder = null;
+let python = null;
+let changed = false;
+
+const post = (kind, text, content) => self.postMessage({ kind, text, content });
+const begun = performance.now();
+const progress = (text, share) => {
+  console.info(`${((performance.now() - begun) / 1000).toFixed(1)} s: ${text}`);
+  self.postMessage({ kind: "progress", text, share });
+};
+
+self.onmessage = ({ data }) => {
+  if (data.kind === "start") start(data).catch(stopped);
+  else if (builder) receive(data);
+  else early.push(data);
+};
+
+// of Python's traceback, the line of the exception
+function stopped(error) {
+  console.error(error);
+  const lines = String(error.message || error).trim().split("\n");
+  post("stopped", lines.filter((line) => /^\w[\w.]*(Error|Exception)/.test(line)).at(-1) || lines.at(-1));
+}
+
+function receive(message) {
+  const given = python.toPy(message);
+  builder.receive(given);
+  given.destroy();
+  changed = true;
+}
+
+async function fetched(name) {
+  const answer = await fetch(name);
+  if (!answer.ok) throw new Error(`${name} cannot be loaded (${answer.status})`);
+  return answer.arrayBuffer();
+}
+
+async function start({ settings, columns, rows }) {
+  const base = new URL(settings.runtime, self.location.href).href;
+  progress("Loading Python …", 0.05);
+  const archive = fetched(`${settings.archive.name}?v=${settings.built}`);
+  const { loadPyodide } = await import(`${base}pyodide.mjs`);
+  python = await loadPyodide({ indexURL: base, env: { HOME: FOLDER, TERM: "xterm-256color", COLORTERM: "truecolor" } });
+  progress("Loading numerical libraries …", 0.4);
+  await python.loadPackage(settings.packages, { messageCallback: () => {}, checkIntegrity: settings.runtime.startsWith("http") });
+  progress("Unpacking CALM …", 0.6);
+  const version = python.runPython("import sys; f'{sys.version_info[0]}.{sys.version_info[1]}'");
+  python.unpackArchive(await archive, "zip", { extractDir: `/lib/python${version}/site-packages` });
+
+  // the files of earlier visits, and unsaved work
+  python.FS.mkdirTree(FOLDER);
+  python.FS.mount(python.FS.filesystems.IDBFS, {}, FOLDER);
+  await synchronised(true);
+  keepFiles();
+
+  progress("Starting CALM …", 0.75);
+  const toPage = (kind, text, content) => {
+    let bytes = null;
+    if (content) { bytes = content.toJs(); content.destroy(); }
+    post(kind, text, bytes);
+    if (kind === "saved") changed = true;
+  };
+  const make = python.runPython(BEGIN);
+  builder = make(toPage, FOLDER, columns, rows);
+  progress("Opening the line …", 0.95);
+  early.splice(0).forEach(receive);
+  await builder.run();
+}
+
+function keepFiles() {
+  setTimeout(async () => {
+    if (changed) { changed = false; await synchronised(false); }
+    keepFiles();
+  }, 3000);
+}
+
+// IndexedDB of this browser; without it files last as long as the page
+function synchronised(fromBrowser) {
+  return new Promise((done) => python.FS.syncfs(fromBrowser, (error) => { if (error) console.info(`files are not kept: ${error}`); done(); }));
+}

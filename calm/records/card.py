@@ -1,0 +1,202 @@
+"""Summary card of a file: its texts, variables, levels, times, flags and declination.
+
+A person reads the card to confirm that the file is the intended one. Texts are quoted verbatim, and
+values are in their declared units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.records.current_terms import time_text
+from calm.records.value_tests import gaps_of
+
+LONGEST = 300
+"""Characters of a text that are shown."""
+_MOST_GAPS = 20
+_TEXTS = {
+    "title": ("title",),
+    "summary": ("summary", "abstract", "description"),
+    "comment": ("comment", "comments", "note", "notes"),
+}
+
+
+@dataclass(frozen=True)
+class VariableSummary:
+    """Name, declared unit, minimum, median and maximum of a variable.
+
+    `said` quotes its long name and comment. The three figures are NaN for a variable without finite
+    values.
+    """
+
+    name: str
+    units: str
+    least: float
+    median: float
+    greatest: float
+    said: str = ""
+
+    @classmethod
+    def of(cls, name: str, units: str, values: Any, said: str = "") -> VariableSummary:
+        """Compute the figures from the finite elements of an array."""
+        values = np.asarray(values, np.float64).ravel()
+        known = values[np.isfinite(values)]
+        if not known.size:
+            return cls(name, units, np.nan, np.nan, np.nan, said)
+        ends = float(known.min()), float(np.median(known)), float(known.max())
+        return cls(name, units, *ends, said)
+
+
+@dataclass(frozen=True, eq=False)
+class ReadCard:
+    """Contents of a file, in summary.
+
+    Attributes
+    ----------
+    file : name of the file
+    texts : title, summary and comment, quoted
+    variables : variables by their role, such as east, north, depth
+    levels : number of levels or of instruments
+    times : (n,) in rising order; empty for a profile without a time
+    clock : name and unit of the time variable
+    flags : number of readings excluded by each flag variable
+    declination : angle by which currents were rotated from magnetic to true north [degrees]
+    """
+
+    file: str
+    texts: Mapping[str, str]
+    variables: Mapping[str, VariableSummary]
+    levels: int
+    times: NDArray[np.datetime64]
+    clock: tuple[str, str] = ("", "")
+    flags: Mapping[str, int] = field(default_factory=dict)
+    declination: float | None = None
+
+    def sentence(self) -> str:
+        """Format the card as one line for a `history` attribute."""
+        rows = card_rows(self.to_dict())
+        told = "; ".join(f"{name}: {' '.join(value.split())}" for name, value in rows)
+        return f"read {self.file}: {told}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the JSON object: times in ISO 8601, the step in seconds."""
+        step, gaps, longest = None, [], None
+        if self.times.size > 1:
+            median, at = gaps_of(self.times)
+            step = float(median / np.timedelta64(1, "s"))
+            longest = float(np.diff(self.times).max() / np.timedelta64(1, "s")) if at.size else None
+            gaps = [[time_text(self.times[k]), time_text(self.times[k + 1])] for k in at.tolist()]
+        variables = {
+            taken: {key: _known(value) for key, value in vars(one).items()}
+            for taken, one in self.variables.items()
+        }
+        if self.clock[0]:
+            variables["time"] = {"name": self.clock[0], "units": self.clock[1]}
+        return {
+            "file": self.file,
+            **{name: self.texts.get(name) for name in _TEXTS},
+            "variables": variables,
+            "levels": self.levels,
+            "first": time_text(self.times[0]) if self.times.size else None,
+            "last": time_text(self.times[-1]) if self.times.size else None,
+            "times": self.times.size,
+            "step": step,
+            "gaps": gaps[:_MOST_GAPS],
+            "number_of_gaps": len(gaps),
+            "longest_gap": longest,
+            "flags": dict(self.flags),
+            "declination": self.declination,
+        }
+
+
+def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
+    """Merge the cards of several parts of one file."""
+    variables = {taken: one for card in cards for taken, one in card.variables.items()}
+    flags = {name: count for card in cards for name, count in card.flags.items()}
+    return replace(cards[0], variables=variables, flags=flags)
+
+
+def card_rows(card: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+    """Format the dictionary of `ReadCard.to_dict` as (name, text) rows for display."""
+    rows = [(name, card[name]) for name in _TEXTS if card[name]]
+    for taken, one in card["variables"].items():
+        said = f"{one['name']} [{one['units']}]" if one["units"] else one["name"]
+        if taken == "depth":
+            said = f"{_counted(card['levels'], 'level')}; {said}"
+        if taken != "time":
+            said += f": {_values(one)}" + (f" ({one['said']})" if one["said"] else "")
+            rows.append((taken, said))
+    if "depth" not in card["variables"]:
+        rows.append(("levels", str(card["levels"])))
+    if card["times"]:
+        rows.append(("time", _when(card)))
+    removed = (f"{_counted(n, 'reading')} left out by {name}" for name, n in card["flags"].items())
+    rows.append(("flags", "; ".join(removed) or "none"))
+    turned = card["declination"]
+    rows.append(("declination", "none" if turned is None else f"turned by {turned:g}°"))
+    return tuple(rows)
+
+
+def _values(one: Mapping[str, Any]) -> str:
+    if one["median"] is None:
+        return "no value"
+    if one["least"] == one["greatest"]:
+        return f"{one['median']:.4g}"
+    return f"{one['least']:.4g} to {one['greatest']:.4g}, median {one['median']:.4g}"
+
+
+def _when(card: Mapping[str, Any]) -> str:
+    clock = card["variables"].get("time", {"name": "", "units": ""})
+    unit = f" [{clock['units']}]" if clock["units"] else ""
+    said = f"{clock['name']}{unit}: " if clock["name"] else ""
+    said += f"{_counted(card['times'], 'time')}, {card['first']}"
+    if card["step"] is None:
+        return said
+    said += f" to {card['last']}, step {_span(card['step'])}"
+    if not card["gaps"]:
+        return f"{said}, no gaps"
+    gaps = _counted(card["number_of_gaps"], "gap")
+    return f"{said}, {gaps}, the longest of {_span(card['longest_gap'])}"
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}{'s' * (number != 1)}"
+
+
+def texts_in(attributes: Mapping[Any, Any]) -> dict[str, str]:
+    """Extract title, summary and comment from attributes, at most `LONGEST` characters each."""
+    by_name = {str(name).lower(): value for name, value in attributes.items()}
+    found = {}
+    for kind, names in _TEXTS.items():
+        given = [str(by_name[name]) for name in names if str(by_name.get(name, "")).strip()]
+        if given:
+            found[kind] = cut(given[0])
+    return found
+
+
+def cut(text: str) -> str:
+    """Return a text of at most `LONGEST` characters."""
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
+
+
+def said_of(attributes: Mapping[Any, Any]) -> str:
+    """Return the long name and the comment of a variable."""
+    told = (str(attributes.get(name, "")).strip() for name in ("long_name", "comment"))
+    return cut("; ".join(filter(None, told)))
+
+
+def _span(seconds: float) -> str:
+    units = (86_400.0, "days", 2.0), (3600.0, "h", 1.0), (60.0, "min", 1.0)
+    for size, unit, fewest in units:
+        if seconds >= fewest * size:
+            return f"{seconds / size:.4g} {unit}"
+    return f"{seconds:.4g} s"
+
+
+def _known(value: Any) -> Any:
+    return None if isinstance(value, float) and not np.isfinite(value) else value

@@ -1,0 +1,124 @@
+"""Doubtful values in one profile of currents, from a record or a mooring file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import inf, pi
+
+import numpy as np
+
+from calm.physics.line import Floats
+from calm.quantities import say
+
+_TURN = 2.0 * pi
+_HALF_RIGHT = pi / 4.0
+_NEAR = 0.01
+"""Rounding error of a multiple of 45 degrees in radians."""
+
+_OPPOSITE = 150.0
+_SAME_WAY = 60.0
+"""Angles between currents that are opposite, at least, and that agree, at most [degrees]."""
+
+_LEAST_REVERSED = 0.05
+"""Minimum speed of a current with a reliable direction [m/s]."""
+
+_AT_THE_BED = 0.98
+"""Share of the water depth from which a level is at the seabed."""
+
+_SHELF, _DEEP = 200.0, 1000.0
+_FASTEST = {_SHELF: 3.0, _DEEP: 1.5}
+"""Maximum current in water deeper than 200 m, and below 1000 m [m/s].
+
+The Florida Current and the Agulhas reach 2.5 m/s, overflows 1.3 m/s at 600 to 1400 m. Tidal races
+are shallower."""
+
+
+def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
+    """Yield a remark if directions seem to be radians or velocities.
+
+    Parameters
+    ----------
+    directions : of currents that flow [degrees], as they were written
+    name : of the column or key
+    """
+    if not directions or max(map(abs, directions)) > _TURN:
+        return
+    if all(one == round(one) for one in directions):
+        return
+    if len(directions) == 1:
+        steps = directions[0] / _HALF_RIGHT
+        if round(steps) == 0 or abs(steps - round(steps)) * _HALF_RIGHT > _NEAR:
+            return
+    least, most = min(directions), max(directions)
+    span = f"{least:.3g}" if least == most else f"{least:.3g} to {most:.3g}"
+    yield (
+        f"`{name}` is {span} degrees throughout: were radians, or northward velocities, written "
+        "as degrees?"
+    )
+
+
+def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> Iterator[str]:
+    """Yield remarks on doubtful levels of one profile, without a full stop.
+
+    Parameters
+    ----------
+    depth : (n,) rising [m]
+    u, v : (n,) to the east and to the north [m/s], without gaps
+    water_depth : [m]; inf where it is not known
+    """
+    speed, toward = np.hypot(u, v), np.degrees(np.arctan2(u, v))
+    yield from _reversed_levels(depth, speed, toward)
+    at_the_bed = _AT_THE_BED * water_depth <= depth[-1] < inf
+    if len(depth) > 2 and at_the_bed and (np.diff(speed) > 0.0).all():
+        yield (
+            f"the current grows from {say('speed', float(speed[0]))} down to "
+            f"{say('speed', float(speed[-1]))} at the seabed: are the depths heights above it?"
+        )
+    yield from strength_doubts(depth, speed, water_depth)
+
+
+def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[str]:
+    """Yield levels whose current is opposite to both neighbours, with a speed between theirs.
+
+    An undercurrent is usually slower or faster than both neighbours.
+    """
+    for i in range(1, len(depth) - 1):
+        three = speed[i - 1 : i + 2]
+        if three.min() < _LEAST_REVERSED or not three[0] >= three[1] >= three[2]:
+            continue
+        across = [_between(toward[i], toward[j]) for j in (i - 1, i + 1)]
+        if min(across) > _OPPOSITE and _between(toward[i - 1], toward[i + 1]) < _SAME_WAY:
+            yield (
+                f"the current at {say('depth', float(depth[i]))} is opposite to those above and "
+                "below it, with a speed between theirs: is its direction, or a sign, wrong?"
+            )
+
+
+def _between(one: float, other: float) -> float:
+    """Compute the angle between two directions [degrees]."""
+    return float(abs((one - other + 180.0) % 360.0 - 180.0))
+
+
+def strength_doubts(depth: Floats, speed: Floats, water_depth: float) -> Iterator[str]:
+    """Yield a remark if currents are stronger than any that was measured at such depths.
+
+    Parameters
+    ----------
+    depth : (n,) of the levels [m]
+    speed : (n,) greatest at each [m/s]
+    water_depth : [m]; inf if unknown
+    """
+    if not _SHELF < water_depth < inf:
+        return
+    deep = depth > _DEEP
+    for there, limit, where in (
+        (deep, _FASTEST[_DEEP], f"below {_DEEP:g} m"),
+        (~deep, _FASTEST[_SHELF], f"in {say('depth', water_depth)} of water"),
+    ):
+        strongest = float(speed[there].max(initial=0.0))
+        if strongest > limit:
+            yield (
+                f"the current reaches {say('speed', strongest)} {where}, where none was measured "
+                f"above {limit:g} m/s: cm/s, or knots, written as m/s?"
+            )
+            return

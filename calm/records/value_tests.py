@@ -1,0 +1,419 @@
+"""General tests of measured values: each yields sentences that count the suspicious values.
+
+The tests use values alone and ignore free text. A person settles the doubts: the tests neither
+exclude nor reject values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.physics.line import Floats
+from calm.quantities import say
+from calm.records.current_terms import time_text
+from calm.records.profile_doubts import strength_doubts
+from calm.units import KNOT
+
+Times = NDArray[np.datetime64]
+
+UNCOVERED, FEW = 0.1, 25.0
+"""Share of the depth, and depth [m], that a profile may leave out at either end, or lie below."""
+WEAK = 0.03
+"""Speed [m/s] that the strongest current of every record exceeds."""
+MANY = 50
+"""Smallest sample for which a coincidence is ruled out."""
+SECTOR = 40.0
+"""Directions that all lie between north and so many degrees are in radians, or in tens."""
+UNCHANGED = 0.1
+"""Share of a record for which no series keeps its value."""
+_FEWEST = 6  # readings alike of which that is said
+_STRETCH = 24  # readings of a repeated stretch
+_SLOWEST = np.timedelta64(3, "h")  # step at which tides do not look like two series
+_BEYOND, _VARIED, _RECURS = 1.5, 20, 4  # of a fill value: times all others, others, times it is
+_DAY = np.timedelta64(1, "D")
+_FIRST_YEAR = 1950
+_UNITS = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "kn": KNOT}
+_FEET = 0.3048
+
+
+@dataclass(frozen=True)
+class CurrentValues:
+    """Currents of a record, as input of the tests.
+
+    Attributes
+    ----------
+    depth : (k,) or (n, k) [m]; NaN where not known
+    u, v : (n, k) to the east and to the north [m/s]; NaN in gaps
+    times : (n,) rising; None of one profile
+    water_depth : [m]; inf where it is not known
+    unit, factor : declared unit of speed and its factor to m/s
+    good : (n, k) share of good pings; None where it is not given
+    """
+
+    depth: Floats
+    u: Floats
+    v: Floats
+    times: Times | None
+    water_depth: float = inf
+    unit: str = "m/s"
+    factor: float = 1.0
+    good: Floats | None = None
+
+
+def current_doubts(found: CurrentValues) -> Iterator[str]:
+    """Yield doubts about the values of a current."""
+    known = np.isfinite(found.u) & np.isfinite(found.v)
+    yield from level_doubts(found.depth, known, found.water_depth)
+    speed = np.where(known, np.hypot(found.u, found.v), 0.0)
+    yield from speed_doubts(speed[known], found.unit, found.factor)
+    levels = _levels(found.depth, known)
+    there = np.isfinite(levels) & known.any(axis=0)
+    yield from strength_doubts(levels[there], speed.max(axis=0)[there], found.water_depth)
+    yield from sector_doubts(found.u[known], found.v[known])
+    for values, side in ((found.u[known], "east"), (found.v[known], "north")):
+        yield from _recurring(values, side)
+    if found.good is not None:
+        poor = known & (found.good < 0.5)
+        if poor.any():
+            yield (
+                f"{poor.sum()} of {known.sum()} currents have less than half of their pings good"
+            )
+    if found.times is not None:
+        names = _level_names(found.depth)
+        yield from series_doubts(np.stack([found.u, found.v], axis=2), found.times, names)
+
+
+def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) -> Iterator[str]:
+    """Yield levels below the seabed, levels without a value, and water without a level.
+
+    Parameters
+    ----------
+    depth : (k,) or (n, k) of the levels [m]
+    known : (n, k) which have a value
+    water_depth : [m]; inf where it is not known
+    """
+    there, levels = known.any(axis=0), _levels(depth, known)
+    allowed = max(UNCOVERED * water_depth, FEW)
+    deeper = there & (levels > water_depth + allowed)
+    if deeper.any():
+        deepest = float(levels[deeper].max())
+        in_feet = _FEET * deepest <= water_depth
+        feet = f" ({say('depth', _FEET * deepest)}, if these are feet)" if in_feet else ""
+        yield (
+            f"{deeper.sum()} of {there.sum()} levels with values are deeper than the water, "
+            f"{say('depth', water_depth)}: the deepest is at {say('depth', deepest)}{feet}"
+        )
+    empty = ~there & (levels >= 0.0) & (levels < water_depth - allowed)
+    if empty.any() and there.any() and len(known) > 1:
+        yield (
+            f"{empty.sum()} of {levels.size} levels above the seabed have no value at any time: "
+            f"{levels[empty].min():g} to {levels[empty].max():g} m"
+        )
+    depth = np.broadcast_to(depth, known.shape)
+    used = depth[known & np.isfinite(depth)]
+    used = used[used >= 0.0]
+    if used.size and (missing := left_out(used.min(), used.max(), water_depth)):
+        yield missing
+
+
+def _levels(depth: Floats, known: NDArray[np.bool_]) -> Floats:
+    """Return the median depth (k,) of each level [m]; NaN if unknown."""
+    return np.array([*map(_median, np.broadcast_to(depth, known.shape).T)])
+
+
+def _median(values: Floats) -> float:
+    """Return the median of the finite values, or NaN."""
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if known.size else np.nan
+
+
+def left_out(top: float, bottom: float, water_depth: float, what: str = "current") -> str:
+    """Name the part of the water column that a profile does not cover; empty if it covers all.
+
+    Parameters
+    ----------
+    top, bottom : its first and its last level [m]
+    water_depth : [m]; inf where it is not known
+    what : it is a profile of
+    """
+    allowed = max(UNCOVERED * water_depth, FEW)
+    gaps = [f"above {say('depth', top)}"] if top > allowed else []
+    if allowed < water_depth - bottom < inf:
+        gaps.append(f"below {say('depth', bottom)}")
+    if not gaps:
+        return ""
+    return (
+        f"the {what} is not given {' and '.join(gaps)}: the value of the nearest level is "
+        f"used there, in {say('depth', water_depth)} of water"
+    )
+
+
+def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Iterator[str]:
+    """Yield that speeds (n,) [m/s] are too small for their declared unit."""
+    strongest = float(speed.max(initial=0.0))
+    if speed.size < _VARIED or not 0.0 < strongest < WEAK:
+        return
+    likely = [
+        name for name, size in _UNITS.items()
+        if 0.1 < strongest * size / factor < 3.0 and abs(size / factor - 1.0) > 0.1
+    ]  # fmt: skip
+    meant = f"; are they in {' or '.join(likely)}?" if likely else ""
+    yield (
+        f"the strongest of {speed.size} currents is {strongest:.2g} m/s in the declared unit, "
+        f"{unit}{meant}"
+    )
+
+
+def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
+    """Yield that the directions of currents (n,) [m/s] lie in a narrow sector that begins north."""
+    moving = (u != 0.0) | (v != 0.0)
+    if moving.sum() < MANY:
+        return
+    towards = np.degrees(np.arctan2(u[moving], v[moving])) % 360.0
+    if 1.0 < towards.max() <= SECTOR:
+        yield (
+            f"all {moving.sum()} currents flow towards {towards.min():.2g} to "
+            f"{towards.max():.2g} degrees: is the direction in radians, or in tens of degrees?"
+        )
+
+
+def _recurring(values: Floats, side: str) -> Iterator[str]:
+    """Yield a likely fill value: one that recurs and exceeds all others [m/s]."""
+    largest = np.abs(values).max(initial=0.0)
+    filled = np.abs(values) == largest
+    others = values[~filled]
+    beyond = largest > _BEYOND * np.abs(others).max(initial=0.0)
+    if beyond and filled.sum() >= _RECURS and np.unique(others).size >= _VARIED:
+        yield (
+            f"{filled.sum()} of {values.size} currents to the {side} are "
+            f"{values[filled][0]:.5g} m/s, far beyond all others: a fill value?"
+        )
+
+
+def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) -> Iterator[str]:
+    """Yield doubts about the sequence of values in time.
+
+    Parameters
+    ----------
+    values : (n, k, c) components of k series; NaN in gaps
+    times : (n,) rising
+    names : (k,) where each is, "" of a single one
+    """
+    yield from _years(times)
+    if len(times) > 2:
+        yield from _gaps(times)
+    yield from _unchanged(values, times, names)
+    if len(times) > 2 and np.median(np.diff(times)) <= _SLOWEST:
+        yield from _interleaved(values)
+    yield from _repeated(values, times)
+
+
+FAR_APART = np.timedelta64(12, "h")
+"""Between profiles so far apart the tide and its peaks are lost."""
+
+
+def step_doubts(times: Times) -> Iterator[str]:
+    """Yield that profiles are so far apart that tides and peaks are lost between them."""
+    if len(times) > 1 and (step := np.median(np.diff(np.sort(times)))) >= FAR_APART:
+        yield (
+            f"its {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, means "
+            "or samples: tides and peaks between them are missing"
+        )
+
+
+@dataclass(frozen=True)
+class WaterLimits:
+    """Minimum and maximum of a sea-water quantity, its unit, and units that are confused with it.
+
+    Each of `likely` is a unit with the factor and the zero that turn it into the usual one.
+    """
+
+    least: float
+    greatest: float
+    unit: str
+    likely: Mapping[str, tuple[float, float]]
+
+
+WATER = {
+    "temperature": WaterLimits(-6.0, 40.0, "°C", {
+        "K": (1.0, -273.15), "degF": (1.0 / 1.8, -32.0 / 1.8), "0.001 degC": (1e-3, 0.0),
+    }),
+    "salinity": WaterLimits(0.0, 42.0, "", {
+        "kg/kg": (1e3, 0.0), "mS/cm, being a conductivity": (0.7, 0.0), "0.001": (1e-3, 0.0),
+    }),
+}  # fmt: skip
+"""The limits of TEOS-10, as in tables of mooring files."""
+_FRACTION = 0.05  # salinity that most of a record is below where it is a mass fraction
+
+
+def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str, bool]:
+    """Find impossible values; return their mask, a sentence, and whether they are the majority.
+
+    Parameters
+    ----------
+    name : of `WATER`
+    values : in its unit; NaN in gaps
+    """
+    limits, known = WATER[name], values[np.isfinite(values)]
+    wrong = (values < limits.least) | (values > limits.greatest)
+    fraction = name == "salinity" and known.size and 0.0 < np.median(known) < _FRACTION
+    if not (wrong.any() or fraction):
+        return wrong, "", False
+    doubted = known if fraction else values[wrong]
+    middle = float(np.median(doubted))
+    likely = [
+        unit for unit, (factor, zero) in limits.likely.items()
+        if limits.least <= factor * middle + zero <= limits.greatest
+    ]  # fmt: skip
+    meant = f": is it in {likely[0]}?" if likely else ""
+    count, span = int((known < _FRACTION).sum()), f"below {_FRACTION:g}"
+    if not fraction:
+        allowed = f"{limits.least:g} to {limits.greatest:g} {limits.unit}".rstrip()
+        count, span = int(wrong.sum()), f"no {name} of sea water, {allowed}"
+    said = f"{count} of {known.size} values are {span}, their median {middle:.4g}{meant}"
+    return wrong, said, bool(2 * wrong.sum() > known.size)
+
+
+def exchanged_pair(values: Floats) -> tuple[int, int] | None:
+    """Find the pair of mean values (s >= 4, top first) whose exchange makes the profile monotonic.
+
+    None if the profile is monotonic already, or if no exchange or more than one achieves this.
+    """
+    if len(values) < 4 or not np.isfinite(values).all():
+        return None
+    falls = np.corrcoef(np.arange(len(values)), values)[0, 1] < 0.0
+    values = -values if falls else values.copy()
+    if (np.diff(values) >= 0.0).all():
+        return None
+    found = []
+    for i in range(len(values)):
+        for j in range(i + 1, len(values)):
+            other = values.copy()
+            other[[i, j]] = other[[j, i]]
+            if (np.diff(other) >= 0.0).all():
+                found.append((i, j))
+    return found[0] if len(found) == 1 else None
+
+
+def _level_names(depth: Floats) -> list[str]:
+    return [f" at {depth[k]:g} m" if depth.ndim == 1 and np.isfinite(depth[k]) else
+            f" at level {k + 1}" for k in range(depth.shape[-1])]  # fmt: skip
+
+
+def _years(times: Times) -> Iterator[str]:
+    last = datetime.now(UTC).year + 1
+    years = times.astype("datetime64[Y]").astype(np.int64) + 1970
+    outside = (years < _FIRST_YEAR) | (years > last)
+    if outside.any():
+        yield (
+            f"{outside.sum()} of {times.size} times are before {_FIRST_YEAR} or after {last}: the "
+            f"first is {time_text(times[outside][0])}"
+        )
+
+
+def gaps_of(times: Times) -> tuple[np.timedelta64, NDArray[np.intp]]:
+    """Return the median step of times (n,), and before which intervals more than 1.5 of it lie."""
+    steps = np.diff(times)
+    step = np.median(steps)
+    return step, np.flatnonzero(steps > 1.5 * step)
+
+
+def _gaps(times: Times) -> Iterator[str]:
+    step, at = gaps_of(times)
+    steps = np.diff(times)
+    longest = steps.max()
+    missing = (steps[at] - step).sum() if at.size else np.timedelta64(0, "ns")
+    if longest > max(_DAY, 3 * step) or missing > UNCHANGED * (times[-1] - times[0]):
+        k = int(steps.argmax())
+        hours = np.timedelta64(1, "h")
+        yield (
+            f"{at.size} gap{'s' * (at.size != 1)} in time: the longest is of "
+            f"{longest / hours:.4g} h, from {time_text(times[k])} to {time_text(times[k + 1])}, "
+            f"where the step is {step / hours:.4g} h"
+        )
+
+
+def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[str]:
+    """Yield the series that keep one value for a tenth of the record, or repeat most readings."""
+    same: NDArray[np.bool_] = np.all(values[1:] == values[:-1], axis=2)
+    known: NDArray[np.bool_] = np.all(np.isfinite(values), axis=2)
+    fewest = max(_FEWEST, UNCHANGED * len(times))
+    stuck, longest = 0, (0, 0, 0)  # readings, first, series
+    for k in range(same.shape[1]):
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], same[:, k].astype(np.int8), [0]])))
+        runs = edges[1::2] - edges[::2] + 1
+        most = int(runs.max(initial=0))
+        mostly = same[:, k].sum() > max(0.5 * (int(known[:, k].sum()) - 1), _FEWEST)
+        if most >= fewest or mostly:
+            stuck += 1
+            if most > longest[0]:
+                longest = most, int(edges[::2][runs.argmax()]), k
+    if stuck:
+        most, first, k = longest
+        which = f"{stuck} of {same.shape[1]} levels keep" if same.shape[1] > 1 else "it keeps"
+        yield (
+            f"{which} one value for a tenth of the record, or for most pairs of readings: the "
+            f"longest stretch{names[k]}, {most} readings from {time_text(times[first])} to "
+            f"{time_text(times[first + most - 1])}"
+        )
+
+
+def _interleaved(values: Floats) -> Iterator[str]:
+    """Yield the series of which every second reading is like the one before the last, and the last
+    is not.
+    """
+    if len(values) < MANY:
+        return
+    next_one, second = (
+        np.linalg.norm(values[apart:] - values[:-apart], axis=2) for apart in (1, 2)
+    )
+    with np.errstate(invalid="ignore"):
+        one, two = (np.array([*map(_median, each.T)]) for each in (next_one, second))
+    woven = (one > 0.0) & (two < 0.4 * one)
+    if woven.any():
+        k = int(np.argmax(one * woven))
+        yield (
+            f"{woven.sum()} of {woven.size} series look like two in turn: readings next to each "
+            f"other differ by {one[k]:.3g}, every second ones by {two[k]:.3g}"
+        )
+
+
+def _repeated(values: Floats, times: Times) -> Iterator[str]:
+    """Yield the longest stretch of readings that occurs twice with identical digits."""
+    count = len(values) - _STRETCH + 1
+    if count <= _STRETCH:
+        return
+    rows = np.nan_to_num(values.reshape(len(values), -1), nan=-1e30) + 0.0
+    bits = np.ascontiguousarray(rows).view(np.uint64)
+    bits ^= bits >> np.uint64(29)
+    drawn = np.random.default_rng(1).integers(1, 2**63, (2, max(bits.shape[1], _STRETCH)))
+    weights = drawn.astype(np.uint64) | np.uint64(1)
+    row = (bits * weights[0, : bits.shape[1]]).sum(axis=1, dtype=np.uint64)
+    window = np.zeros(count, np.uint64)
+    for j in range(_STRETCH):
+        window += row[j : j + count] * weights[1, j]
+    changes = np.concatenate([[0], np.cumsum(row[1:] != row[:-1])])
+    varied = changes[_STRETCH - 1 :] - changes[:count] >= _STRETCH // 2
+    _, first, which = np.unique(window, return_index=True, return_inverse=True)
+    apart = np.arange(count) - first[which]
+    again = varied & (apart >= _STRETCH)
+    goes_on = again[:-1] & (apart[1:] == apart[:-1])
+    begins = np.flatnonzero(again & ~np.concatenate([[False], goes_on]))
+    if not begins.size:
+        return
+    ends = []
+    for at in begins[:MANY].tolist():
+        follows = (again & (apart == apart[at]))[at:]
+        ends.append(int(np.argmin(np.append(follows, False))))
+    k = int(np.argmax(ends))
+    at, length = int(begins[k]), ends[k] + _STRETCH - 1
+    yield (
+        f"{length} readings from {time_text(times[at])} are the same as those from "
+        f"{time_text(times[at - apart[at]])}: was a part of the record copied?"
+    )

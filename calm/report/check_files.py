@@ -1,0 +1,225 @@
+"""A design check as JSON and as CSV."""
+
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment, Situation
+from calm.checks.finding import (
+    Conclusion,
+    Finding,
+    State,
+    governing,
+    governing_of_each_rule,
+    worst_state,
+)
+from calm.checks.inventory import total_of
+from calm.checks.recovery import Recovery
+from calm.drop.launch import Launch
+from calm.files.check_limits import LimitKey
+from calm.quantities import QUANTITIES
+from calm.records.delimited import table_csv
+from calm.report import provenance
+from calm.report.check_facts import key_figures
+from calm.report.check_tables import GRAVE, counted_as, grouped
+from calm.report.result_files import members
+from calm.version import __version__
+
+MUCH_USED = 0.5
+"""Utilisation from which a finding that passes is listed though another governs its rule."""
+
+
+def listed_findings(
+    assessment: Assessment, *, every: bool = False
+) -> Iterator[tuple[Finding, bool]]:
+    """Findings of a mooring, and whether each governs its rule.
+
+    Listed are the governing finding of each rule, and of each rule and component the governing one
+    of all environments, unless it passes with a utilisation below `MUCH_USED`; what fails, is
+    unknown or warns is listed for each environment. A cluster of equal floats is one component.
+    With `every`, all findings of all situations are listed.
+    """
+    found = [*assessment.every_finding()]
+    leading = {id(one) for one in governing_of_each_rule(found)}
+    kept = leading | {
+        id(governing(group))
+        for group in grouped(found, _listed_as)
+        if group[0].state is not State.PASS or (governing(group).utilisation or 0.0) >= MUCH_USED
+    }
+    for one in found:
+        if every or id(one) in kept:
+            yield one, id(one) in leading
+
+
+def _listed_as(finding: Finding) -> Hashable:
+    """What findings share of which one is listed."""
+    if finding.state not in GRAVE:
+        return finding.rule, finding.state, finding.place
+    place = finding.case if finding.case == "0" else finding.environment
+    return *counted_as(finding), place
+
+
+def check_document(assessments: Sequence[Assessment], *, every: bool = False) -> dict[str, Any]:
+    """The JSON object of a design check; what could not be solved is null.
+
+    Parameters
+    ----------
+    every : list every finding, and not only those that `listed_findings` chooses
+
+    Returns
+    -------
+    dict
+        `verdict`, what all findings come to, and `state`, the worst there is; how many findings are
+        `estimated`; what is `accepted`, and why; `findings`, and how many there are in all; of each
+        mooring by its name the `key_figures` of page one, `launch`, `recovery`, `backup`,
+        `inventory` and its `totals`, and its `document` where files give any; and `situations`,
+        what was solved of each mooring in each environment.
+    """
+
+    def by_name(told: Callable[[Assessment], Any]) -> dict[str, Any]:
+        return {each.name: told(each) for each in assessments}
+
+    def listed(told: Callable[[Assessment], Iterable[Any]]) -> list[Any]:
+        return [one for each in assessments for one in told(each)]
+
+    stands = [stand for each in assessments for stand in each.stands]
+    seen = provenance.BY_WAVES if all(one.leg.file.environment.waves for one in stands) else ()
+    given = by_name(lambda each: each.file.document)
+    documents = {name: one.to_dict() for name, one in given.items() if one is not None}
+    return {
+        "calm": __version__,
+        **({"document": documents} if documents else {}),
+        "verdict": max((each.verdict for each in assessments), key=[*Conclusion].index),
+        "state": worst_state(each.state for each in assessments),
+        "estimated": sum(one.state is State.ESTIMATED for one in listed(Assessment.all_findings)),
+        "accepted": listed(_accepted),
+        "limits": listed(
+            lambda each: ({"mooring": each.name} | limit_document(key) for key in each.limits)
+        ),
+        "key_figures": by_name(key_figures),
+        "not_judged": [one for one in provenance.UNJUDGED if one not in seen],
+        "findings": listed(lambda each: _findings(each, every)),
+        "findings_in_all": len(listed(Assessment.every_finding)),
+        "situations": by_name(
+            lambda each: [
+                {"environment": stand.environment, **_situation(situation)}
+                for stand in each.stands
+                for situation in stand.situations
+            ]
+        ),
+        "launch": by_name(lambda each: _handled(each.launch, _OF_LAUNCH)),
+        "recovery": by_name(lambda each: _handled(each.recovery, _OF_RECOVERY)),
+        "backup": by_name(lambda each: [*map(asdict, each.backup)]),
+        "losses": by_name(lambda each: [members(one, *_OF_LOSS) for one in each.losses]),
+        "inventory": by_name(lambda each: [*map(asdict, each.inventory)]),
+        "totals": by_name(lambda each: asdict(total_of(each.inventory))),
+    }
+
+
+def limit_document(key: LimitKey) -> dict[str, Any]:
+    """The JSON object of a limit as used."""
+    return members(key, "name", "value", "default", "source", "departs")
+
+
+def _findings(assessment: Assessment, every: bool) -> Iterator[dict[str, Any]]:
+    """Yield findings, with their probability if those were counted: null without a limit."""
+    for one, leads in listed_findings(assessment, every=every):
+        counted = members(one, "probability") if assessment.draws else {}
+        yield one.to_dict() | {"governing": leads} | counted
+
+
+def _accepted(assessment: Assessment) -> Iterator[dict[str, Any]]:
+    for one in assessment.accepted_findings():
+        by = members(one.accept, "reason", "by", "date", "until", "load")
+        yield {"mooring": assessment.name, **members(one, "rule", "component"), **by}
+
+
+def _situation(situation: Situation) -> dict[str, Any]:
+    said: dict[str, Any] = {"situation": situation.name}
+    if situation.failure is not None:
+        return said | situation.failure.to_dict()
+    result = situation.result
+    assert result is not None
+    return {
+        **said,
+        **members(result, "status", "type"),
+        "top_depth": result.top.depth,
+        "knockdown": result.top.knockdown,
+        "anchor_vertical": result.anchor_load.vertical,
+        "anchor_horizontal": result.anchor_load.horizontal,
+        "required_weight": result.anchor_load.required_weight,
+        "accuracy": asdict(result.accuracy),
+        "warnings": result.warnings,
+    }
+
+
+_OF_LAUNCH = (
+    "fall_speed", "fall_speed_band", "anchor_tension", "anchor_drag_known", "greatest_speed",
+    "drift",
+)  # fmt: skip
+_OF_LOSS = ("index", "label", "margin", "weight_lifted", "required")
+_OF_RECOVERY = ("released", "rise_speed", "time_to_surface", "net_buoyancy", "order")
+
+
+def _handled(way: Launch | Recovery | None, names: Sequence[str]) -> dict[str, Any] | None:
+    """Return what a launch or a recovery comes to; null where it is not known."""
+    return None if way is None else members(way, *names) | {"components": way.components()}
+
+
+_OF_FINDING = ("mooring", "environment", "situation", "case", "rule", "component")
+_FIGURES = ("value", "sense", "limit", "margin", "utilisation")
+_TEXTS = ("message", "remedy", "source")
+CHECKS_HEADER = (
+    *_OF_FINDING, "state", "governing", *_FIGURES, "unit", *_TEXTS, "reason", "probability",
+)  # fmt: skip
+"""First row of `checks_csv`; value, limit and margin are in the unit of their row."""
+
+_OF_ITEM = (
+    "index", "label", "use", "name", "role", "kind", "clamped_on", "cut_length", "dry_mass",
+    "wet_weight", "lift_mass", "at",
+)  # fmt: skip
+INVENTORY_HEADER = (
+    "mooring",
+    *(QUANTITIES[name].header if name in QUANTITIES else name for name in _OF_ITEM),
+)
+"""First row of `inventory_csv`; weights in water are positive downward."""
+
+
+def checks_csv(assessments: Sequence[Assessment], *, every: bool = False) -> str:
+    """A row for each finding listed, of one mooring after the other; what is unknown is empty.
+
+    Parameters
+    ----------
+    every : list every finding, as in `check_document`
+    """
+    rows = (
+        _finding_row(*listed)
+        for each in assessments
+        for listed in listed_findings(each, every=every)
+    )
+    return table_csv(CHECKS_HEADER, rows)
+
+
+def inventory_csv(assessments: Sequence[Assessment]) -> str:
+    """A row for every piece and clamp, from the top of each mooring to its anchor."""
+    rows = (
+        [each.name, *members(item, *_OF_ITEM).values()]
+        for each in assessments
+        for item in each.inventory
+    )
+    return table_csv(INVENTORY_HEADER, rows)
+
+
+def _finding_row(finding: Finding, leads: bool) -> Sequence[object]:
+    quantity = QUANTITIES.get(RULES[finding.rule].quantity)
+    return (
+        *members(finding, *_OF_FINDING).values(),
+        finding.state.value,
+        "yes" if leads else "no",
+        *members(finding, *_FIGURES).values(),
+        quantity.unit if quantity else None,
+        *members(finding, *_TEXTS).values(),
+        None if finding.accept is None else finding.accept.reason,
+        finding.probability,
+    )

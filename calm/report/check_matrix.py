@@ -1,0 +1,227 @@
+"""Many moorings in many environments: one matrix, and a page of each mooring."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment
+from calm.checks.finding import Conclusion, Finding, State, by_rule, governing, worst_of
+from calm.report.blocks import Block, Cell, Field, Prose, Span, number, table_of, words
+from calm.report.open_items import (
+    advice,
+    figure_text,
+    limit_text,
+    percent_text,
+    short,
+    where_text,
+)
+from calm.report.page_one import (
+    SignedMooring,
+    cases_table,
+    governing_rows,
+    sign_off,
+    title_block,
+    verdict_box,
+)
+
+_OTHER_KIND = ("fish-bite", "slack")
+"""Rules whose limits are of another kind than a load, a depth or an angle: left out of a matrix."""
+_MOST_ENVIRONMENTS = 12
+_NEAR = 0.9
+
+
+@dataclass(frozen=True)
+class MatrixCell:
+    """The greatest use of a mooring in an environment; None where no check has one."""
+
+    use: float | None
+    state: State
+    told: str
+
+
+@dataclass(frozen=True)
+class SummaryRow:
+    """What the summary shows of a mooring.
+
+    Attributes
+    ----------
+    mooring : its name
+    depth : of the water, in words
+    cells : by environment, in their order
+    handling : of launch, recovery and breaks
+    governs : what has the greatest use in the first environment
+    accepted, findings : how many
+    conclusion, draft : the verdict
+    """
+
+    mooring: str
+    depth: str
+    cells: Mapping[str, MatrixCell]
+    handling: MatrixCell | None
+    governs: str
+    accepted: int
+    findings: int
+    conclusion: Conclusion
+
+    @property
+    def first_failure(self) -> tuple[str, str] | None:
+        """The first environment in which it fails, and what does; None where nothing fails."""
+        cells = {**self.cells, "launch": self.handling} if self.handling else self.cells
+        failed = (
+            (name, cell.told) for name, cell in cells.items()
+            if cell is not None and cell.state is State.FAIL
+        )  # fmt: skip
+        return next(failed, None)
+
+
+def summary_row(assessment: Assessment) -> SummaryRow:
+    """The row of a mooring."""
+    groups: dict[str, list[Finding]] = {}
+    lacking = set()
+    for stand in assessment.stands:
+        name = stand.leg.file.environment.name or "own"
+        groups.setdefault(name, []).extend((*stand.findings, *stand.tighter))
+        if stand.lacking:
+            lacking.add(name)
+    cells = {name: _cell(found, name in lacking) for name, found in groups.items()}
+    handling = [one for one in assessment.findings if one.missing is None and one.rule != "current"]
+    depth = assessment.file.environment.depth
+    every = [*assessment.every_finding()]
+    first = next(iter(cells.values()), None)
+    return SummaryRow(
+        assessment.name,
+        "" if depth is None else f"{depth:.0f}",
+        cells,
+        _cell(handling, False) if handling else None,
+        "" if first is None else first.told,
+        len(assessment.accepted_findings()),
+        len(every),
+        assessment.verdict,
+    )
+
+
+def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
+    used = [one for one in findings if one.utilisation is not None and one.rule not in _OTHER_KIND]
+    worst = worst_of(findings) if findings else None
+    state = State.UNKNOWN if lacking else State.PASS
+    if worst is not None and worst.state in (State.FAIL, State.UNKNOWN):
+        state = worst.state
+    if not used:
+        told = "" if worst is None else RULES[worst.rule].title.lower()
+        return MatrixCell(None, state, told)
+    lead = governing(used)
+    if state is State.FAIL and lead.state is not State.FAIL and worst is not None:
+        failed = [one for one in used if one.state is State.FAIL]
+        lead = governing(failed) if failed else worst
+    title, use = RULES[lead.rule].title.lower(), percent_text(lead.utilisation)
+    told = f"{title}, {lead.component or 'whole line'}, {use} %"
+    return MatrixCell(governing(used).utilisation, state, told)
+
+
+def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
+    """The matrix, and what governs each mooring."""
+    names, shown, codes = environments_of(rows)
+    failing = [row for row in rows if row.conclusion is Conclusion.FAILS]
+    incomplete = [row for row in rows if row.conclusion is Conclusion.INCOMPLETE]
+    state = State.FAIL if failing else State.UNKNOWN if incomplete else State.PASS
+    said = f"{len(failing)} of {len(rows)} moorings fail in at least one environment"
+    said += f", {len(incomplete)} more lack figures" if incomplete else ""
+    said += "; the first failure of each is named below." if failing else "."
+    head = "Fails: " if failing else "Incomplete: " if incomplete else "Passes: "
+    yield Prose(((Span(head, state), Span(said)),), state)
+    note = ", ".join(f"{codes[name]} {short(name, 24)}" for name in shown)
+    note += ". Launch: greatest use in launch, recovery and breaks."
+    if len(shown) < len(names):
+        note += f" {len(names) - len(shown)} milder environments are left out."
+    yield table_of(
+        "Greatest use, %",
+        rows,
+        words("Mooring", lambda row: short(row.mooring, 44), 1.0),
+        number("Water\nm", lambda row: row.depth, share=0.2),
+        *(_column(codes[name], name) for name in shown),
+        number("Launch", lambda row: _shown(row.handling), share=0.24),
+        aside="of any standing check, rounded up. White on black: fails. Hatched: over 100 without "
+        "failing. ?: not known. Grey: 90 and more",
+        note=note,
+    )
+    yield table_of(
+        "What governs",
+        rows,
+        words("Mooring", lambda row: short(row.mooring, 44), 1.1),
+        words(f"Governs in {codes[names[0]]}", lambda row: short(row.governs, 60), 1.3),
+        words("First failure", lambda row: _failure(row, codes), 1.3),
+        number("Accepted", lambda row: row.accepted),
+        note=f"{sum(row.findings for row in rows)} findings stand behind this page; a page of each "
+        "mooring follows, with a row a rule. Use leaves out fish bite, metals and least tension, "
+        "which are limits of another kind.",
+    )
+
+
+def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], dict[str, str]]:
+    """The environments of all moorings, the worst of them that have room, and their codes."""
+    names = list(dict.fromkeys(name for row in rows for name in row.cells))
+    codes = {name: f"E{at}" for at, name in enumerate(names, 1)}
+    if len(names) <= _MOST_ENVIRONMENTS:
+        return names, names, codes
+
+    def worst(name: str) -> float:
+        return max((row.cells[name].use or 0.0 for row in rows if name in row.cells), default=0.0)
+
+    kept = set(sorted(names, key=worst, reverse=True)[:_MOST_ENVIRONMENTS])
+    return names, [name for name in names if name in kept], codes
+
+
+def _column(code: str, name: str) -> Field:
+    return number(code, lambda row: _shown(row.cells.get(name)), share=0.2)
+
+
+def _shown(cell: MatrixCell | None) -> Cell:
+    if cell is None:
+        return Cell("–")
+    text = percent_text(cell.use)
+    if cell.state is State.FAIL:
+        return Cell(text if cell.use is not None else "✗", strong=True, tone="fail")
+    if cell.state is State.UNKNOWN:
+        return Cell(f"? {text}" if cell.use is not None else "?", strong=True)
+    if (cell.use or 0.0) > 1.0:
+        return Cell(text, strong=True, tone="over")
+    return Cell(text, tone="near" if (cell.use or 0.0) >= _NEAR else "")
+
+
+def _failure(row: SummaryRow, codes: Mapping[str, str]) -> str:
+    found = row.first_failure
+    return "none" if found is None else f"{codes.get(found[0], found[0])}: {short(found[1], 60)}"
+
+
+def mooring_page(signed: SignedMooring) -> Iterator[Block]:
+    """A mooring on one page: the verdict, the cases, and a row a rule with what governs it."""
+    findings = [*signed.assessment.every_finding()]
+    yield title_block(signed)
+    yield verdict_box(signed)
+    yield cases_table(signed)
+    groups = by_rule(findings)
+    leads = governing_rows(findings)
+    others = [worst_of(groups[name]) for name in groups if name not in {one.rule for one in leads}]
+    yield table_of(
+        "Checks",
+        [*leads, *others],
+        words("", lambda one: Cell(state=worst_of(groups[one.rule]).state), 0.0),
+        words("Rule", lambda one: RULES[one.rule].title, 1.0),
+        number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
+        number("Found", lambda one: figure_text(one, one.value)),
+        words("Limit", lambda one: limit_text(one) or "–", 0.0),
+        words("Where, case", lambda one: short(where_text(one), 36), 1.1),
+        number("Over 100\nof judged", lambda one: _over(groups[one.rule])),
+        words(
+            "What to do",
+            lambda one: Cell(detail=short(advice(worst_of(groups[one.rule])), 90)),
+            1.5,
+        ),
+        aside="a row a rule; over 100 % and judged, in all environments",
+        ruled=False,
+    )
+    yield sign_off(signed)
+
+
+def _over(found: Sequence[Finding]) -> str:
+    return f"{sum((one.utilisation or 0.0) > 1.0 for one in found)} of {len(found)}"

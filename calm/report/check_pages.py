@@ -1,0 +1,445 @@
+"""Pages 4 to 6 of a design check: every rule, the handling at sea, and what all rests on."""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from math import ceil
+
+import numpy as np
+
+from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment
+from calm.checks.criterion import said
+from calm.checks.finding import Finding, State, by_rule, governing, worst_of
+from calm.checks.inventory import InventoryItem, total_of
+from calm.checks.posture import reaches_the_surface
+from calm.checks.recovery import Break, Loss
+from calm.files import MooringFile
+from calm.files.check_limits import LimitKey
+from calm.files.components import FLEXIBLE_KINDS
+from calm.physics.line import Water
+from calm.quantities import QUANTITIES, bearing_of, duration, say
+from calm.report import blocks, provenance
+from calm.report.blocks import (
+    Beside,
+    Block,
+    Cell,
+    Listing,
+    Prose,
+    Table,
+    number,
+    quantity,
+    table_of,
+    words,
+)
+from calm.report.check_tables import grouped
+from calm.report.drawing_page import item_numbers
+from calm.report.load_cases import LOAD, length_text, load_text
+from calm.report.open_items import (
+    advice,
+    figure_text,
+    limit_text,
+    percent_text,
+    plain,
+    where_text,
+)
+from calm.report.page_one import MOST_REVISIONS, TEXT_HEIGHT, SignedMooring, item_tags
+
+
+def checks_page(signed: SignedMooring) -> Iterator[Block]:
+    """Every rule in a row: the piece and the case that govern it, by what limit, what to do."""
+    findings = [*signed.assessment.every_finding()]
+    yield checks_table(signed, findings)
+    yield blocks.Heading("How far to trust these figures")
+    yield Prose((_trust(signed),))
+
+
+def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
+    """A row of each rule, that with the greatest use first."""
+    tags = item_tags(signed)
+    rows = []
+    for name, found in by_rule(findings).items():
+        lead = governing(found)
+        if lead.utilisation is None:
+            lead = worst_of(found)
+        worst = worst_of(found)
+        if worst.state.severity < State.WARN.severity and lead.state is not State.PASS:
+            worst = lead
+        rows.append((name, lead, worst, len({one.component for one in found})))
+    rows.sort(key=lambda row: (-(row[1].utilisation if row[1].utilisation is not None else -1.0),
+                               -row[2].state.severity))  # fmt: skip
+    counts = {state: sum(one.state is state for one in findings) for state in State}
+    told = ", ".join(
+        f"{count} {state.value.replace('-', ' ')}" for state, count in counts.items() if count
+    )
+
+    def basis(row: tuple[str, Finding, Finding, int]) -> Cell:
+        _, lead, worst, _ = row
+        source, todo = plain(lead.source).rstrip("."), advice(worst)
+        tag = tags.get((worst.rule, worst.component))
+        return Cell(detail=f"{source}.", then=f"{todo} ({tag})" if todo and tag else todo)
+
+    return table_of(
+        "Checks in full",
+        rows,
+        words("", lambda row: Cell(state=row[2].state), 0.0),
+        words("Rule", lambda row: Cell(
+            RULES[row[0]].title, f"({row[3]})" if row[3] > 1 else "", goes_on=True), 1.2),
+        number("Use %", lambda row: Cell(percent_text(row[1].utilisation), strong=True)),
+        number("Found", lambda row: figure_text(row[1], row[1].value)),
+        words("Limit", lambda row: limit_text(row[1]) or "–", 0.0),
+        words("Where, case", lambda row: where_text(row[1]), 0.9),
+        words("Basis of the limit; what to do", basis, 2.2),
+        note=f"These {len(rows)} rows stand for {len(findings)} findings: {told}. All of them are "
+        "in the files beside this report.",
+        aside="a row a rule: the piece and the case with the greatest use; in brackets the pieces "
+        "judged",
+    )  # fmt: skip
+
+
+_A_DIFFERENCE = 0.1
+"""Of two knockdowns, that is told of [m]."""
+
+
+def _trust(signed: SignedMooring) -> str:
+    """How well the figures are known."""
+    results = [one for case in signed.standing for one in case.results]
+    if not results:
+        return "The mooring has no equilibrium; nothing that rests on one is judged."
+    depth = max(one.accuracy.depth for one in results)
+    share = max(
+        100.0 * one.accuracy.tension / max(float(one.components.tension.max()), 1.0)
+        for one in results
+    )
+    text = (
+        f"The numerical error of the solution is below {ceil(10.0 * depth) / 10.0:.1f} m and "
+        f"{max(ceil(10.0 * share) / 10.0, 0.1):.1f} % of a tension. The inputs are not known so "
+        "well: the current to about a tenth, the drag of a cable to about a fifth."
+    )
+    given = signed.standing[0]
+    strums = next((one for one in signed.standing if one.code == f"{given.code}s"), None)
+    if strums is not None and strums.knockdown - given.knockdown >= _A_DIFFERENCE:
+        text += (
+            f" If the cables strum (case {strums.code}), the knockdown grows from "
+            f"{say('knockdown', given.knockdown)} to {say('knockdown', strums.knockdown)}."
+        )
+    return plain(text)
+
+
+def handling_page(signed: SignedMooring) -> Iterator[Block]:
+    """Launch and recovery in short, what still floats after any break, and the parts list."""
+    assessment = signed.assessment
+    if assessment.launch is not None or assessment.recovery is not None:
+        yield Beside((_launch(assessment),), (_recovery(assessment),))
+    else:
+        of_net = "The launch and the recovery of a net of legs are not judged."
+        of_line = "Neither the launch nor the recovery could be solved."
+        several = len({one.leg.name for one in assessment.stands}) > 1
+        yield Prose((of_net if several else of_line,))
+    if assessment.backup:
+        yield _breaks(assessment)
+    yield _inventory(signed)
+
+
+def _pairs(title: str, rows: Iterable[tuple[str, str, str]]) -> Table:
+    return table_of(title, rows, words("", 0), number("", 1), number("", 2), ruled=False)
+
+
+def _launch(assessment: Assessment) -> Table:
+    launch = assessment.launch
+    if launch is None:
+        return _pairs("Launch, anchor last", [("Could not be solved", "", "")])
+    slow, fast = (QUANTITIES["speed"].format(one) for one in launch.fall_speed_band)
+    drag = "" if launch.anchor_drag_known else ", its drag not known"
+    tension = launch.greatest_tension
+    label = assessment.file.pieces[int(np.nanargmax(tension))].label
+    return _pairs(
+        "Launch, anchor last",
+        [
+            ("Anchor at touchdown" + drag, say("speed", launch.fall_speed),
+             _limit(assessment, "launch-speed")),
+            ("with twice and half the drag",
+             f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
+            ("Pull of the falling anchor", LOAD.say(launch.anchor_tension), ""),
+            (f"Largest tension, {label}", LOAD.say(float(np.nanmax(tension))),
+             _limit(assessment, "launch-strength")),
+        ],
+    )  # fmt: skip
+
+
+def _recovery(assessment: Assessment) -> Table:
+    rise = assessment.recovery
+    if rise is None:
+        return _pairs("Recovery, after release", [("Could not be solved", "", "")])
+    still = ", in still water" if rise.in_still_water else ""
+    arrivals = [float(rise.arrival[piece]) for piece in rise.order]
+    first, last = rise.time_to_surface, max(arrivals, default=None)
+    tensions = np.fmax(rise.tension_top, rise.tension_bottom)
+    rows = [
+        ("Net buoyancy of all that rises", LOAD.say(rise.net_buoyancy), ""),
+        (
+            f"Speed of the rise{still}",
+            say("speed", rise.rise_speed),
+            _limit(assessment, "recovery"),
+        ),
+        ("First float at the surface after", "–" if first is None else duration(first), ""),
+        ("Last float at the surface after", "–" if last is None else duration(last), ""),
+    ]
+    if not np.isnan(tensions).all():
+        label = assessment.file.pieces[int(np.nanargmax(tensions))].label
+        rows.append((f"Largest tension, {label}", LOAD.say(float(np.nanmax(tensions))), ""))
+    return _pairs("Recovery, after release", rows)
+
+
+def _limit(assessment: Assessment, rule: str) -> str:
+    """The limit of a rule, and its use where that is beyond it."""
+    found = [one for one in assessment.findings if one.rule == rule]
+    if not found:
+        return ""
+    lead = governing(found)
+    used = lead.utilisation
+    return limit_text(lead) if used is None else f"{limit_text(lead)}, {percent_text(used)} %"
+
+
+_MOST_BREAKS = 10
+
+
+def _breaks(assessment: Assessment) -> Table:
+    """What still floats after a break, the worst of each part of the line, and after a loss."""
+    parts = {piece.index: piece for piece in assessment.file.pieces}
+    groups: dict[str, list[Break]] = {}
+    part = "the top"
+    for one in assessment.backup:
+        piece = parts.get(one.break_after)
+        if piece is None or piece.component.role in ("line", "float", "release"):
+            part = one.label
+        groups.setdefault(part, []).append(one)
+    rows: list[tuple[str, Break | Loss]] = []
+    for name, breaks in groups.items():
+        judged = [one for one in breaks if one.judged]
+        if judged:
+            worst = min(judged, key=lambda one: one.margin - one.required)
+            rows.append((f"Break at or below {name}", worst))
+    left = len(rows) - _MOST_BREAKS
+    rows = sorted(rows, key=lambda row: row[1].margin - row[1].required)[:_MOST_BREAKS]
+    if assessment.losses:
+        loss = min(assessment.losses, key=lambda one: one.margin - one.required)
+        rows.append((f"Loss of one float, {loss.label}", loss))
+    unit = LOAD.display_unit
+
+    def used(row: tuple[str, Break | Loss]) -> Cell:
+        margin = row[1].margin
+        share = row[1].required / margin if margin > 0.0 else float("inf")
+        return Cell(percent_text(share), strong=True)
+
+    unjudged = sum(not one.judged for one in assessment.backup)
+    note = f"A row stands for the worst of its {len(assessment.backup)} breaks. " if rows else ""
+    if left > 0:
+        note += f"{left} parts with more buoyancy to spare are left out. "
+    if unjudged:
+        note += (
+            f"{unjudged} breaks in the lowest floats, or between them and the release, leave it on "
+            "the seabed in any design and are not judged."
+        )
+    return table_of(
+        "Breaks and losses",
+        rows,
+        words("Break or loss", 0, 2.0),
+        number(f"Weight to\nlift {unit}", lambda row: load_text(row[1].weight_lifted)),
+        number(f"Buoyancy\nover {unit}", lambda row: load_text(row[1].margin)),
+        number(f"Required {unit}", lambda row: load_text(row[1].required)),
+        number(f"Comes\nloose {unit}", lambda row: load_text(row[1].loose)
+               if isinstance(row[1], Break) else None),
+        number("Use %", used),
+        note=note.strip(),
+        aside="what still floats with the release after any one break or loss",
+        ruled=False,
+    )  # fmt: skip
+
+
+def _inventory(signed: SignedMooring) -> Table:
+    """How many and how much of each component, in the order of the line, and their items."""
+    items = signed.assessment.inventory
+    numbers = item_numbers(signed) if signed.standing else {}
+    unit = LOAD.display_unit
+
+    def length(group: Sequence[InventoryItem]) -> str | None:
+        known = [one.cut_length for one in group if one.kind in FLEXIBLE_KINDS and one.cut_length]
+        return length_text(sum(known)) if known else None
+
+    def mass(group: Sequence[InventoryItem]) -> str:
+        known = [one.dry_mass for one in group if one.dry_mass is not None]
+        if not known:
+            return "not known"
+        least = "≥ " if len(known) < len(group) else ""
+        return least + QUANTITIES["dry_mass"].format(sum(known))
+
+    def weight(group: Sequence[InventoryItem]) -> str:
+        known = [one.wet_weight for one in group if one.wet_weight is not None]
+        return load_text(sum(known)) if known else "–"
+
+    def places(group: Sequence[InventoryItem]) -> Cell:
+        if group is items:
+            missing = total_of(items).missing_masses
+            return Cell(detail=f"{missing} give no mass" if missing else "")
+        known = list(dict.fromkeys(
+            numbers[one.label] if one.clamped_on is None else f"on {numbers[one.clamped_on]}"
+            for one in group if one.label in numbers
+        ))  # fmt: skip
+        text = ", ".join(known[:8]) + (f" and {len(known) - 8} more" if len(known) > 8 else "")
+        return Cell(detail=text)
+
+    def name(group: Sequence[InventoryItem]) -> str:
+        return "Total" if group is items else group[0].name or group[0].use
+
+    return table_of(
+        "Inventory",
+        grouped(items, lambda one: one.use),
+        number("Pieces", len),
+        words("Component", name, 1.6),
+        words(
+            "Catalogue", lambda group: None if group is items else Cell(detail=group[0].use), 0.9
+        ),
+        number("Cut length\nm", length),
+        number("Mass in\nair kg", mass),
+        number(f"Weight in\nwater {unit}", weight),
+        words("Items", places, 1.0),
+        sums=[items],
+        aside="for the purchase and the packing list",
+        ruled=False,
+    )
+
+
+def basis_page(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
+    """The limits, the environment, what is not judged, the file, and the hash of all inputs."""
+    assessment = signed.assessment
+    waters = {one.leg.file.environment.name or "own": one.leg.water for one in assessment.stands}
+    waves = all(one.leg.file.environment.waves for one in assessment.stands)
+    unjudged = (one for one in provenance.UNJUDGED if not (waves and one in provenance.BY_WAVES))
+    unseen = f"{plain('; '.join(unjudged))}.", "No use on these pages includes them."
+    text = provenance.source_text(assessment.file)
+    name = provenance.file_name(assessment.file)
+    limits, environment = _limits([*_limits_that_count(signed)]), _environment(waters)
+    beside = environment, blocks.Heading("Not judged"), Prose(unseen)
+    yield Beside((limits,), beside, 0.62)
+    yield from (history := [*_history(assessment.file)])
+    said_of = "The file could not be read again." if text is None else text.rstrip()
+    above = max(len(limits.rows), len(environment.rows) + _UNJUDGED)
+    above += sum(len(table.rows) + 3 for table in history)
+    room = TEXT_HEIGHT[paper] - _AROUND - _ROW * above
+    yield Listing("Mooring file", said_of, name, 2 * int(room / _LISTED))
+    yield Prose((
+        "SHA-256 of the inputs, the mooring file with every figure of the catalogue used:",
+        signed.sha256,
+    ))  # fmt: skip
+
+
+_AROUND, _ROW, _LISTED = 95.0, 12.6, 6.5
+"""Height of the headings, of a row of a table, and of a line of the file on the last page [pt]."""
+_UNJUDGED = 11
+"""Rows of the environment that are as high as what is not judged."""
+
+
+def _limits(limits: Iterable[LimitKey]) -> Table:
+    """The limits used; those of the design's own in bold."""
+
+    def own(key: LimitKey) -> bool:
+        return key.departs or key.default is None
+
+    def called(key: LimitKey) -> str:
+        head, _, tail = key.name.replace("_", " ").partition(".")
+        text = f"{head}, {tail.replace('.', ', ')}" if tail else head
+        return text[:1].upper() + text[1:]
+
+    def source(key: LimitKey) -> Cell:
+        usual = "" if key.default is None else f"; the default is {_value(key, key.default)}"
+        return Cell(detail=plain(f"the design’s own{usual}" if own(key) else _in_short(key.source)))
+
+    return table_of(
+        "Limits used",
+        limits,
+        words("Limit", lambda key: Cell(called(key), strong=own(key))),
+        number("Value", lambda key: Cell(_value(key, key.value), strong=own(key))),
+        words("Source", source, 1.6),
+        aside="the design’s own in bold",
+        ruled=False,
+    )
+
+
+def _value(key: LimitKey, value: float | None) -> str:
+    return plain(LOAD.say(value) if key.dimension == "force" else said(key, value))
+
+
+def _in_short(source: str) -> str:
+    """Who gives a limit, without what is quoted."""
+    head = re.split(r"[:;]", source)[0]
+    return head if len(head) <= 45 else head.split(",")[0]
+
+
+_OF_WAVES = ("waves_safety_factor", "fatigue_factor", "service_time")
+_OF_SURFACE = ("safety_factor.surface", "minimum_reserve")
+
+
+def _limits_that_count(signed: SignedMooring) -> Iterator[LimitKey]:
+    """The limits that a rule has used: not those of waves, or of the surface, for others."""
+    assessment = signed.assessment
+    waves = any(one.leg.file.environment.waves for one in assessment.stands)
+    surface = any(reaches_the_surface(one.leg) for one in assessment.stands if one.result)
+    for key in assessment.limits:
+        idle = (key.name in _OF_WAVES and not waves) or (key.name in _OF_SURFACE and not surface)
+        if key.value is not None and not idle:
+            yield key
+
+
+_MOST_LEVELS = 12
+
+
+def _environment(waters: dict[str, Water]) -> Table:
+    """The current level by level; of several environments the strongest of each."""
+    if len(waters) > 1:
+        rows = []
+        for name, water in waters.items():
+            speed = np.hypot(water.u, water.v)
+            at = int(speed.argmax())
+            rows.append((name, float(speed[at]), float(water.level[at])))
+        return table_of(
+            "Environments",
+            rows,
+            words("", 0),
+            quantity("speed", 1, "strongest current"),
+            quantity("depth", 2, "at depth"),
+            ruled=False,
+            note=_water_note(next(iter(waters.values()))),
+        )
+    (water,) = waters.values()
+    count = len(water.level)
+    levels = np.unique(np.linspace(0, count - 1, min(count, _MOST_LEVELS)).round().astype(int))
+    rows_ = [
+        (float(water.level[at]), float(np.hypot(water.u[at], water.v[at])),
+         f"{bearing_of(float(water.u[at]), float(water.v[at])):.0f}")
+        for at in levels
+    ]  # fmt: skip
+    note = "" if len(levels) == count else f"{len(levels)} of {count} levels. "
+    return table_of(
+        "Environment",
+        rows_,
+        quantity("depth", 0),
+        quantity("speed", 1),
+        number("towards", 2, "°"),
+        ruled=False,
+        note=note + _water_note(water),
+    )
+
+
+def _water_note(water: Water) -> str:
+    low, high = float(water.density.min()), float(water.density.max())
+    density = f"{low:.1f}" if high - low < 0.05 else f"{low:.1f} to {high:.1f}"
+    return f"Density {density} kg/m³. Launch, rise and breaks are judged in the first environment."
+
+
+def _history(file: MooringFile) -> Iterator[Table]:
+    """All revisions, where page one has not room for them."""
+    given = file.document
+    if given is not None and len(given.history) > MOST_REVISIONS:
+        first = words("Revision", "revision", 0.0), words("Date", "date", 0.0)
+        fields = (*first, words("By", "by"), words("Change", "change", 3.0))
+        yield table_of("History", given.history, *fields, ruled=False)

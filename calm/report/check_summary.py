@@ -1,0 +1,310 @@
+"""A design check on a terminal: verdict, load cases, use, what is open, and what is not covered.
+
+Of one mooring in which nothing fails it has `MOST_LINES` lines of 80 letters at most; of many
+moorings it is a matrix of their greatest use.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from math import ceil
+from textwrap import wrap
+
+from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment
+from calm.checks.finding import (
+    Conclusion,
+    Finding,
+    State,
+    by_rule,
+    governing,
+    governing_of_each_rule,
+)
+from calm.checks.situations import FOULED, STILL, STILL_LOW, STRUMMING
+from calm.quantities import say
+from calm.report import blocks
+from calm.report.blocks import Cell, Line, OpenItem, Prose, ReportPart, Span, number, words
+from calm.report.check_matrix import MatrixCell, environments_of, summary_row
+from calm.report.likelihood import likelihood_tables
+from calm.report.load_cases import LoadCase, load_cases
+from calm.report.open_items import (
+    STATES,
+    counts_text,
+    limit_text,
+    open_groups,
+    open_items,
+    percent_text,
+    quantity_of,
+    short,
+)
+from calm.report.page_one import case_columns, shown_cases
+
+MOST_LINES = 40
+"""Lines of a mooring in which nothing fails."""
+_WIDTH = 80
+_FRAME = 7  # lines of the head, of what is beyond, around the items and below them
+_MOST_ITEMS = 12  # open items of a mooring that fails
+_MOST_ROWS = 10  # checks with a row of their own
+_HALF = 0.5  # of the capacity: what is used more has a row
+
+
+def check_part(assessments: Sequence[Assessment]) -> ReportPart:
+    """Everything that a design check says in short; no state hangs on colour."""
+    if len(assessments) > 1:
+        return ReportPart("", tuple(_of_many(assessments)))
+    return ReportPart("", tuple(_of_one(assessments[0])))
+
+
+def _of_one(assessment: Assessment) -> Iterator[blocks.Block]:
+    verdict = Prose((_head(assessment), _verdict(assessment)))
+    cases, checks = [*_cases(assessment)], [*_checks(assessment)]
+    likely = [*likelihood_tables([(assessment.name, [*assessment.all_findings()])])]
+    items = [_in_short(one) for one in open_items(assessment)]
+    beyond = beyond_text([*assessment.all_findings()])
+    room = MOST_LINES - _FRAME - sum(map(_height, (*cases, *checks, *likely)))
+    fails = assessment.verdict is Conclusion.FAILS
+    yield verdict
+    yield from (*cases, *checks, *likely)
+    if items:
+        yield _shown_items(items, _MOST_ITEMS if fails else None, room)
+    yield blocks.Note(beyond)
+
+
+def _head(assessment: Assessment) -> Line:
+    """Name of the mooring on the left, what it is on the right."""
+    file = assessment.file
+    given = file.document
+    document = "" if given is None or not given.id else given.id
+    if given is not None and given.id and given.revision:
+        document += f" rev. {given.revision}"
+    results = [stand.result for stand in assessment.stands if stand.result is not None]
+    kind = "surface" if any(one.type == "surface" for one in results) else "sub-surface"
+    if file.legs or len({stand.leg.name for stand in assessment.stands}) > 1:
+        kind = "net of legs"
+    depth = file.environment.depth
+    water = "" if depth is None else f"{say('depth_rating', depth)} of water"
+    return _apart(assessment.name, ", ".join(filter(None, (document, kind, water))))
+
+
+def _verdict(assessment: Assessment) -> Line:
+    """The verdict, and how much is open."""
+    said = assessment.verdict.words.upper() + ", DRAFT" * assessment.draft
+    told = counts_text(open_groups(assessment)) or "nothing is open"
+    return (Span(_apart(said, told), STATES[assessment.verdict]),)
+
+
+def _apart(left: str, right: str) -> str:
+    """Two texts at both ends of a line, or one below the other if they have no room there."""
+    gap = _WIDTH - len(left) - len(right)
+    return f"{left}{' ' * gap}{right}" if gap > 1 else f"{left}\n{right}"
+
+
+def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
+    """The load cases; of a net also the greatest of its legs."""
+    every = load_cases(assessment)
+    cases, note = shown_cases(every)
+    fallen = [one for one in cases if one.failure is not None]
+    standing = [one for one in cases if one.results]
+    if standing:
+        yield blocks.table_of(
+            "",
+            standing,
+            words("", lambda one: Cell(one.code, strong=True), 0.0),
+            words("load case", lambda one: _case_text(one, standing)),
+            *case_columns(standing),
+            note=note,
+            dense=True,
+        )
+    if fallen:
+        told = (f"! {one.code} {one.words}: no equilibrium ({one.failure})" for one in fallen)
+        yield Prose(tuple((Span(text, State.FAIL),) for text in told))
+
+
+def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
+    """A case in short: its environment is named once."""
+    if case.situation in (STILL, STILL_LOW):
+        return case.situation
+    own = "design current" if case.environment == "own" else case.environment
+    if case.as_given:
+        return short(own, 24)
+    changed = {STRUMMING: "strumming", FOULED: "growth"}.get(case.situation, case.situation)
+    named = any(one.as_given and one.environment == case.environment for one in cases)
+    return short(f"same, {changed}" if named else f"{own}, {changed}", 32)
+
+
+def _checks(assessment: Assessment) -> Iterator[blocks.Block]:
+    """The rules with the greatest use, those that fail first; what is used less in one line."""
+    rows, rest = _rows([*assessment.every_finding()])
+    if rows:
+        yield blocks.table_of(
+            "",
+            rows,
+            words("", lambda one: Cell(_sign(one.state), state=one.state), 0.0),
+            words("check", _title, 0.0),
+            number("use %", lambda one: percent_text(one.utilisation)),
+            words(f"{'100':>12}", _bar, 0.0),
+            number("found", _found),
+            words("limit", limit_text, 0.0),
+            words("case, where", _where),
+            note=_below(rows, rest),
+            dense=True,
+        )
+
+
+def _below(rows: Sequence[Finding], rest: Sequence[Finding]) -> str:
+    """How much other checks use, and what the codes of cases stand for that no table names."""
+    most = max((one.utilisation or 0.0 for one in rest), default=None)
+    told = [f"all other checks: {percent_text(most)} % or less"] if rest else []
+    shown = {one.case[-1] for one in rows if one.case}
+    codes = ", ".join(f"{code} {means}" for code, means in _CODES.items() if code in shown)
+    return "  " + "; ".join(filter(None, (*told, codes)))
+
+
+_CODES = {"L": "launch", "R": "rise", "B": "break", "w": "in waves"}
+
+
+def _title(finding: Finding) -> str:
+    return RULES[finding.rule].title.lower().replace(" in the ", ", ")
+
+
+def _rows(every: Sequence[Finding]) -> tuple[list[Finding], list[Finding]]:
+    """The findings with a row each, and the governing ones of all other rules with a use."""
+    failed = [governing(each) for each in by_rule(_of_state(every, State.FAIL)).values()]
+    leads = _without_repeats(governing_of_each_rule(every))
+    used = [one for one in leads if one.utilisation is not None and one not in failed]
+    used.sort(key=lambda one: -(one.utilisation or 0.0))
+    most = [one for one in used if (one.utilisation or 0.0) >= _HALF or _is_open(one)]
+    most = most[: max(_MOST_ROWS, sum(map(_is_beyond, most)))] or used[:3]
+    rest = [one for one in used if one not in most]
+    return [*sorted(failed, key=lambda one: one.rank), *most], rest
+
+
+def _of_state(findings: Iterable[Finding], state: State) -> list[Finding]:
+    return [one for one in findings if one.state is state]
+
+
+def _is_open(finding: Finding) -> bool:
+    return finding.state not in (State.PASS, State.NOT_JUDGED, State.ESTIMATED)
+
+
+def _is_beyond(finding: Finding) -> bool:
+    return (finding.utilisation or 0.0) > 1.0
+
+
+def _without_repeats(findings: Sequence[Finding]) -> list[Finding]:
+    """Without the load of a release where its strength says the same."""
+    told = {(one.component, one.value, one.limit) for one in findings if one.rule == "strength"}
+    return [
+        one
+        for one in findings
+        if one.rule != "release-load" or (one.component, one.value, one.limit) not in told
+    ]
+
+
+def _sign(state: State) -> str:
+    return "" if state is State.PASS else state.sign
+
+
+def _bar(finding: Finding) -> Cell | None:
+    used = finding.utilisation
+    return None if used is None else Cell(bar=min(used, 9.99), state=finding.state)
+
+
+def _found(finding: Finding) -> str:
+    quantity = quantity_of(finding)
+    return "" if finding.value is None or quantity is None else quantity.format(finding.value)
+
+
+def _where(finding: Finding) -> str:
+    return f"{finding.case or '':2} {finding.component or 'whole line'}"
+
+
+def _in_short(item: OpenItem) -> OpenItem:
+    """An item without sources in brackets."""
+    text = re.sub(r" \((?:[^()]|\([^()]*\)){30,}\)", "", item.text.replace("\u00a0", " "))
+    return replace(item, head=item.head.replace("\u00a0", " "), text=text)
+
+
+def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> blocks.OpenItems:
+    """The items that have room; with `most`, as many of them whatever room they take."""
+    kept: list[OpenItem] = []
+    for item in items:
+        room -= len(wrap(f"{item.head} {item.text}", _WIDTH - 3))
+        if len(kept) == most or (most is None and room < 0 and kept):
+            break
+        kept.append(item)
+    left = len(items) - len(kept)
+    note = f"   and {left} more: in the report (--report) and in --json" if left else ""
+    return blocks.OpenItems("Open items", tuple(kept), note)
+
+
+def _height(block: blocks.Block) -> int:
+    """About how many lines a block takes, with the blank one before it."""
+    if isinstance(block, blocks.Table):
+        heads = max(len(column.heading.split("\n")) + bool(column.unit) for column in block.columns)
+        columns = zip(*block.rows, strict=True)
+        *fixed, last = (
+            [len(cell.text) if cell.bar is None else 14 for cell in cells] for cells in columns
+        )
+        left = _WIDTH - sum(max(cells) + 1 for cells in fixed)
+        return 1 + heads + sum(ceil(width / left) for width in last) + bool(block.note)
+    if isinstance(block, blocks.Note | Prose):
+        return 1 + len(block.lines)
+    return 1
+
+
+def beyond_text(findings: Sequence[Finding]) -> tuple[str, ...]:
+    """What no static check covers."""
+    waves = any(one.rule == "wave-slack" for one in findings)
+    beyond = ["waves", "snap loads", "fatigue", "wear", "soil", "trawls", "hauling"][int(waves) :]
+    return (f"Beyond a static check: {', '.join(beyond)}.",)
+
+
+def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
+    """A matrix of the greatest use, then what is open of the moorings that fail."""
+    rows = [summary_row(each) for each in assessments]
+    names, kept, codes = environments_of(rows)
+    failing = [each for each in assessments if each.verdict is Conclusion.FAILS]
+    lacking = sum(each.verdict is Conclusion.INCOMPLETE for each in assessments)
+    fail = "FAILS" if len(failing) == 1 else "FAIL"
+    said = f"{len(failing)} {fail} in at least one" if failing else "NOTHING FAILS"
+    said += f", {lacking} INCOMPLETE" * bool(lacking)
+    state = State.FAIL if failing else State.UNKNOWN if lacking else State.PASS
+    places = f"{len(names)} ENVIRONMENT{'S' * (len(names) != 1)}"
+    head = f"DESIGN CHECK OF {len(rows)} MOORINGS IN {places}: {said}"
+    yield Prose(((Span(head, state),),))
+    milder = f"; {len(names) - len(kept)} milder ones are left out" * (len(kept) < len(names))
+    room = max(20, _WIDTH - 6 * len(kept) - 8)
+    yield blocks.table_of(
+        "",
+        rows,
+        words("greatest use, %", lambda row: short(row.mooring, room)),
+        *(_of_environment(name, codes[name]) for name in kept),
+        number("launch", lambda row: _matrix_text(row.handling)),
+        note="! fails  ~ over 100, a warning or accepted  ? not known\n"
+        + ", ".join(f"{codes[name]} {name}" for name in kept if codes[name] != name)
+        + milder,
+        dense=True,
+    )
+    yield from likelihood_tables([(each.name, [*each.all_findings()]) for each in assessments])
+    left = _MOST_ITEMS
+    for each in failing or [one for one in assessments if one.verdict is Conclusion.INCOMPLETE]:
+        grave = (one for one in open_items(each) if one.state in (State.FAIL, State.UNKNOWN))
+        items = [_in_short(one) for one in grave]
+        if left and items:
+            yield blocks.OpenItems(each.name, tuple(items[:left]))
+            left -= min(left, len(items))
+    yield blocks.Note(beyond_text([one for each in assessments for one in each.all_findings()]))
+
+
+def _of_environment(name: str, code: str) -> blocks.Field:
+    return number(code, lambda row: _matrix_text(row.cells.get(name)))
+
+
+def _matrix_text(cell: MatrixCell | None) -> str:
+    if cell is None:
+        return "-"
+    text = "" if cell.use is None else percent_text(cell.use)
+    if cell.state in (State.FAIL, State.UNKNOWN):
+        return f"{text}{cell.state.sign}"
+    return f"{text}~" if (cell.use or 0.0) > 1.0 else f"{text} "

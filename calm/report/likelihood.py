@@ -1,0 +1,56 @@
+"""Tables of the probability with which designs break a limit."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from math import inf
+
+from calm.checks.assess import RULES
+from calm.checks.finding import Finding, by_rule
+from calm.report import blocks, check_tables
+from calm.report.blocks import number, words
+from calm.report.check_tables import place_of
+
+_NOTE = (
+    "Each rule is shown for the component that breaks its limit most often; launch, recovery and "
+    "breaks are counted in the first 64 samples. A sample without equilibrium breaks every limit."
+)
+
+
+def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[blocks.Table]:
+    """The designs, by name, by their greatest probability; nothing where none was counted."""
+    designs = [(_likeliest(findings), name) for name, findings in named]
+    designs.sort(key=lambda one: -(one[0][0].probability or 0.0) if one[0] else inf)
+    if not any(found for found, _ in designs):
+        return
+    rows: list[tuple[Finding | None, str]] = []
+    for found, name in designs:
+        likely = [each for each in found if each.probability]
+        rows += zip(likely or (None,), (name, *("" for _ in likely[1:])), strict=True)
+
+    def share(finding: Finding) -> blocks.Cell:
+        percent = 100.0 * (finding.probability or 0.0)
+        digits = 0 if percent >= 9.5 else 1
+        text = f"{percent:.{digits}f}" if percent >= 0.05 else "<0.1"
+        return blocks.Cell(text, strong=percent >= 5.0)
+
+    fields = [
+        words("component", lambda one: one.component or "whole line"),
+        check_tables.FIGURES[2],
+        words("where", place_of),
+        number("broken in", share, "%"),
+    ]
+    yield blocks.table_of(
+        "Probability of breaking a limit",
+        rows,
+        words("design", lambda row: row[1]),
+        words("rule", lambda row: row[0].rule if row[0] else "none in any sample", 0.0),
+        *((column, lambda row, show=show: row[0] and show(row[0])) for column, show in fields),
+        note=_NOTE,
+    )
+
+
+def _likeliest(findings: Sequence[Finding]) -> list[Finding]:
+    """Return the finding of each rule with the greatest probability, the greatest first."""
+    counted = by_rule(one for one in findings if one.probability is not None)
+    groups = (counted[name] for name in RULES if name in counted)
+    found = (max(group, key=lambda one: one.probability or 0.0) for group in groups)
+    return sorted(found, key=lambda one: -(one.probability or 0.0))

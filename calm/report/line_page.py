@@ -1,0 +1,205 @@
+"""Page 3 of a design check: what every piece bears in all load cases, and what it may bear."""
+
+from collections.abc import Callable, Iterator, Sequence
+from math import inf
+
+from calm.case.leg_result import LegResult
+from calm.checks.finding import Finding, State
+from calm.drawing.check_figures import PieceBar, load_chart
+from calm.drawing.line_picture import alike, together
+from calm.quantities import QUANTITIES
+from calm.report.blocks import Block, Cell, Figure, Table, number, table_of, words
+from calm.report.check_tables import grouped
+from calm.report.drawing_page import run_of
+from calm.report.load_cases import (
+    LOAD,
+    LoadCase,
+    PieceEnvelope,
+    capacity_text,
+    load_text,
+    piece_loads,
+)
+from calm.report.open_items import percent_text
+from calm.report.page_one import SignedMooring
+
+
+def line_page(signed: SignedMooring) -> Iterator[Block]:
+    """How loaded each piece is: cables and what hangs in them, hardware by type, the anchor."""
+    if not signed.standing:
+        return
+    loads = piece_loads(signed.assessment, signed.standing)
+    hardware = [one for one in loads if one.row.role == "connector"]
+    main = [one for one in loads if one.row.role != "connector"]
+    yield _loads_table(main)
+    unit = LOAD.display_unit
+    points = [
+        PieceBar(
+            one.number, one.tension * LOAD.scale, _scaled(one.standing), _known(one.launch_tension),
+            _scaled(one.launch), one.standing is not None,
+        )
+        for one in loads
+    ]  # fmt: skip
+    title = f"Tension and capacity, {unit}"
+    aside = (
+        "by item; black: standing, grey: launch; tick: capacity, dotted: in the launch; "
+        "▲ beyond the scale; ? not known"
+    )
+    yield Figure(title, load_chart(title, points, (508.0, 130.0)), aside=aside)
+    if hardware:
+        yield _hardware_table(hardware)
+    yield from _anchor_table(signed)
+
+
+def _scaled(finding: Finding | None) -> float | None:
+    return None if finding is None else _known(finding.limit)
+
+
+def _known(value: float | None) -> float | None:
+    return None if value is None else value * LOAD.scale
+
+
+def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
+    """A row of each cable, instrument, float, release and anchor; equal floats share one."""
+    groups: list[list[PieceEnvelope]] = []
+    for one in loads:
+        last = groups[-1][-1] if groups else None
+        same = (
+            last is not None
+            and last.row.use == one.row.use
+            and alike(last.row.label, one.row.label)
+        )
+        if same and one.row.role in ("float", "line"):
+            groups[-1].append(one)
+        else:
+            groups.append([one])
+    rows = [(max(group, key=_most_used), group) for group in groups]
+    unit = LOAD.display_unit
+
+    def of(show: Callable[[PieceEnvelope], object]) -> Callable[[object], object]:
+        return lambda row: show(row[0])  # type: ignore[index]
+
+    def case(one: PieceEnvelope) -> Cell:
+        return Cell(load_text(one.tension), one.case, goes_on=True)
+
+    passes = ("float", "anchor")
+    return table_of(
+        "The line",
+        rows,
+        number("No.", lambda row: run_of([str(one.number) for one in row[1]])),
+        words("Item", lambda row: together([one.row.label for one in row[1]])),
+        number(f"Largest tension {unit}", of(case)),
+        number(f"Least {unit}", of(
+            lambda one: None if one.row.role in passes else load_text(one.least))),
+        number("Largest tilt °", of(
+            lambda one: None if one.row.role == "anchor" else QUANTITIES["tilt"].format(one.tilt))),
+        number(f"Capa-\ncity {unit}", of(lambda one: capacity_text(one.standing))),
+        words("Use", of(lambda one: _bar(one.standing)), 0.45),
+        number("%", of(lambda one: _use(one.standing))),
+        number(f"Launch {unit}", of(lambda one: _force(one.launch_tension))),
+        number(f"Capa-\ncity {unit}", of(lambda one: capacity_text(one.launch))),
+        number("Use %", of(lambda one: _use(one.launch))),
+        number(f"Rise {unit}", of(lambda one: _force(one.rise_tension))),
+        note="Capacity: the lesser of the working load and the breaking load over its safety "
+        "factor; in the launch by the factors there. The case stands behind the tension. "
+        "≈ estimated, ? no published load, ○ accepted. Of equal pieces the one that is used most.",
+        aside="envelope of all load cases",
+        ruled=False,
+    )  # fmt: skip
+
+
+def _most_used(one: PieceEnvelope) -> tuple[float, float]:
+    used = None if one.standing is None else one.standing.utilisation
+    return used or 0.0, one.tension
+
+
+def _force(value: float | None) -> str:
+    return "" if not value else load_text(value)
+
+
+def _bar(finding: Finding | None) -> Cell | None:
+    if finding is None or finding.utilisation is None:
+        return None
+    return Cell(bar=min(finding.utilisation, 9.99), state=finding.state)
+
+
+def _use(finding: Finding | None) -> Cell | None:
+    """The use of a load, with the sign of what is accepted, warned of, not known or fails."""
+    if finding is None:
+        return None
+    signs = {State.ACCEPTED: "○", State.UNKNOWN: "?", State.FAIL: "✗", State.WARN: "▲"}
+    sign = signs.get(finding.state, "")
+    used = "" if finding.utilisation is None else percent_text(finding.utilisation)
+    return Cell("\u00a0".join(filter(None, (sign, used))), strong=True)
+
+
+def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
+    """A row of each type, with the piece that is used most."""
+    groups = grouped(loads, lambda one: one.row.use)
+    rows = [(max(group, key=_most_used), group) for group in groups]
+    unit = LOAD.display_unit
+
+    def worst_launch(row: tuple[PieceEnvelope, list[PieceEnvelope]]) -> PieceEnvelope:
+        return max(row[1], key=lambda one: one.launch_tension or 0.0)
+
+    return table_of(
+        "Connecting hardware",
+        rows,
+        words("Type", lambda row: row[0].row.part.component.name or row[0].row.use, 1.2),
+        number("Pieces", lambda row: len(row[1])),
+        words("Governing piece", lambda row: f"{row[0].number} {row[0].row.label}"),
+        number(f"Standing {unit}", lambda row: load_text(row[0].tension)),
+        number(f"Capacity {unit}", lambda row: capacity_text(row[0].standing)),
+        number("Use %", lambda row: _use(row[0].standing)),
+        number(f"Launch {unit}", lambda row: _force(worst_launch(row).launch_tension)),
+        number("Use %", lambda row: _use(worst_launch(row).launch)),
+        aside="a row a type; the piece that governs",
+        ruled=False,
+    )
+
+
+def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
+    """What each case asks of the anchor, or of each anchor of a net the worst case."""
+    rows = [
+        (case, result) for case in signed.standing for result in case.results if result.leg.anchored
+    ]
+    if not rows:
+        return
+    anchors = grouped(rows, lambda row: row[1].file.pieces[-1].label)
+    if len(anchors) > 1 or len(rows) > 12:
+        rows = [max(group, key=lambda row: row[1].anchor_load.required_weight) for group in anchors]
+    checks, angle = signed.assessment.file.checks, QUANTITIES["angle"].format
+    factor, unit = checks.anchor_factor, LOAD.display_unit
+    first = rows[0][1]
+    name = first.file.pieces[-1].component.name or first.file.pieces[-1].label
+    one_anchor = len(anchors) == 1
+    weighs = f", {LOAD.say(first.anchor_load.weight)} in water" if one_anchor else ""
+
+    def uplift(row: tuple[LoadCase, LegResult]) -> str:
+        anchor = row[1].anchor_load
+        return percent_text(factor * anchor.vertical / anchor.weight)
+
+    def sliding(row: tuple[LoadCase, LegResult]) -> str:
+        anchor = row[1].anchor_load
+        holds = anchor.friction * (anchor.weight / factor - anchor.vertical)
+        return percent_text(anchor.horizontal / holds if holds > 0.0 else inf)
+
+    yield table_of(
+        f"Anchor: {name}{weighs}" if one_anchor else "Anchors, each in its worst case",
+        rows,
+        words("", lambda row: Cell(row[0].code, strong=True), 0.0),
+        words("Case" if one_anchor else "Anchor, case", lambda row: row[0].words if one_anchor
+              else f"{row[1].file.pieces[-1].label}, {row[0].words}"),
+        number(f"Vertical {unit}", lambda row: load_text(row[1].anchor_load.vertical)),
+        number(f"Horizontal {unit}", lambda row: load_text(row[1].anchor_load.horizontal)),
+        number("Angle from\nvertical °", lambda row: angle(row[1].anchor_load.angle)),
+        number(f"Weight\nrequired {unit}", lambda row: load_text(
+            row[1].anchor_load.required_weight)),
+        number("Weight use %", lambda row: percent_text(
+            row[1].anchor_load.required_weight / row[1].anchor_load.weight)),
+        number("Uplift use %", uplift),
+        number("Sliding use %", sliding),
+        note=f"Required: {factor:g} (V + H / {first.anchor_load.friction:.3g}). Uplift: V against "
+        f"weight / {factor:g}. Sliding: H against {first.anchor_load.friction:.3g} "
+        f"(weight / {factor:g} − V). The soil is not judged.",
+        ruled=False,
+    )  # fmt: skip

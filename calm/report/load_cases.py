@@ -1,0 +1,249 @@
+"""What a mooring bears in every load case: the cases, and the envelope of its pieces.
+
+A case is a situation of an environment; a net has a result of each of its legs in it. Its code
+stands behind the figures that it governs, as in findings.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import hypot, isnan
+
+import numpy as np
+
+from calm.case.leg_result import LegResult
+from calm.case.result_tables import ClampRow, ComponentRow, rows_down
+from calm.checks.assessment import Assessment, estimated
+from calm.checks.finding import AS_GIVEN, OWN, Finding, State, governing
+from calm.checks.posture import reaches_the_surface
+from calm.checks.situations import FOULED, STILL, STILL_LOW, STRUMMING, case_of
+from calm.checks.strength import allowable_load
+from calm.errors import NoEquilibrium
+from calm.files.pieces import STAND_IN
+from calm.quantities import QUANTITIES, Quantity, say
+
+LOAD = Quantity("load", "load", "N", "Force on paper.", 2, "", "kN")
+"""Forces on paper: kN to 0.01, or what a person chooses."""
+
+
+def load_text(value: float | None) -> str:
+    """A force on paper, with a true minus; a dash where it is not known."""
+    text = LOAD.format(value)
+    return "–" if text == "-" else text.replace("-", "−")
+
+
+def length_text(value: float | None) -> str:
+    """A cut length on paper, whole metres without decimals."""
+    return QUANTITIES["length"].format(value).removesuffix(".00")
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """A mooring in an environment and a situation.
+
+    Attributes
+    ----------
+    code : as in findings, such as 1s
+    environment : its name
+    situation : what is changed in it
+    results : of each leg; none where it has no equilibrium
+    failure : why it has none
+    """
+
+    code: str
+    environment: str
+    situation: str
+    results: tuple[LegResult, ...]
+    failure: NoEquilibrium | None
+
+    @property
+    def as_given(self) -> bool:
+        """Whether nothing is changed in its environment."""
+        return self.situation == AS_GIVEN
+
+    @property
+    def words(self) -> str:
+        """The case in words."""
+        name = "Design current" if self.environment == OWN else self.environment
+        if self.situation in (STILL, STILL_LOW):
+            return self.situation.capitalize()
+        changed = {STRUMMING: "strumming, drag × 1.5", FOULED: "growth"}
+        if not self.as_given:
+            return f"{name}, {changed.get(self.situation, self.situation)}"
+        waters = [one.water for one in self.results]
+        fastest = max((float(np.hypot(each.u, each.v).max()) for each in waters), default=None)
+        return name if fastest is None else f"{name}, {say('speed', fastest)}"
+
+    @cached_property
+    def rows(self) -> Mapping[str, ComponentRow | ClampRow]:
+        """Every piece and clamp by its label."""
+        every: list[ComponentRow | ClampRow] = []
+        for result in self.results:
+            for piece, clamps in rows_down(result):
+                every += (piece, *clamps)
+        return {row.part.label: row for row in every}
+
+    @property
+    def depth(self) -> float:
+        """The least of all tops [m]."""
+        return min(one.top.depth for one in self.results)
+
+    @property
+    def knockdown(self) -> float:
+        """The greatest of all tops [m]; 0 where none has one."""
+        known = [one.top.knockdown for one in self.results]
+        return max((one for one in known if one is not None and not isnan(one)), default=0.0)
+
+    @property
+    def offset(self) -> float:
+        """The greatest of all tops from the anchor [m]."""
+        return max(hypot(one.top.x, one.top.y) for one in self.results)
+
+    @cached_property
+    def tension(self) -> tuple[float, str]:
+        """The greatest, and the piece that bears it."""
+        return max((row.tension, row.label) for row in self._pieces())
+
+    @cached_property
+    def factor(self) -> tuple[float, str] | None:
+        """The least safety factor, and the piece that has it; None where none is known."""
+        known = ((row.safety_factor, row.label) for row in self._pieces())
+        return min((one for one in known if not isnan(one[0])), default=None)
+
+    @cached_property
+    def strength(self) -> tuple[float, str] | None:
+        """The greatest tension over what a piece may bear, and the piece."""
+        shares = []
+        for result in self.results:
+            leg = estimated(result.leg)
+            factors, surface = leg.file.checks.safety_factor, reaches_the_surface(leg)
+            for row, piece in zip(result.components, leg.file.pieces, strict=True):
+                load = allowable_load(piece.component, factors, surface)
+                if load:
+                    shares.append((row.tension / load, row.label))
+        return max(shares, default=None)
+
+    @cached_property
+    def anchor(self) -> tuple[float, str] | None:
+        """The weight required over the weight of an anchor, and the anchor."""
+        loads = [
+            (one.anchor_load.required_weight / one.anchor_load.weight, one.file.pieces[-1].label)
+            for one in self.results
+            if one.leg.anchored and one.anchor_load.weight > 0.0
+        ]
+        return max(loads, default=None)
+
+    @cached_property
+    def tilt(self) -> tuple[float, str] | None:
+        """The greatest of an instrument, and the instrument."""
+        tilts = (
+            (row.tilt, label)
+            for label, row in self.rows.items()
+            if row.part.component.role == "instrument" and not isnan(row.tilt)
+        )
+        return max(tilts, default=None)
+
+    def _pieces(self) -> Iterator[ComponentRow]:
+        return (row for result in self.results for row in result.components if row.use != STAND_IN)
+
+
+def load_cases(assessment: Assessment) -> list[LoadCase]:
+    """The cases of a mooring: each environment as given and changed, still water last, once."""
+    numbers: dict[str, int] = {}
+    found: dict[str, LoadCase] = {}
+    for stand in assessment.stands:
+        environment = stand.leg.file.environment.name or OWN
+        number = numbers.setdefault(environment, len(numbers) + 1)
+        for one in stand.situations:
+            code = case_of(number, one.name)
+            known = found.get(code)
+            if known is not None and (known.environment != environment or one.result is None):
+                continue
+            results = () if one.result is None else (one.result,)
+            before = () if known is None else known.results
+            found[code] = LoadCase(code, environment, one.name, (*before, *results), one.failure)
+    return sorted(found.values(), key=lambda one: one.code.startswith("0"))
+
+
+def worst_of_each_environment(cases: Sequence[LoadCase]) -> list[LoadCase]:
+    """Of each environment the case with the deepest top; still water stays."""
+    kept: dict[str, LoadCase] = {}
+    for one in cases:
+        key = one.code if one.code.startswith("0") else one.environment
+        if key not in kept or one.knockdown > kept[key].knockdown:
+            kept[key] = one
+    return list(kept.values())
+
+
+@dataclass(frozen=True)
+class PieceEnvelope:
+    """What a piece bears in all cases, and what it may bear.
+
+    Attributes
+    ----------
+    number : in the line, from 1
+    row : the piece in the first case
+    tension, case : the greatest [N], and the case
+    least, tilt : tension [N] and tilt [degrees]
+    standing, launch : the finding on its strength; None where it is not judged
+    launch_tension, rise_tension : the greatest [N]; None where not known
+    """
+
+    number: int
+    row: ComponentRow
+    tension: float
+    case: str
+    least: float
+    tilt: float
+    standing: Finding | None
+    launch: Finding | None
+    launch_tension: float | None
+    rise_tension: float | None
+
+
+def piece_loads(assessment: Assessment, cases: Sequence[LoadCase]) -> list[PieceEnvelope]:
+    """The envelope of every piece, from the top to the anchor, leg by leg."""
+    strong, falling = (found_on(assessment, name) for name in ("strength", "launch-strength"))
+    launch, recovery = assessment.launch, assessment.recovery
+    standing = [one for one in cases if one.results]
+    found = []
+    first = (row for result in standing[0].results for row in result.components)
+    for number, row in enumerate((one for one in first if one.use != STAND_IN), 1):
+        every = ((one.rows.get(row.label), one.code) for one in standing)
+        rows = [(each, code) for each, code in every if isinstance(each, ComponentRow)]
+        tension, case = max(((each.tension, code) for each, code in rows), key=lambda one: one[0])
+        falls = None if launch is None else _at(launch.greatest_tension, row.index)
+        rises = None
+        if recovery is not None:
+            both = recovery.tension_top, recovery.tension_bottom
+            known = [one for each in both if (one := _at(each, row.index)) is not None]
+            rises = max(known, default=None)
+        found.append(PieceEnvelope(
+            number, row, tension, case, min(each.least_tension for each, _ in rows),
+            max(each.tilt for each, _ in rows), strong.get(row.label), falling.get(row.label),
+            falls, rises,
+        ))  # fmt: skip
+    return found
+
+
+def _at(figures: np.ndarray, index: int) -> float | None:
+    """A figure of a piece; None of a piece that has none."""
+    value = float(figures[index]) if index < len(figures) else float("nan")
+    return None if isnan(value) else value
+
+
+def found_on(assessment: Assessment, rule: str) -> Mapping[str, Finding]:
+    """Of each component, by its label, what governs of the findings of a rule."""
+    groups: dict[str, list[Finding]] = {}
+    for one in assessment.every_finding():
+        if one.rule == rule and one.component is not None:
+            groups.setdefault(one.component, []).append(one)
+    return {label: governing(group) for label, group in groups.items()}
+
+
+def capacity_text(finding: Finding | None) -> str:
+    """The load that a piece may bear, with the sign of an estimate; ? where no load is known."""
+    if finding is None:
+        return "–"
+    sign = "≈\u00a0" if finding.state is State.ESTIMATED else ""
+    return "?" if finding.limit is None else sign + load_text(finding.limit)

@@ -1,0 +1,285 @@
+"""What is open of a mooring, cause by cause, and its verdict in a sentence.
+
+Components of which the same is said share an item, and what governs them tells its figures.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from math import isfinite
+
+from calm.checks.assess import RULES
+from calm.checks.assessment import EXAMPLE, Assessment
+from calm.checks.finding import (
+    Conclusion,
+    Finding,
+    State,
+    conclusion_of,
+    governing,
+    percent_used,
+    worst_of,
+)
+from calm.quantities import QUANTITIES, Quantity
+from calm.report.blocks import OpenItem, Span
+from calm.report.check_tables import grouped, joined, named_components
+from calm.report.load_cases import LOAD
+
+OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED)
+"""States of what is open, in the order in which it is listed."""
+
+_DIFFERENCES = ("planned-depth", "as-deployed")
+"""Rules whose values are differences, which their messages explain."""
+
+_NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
+
+
+def plain(text: str) -> str:
+    """A sentence as people read it on paper: keys of a file are words, and figures keep their
+    units.
+    """
+    told = re.sub(r"`([^`]*)`", lambda key: key[1].replace("_", " ").replace(":", ""), text)
+    told = re.sub(r"\b(\d+) N\b", lambda force: LOAD.say(float(force[1])), told)
+    told = re.sub(r"(?<![\w-])-(?=\d)", "−", told)
+    return re.sub(r"(?<=\d) (?=(?:m/s|mm|m|kN|N|kg|s|min|kn|kgf|lbf|ft)\b|%)", "\u00a0", told)
+
+
+def short(text: str, most: int) -> str:
+    """A text, cut where it is longer than a cell has room for."""
+    return text if len(text) <= most else f"{text[: most - 1].rstrip()}…"
+
+
+def quantity_of(finding: Finding) -> Quantity | None:
+    """The quantity of a finding's figures as papers show it; None of a rule without figures."""
+    name = RULES[finding.rule].quantity
+    return LOAD if name == "tension" else QUANTITIES.get(name)
+
+
+def figure_text(finding: Finding, value: float | None) -> str:
+    """A figure of a finding with its unit; nothing where there is none."""
+    quantity = quantity_of(finding)
+    return "" if value is None or quantity is None else plain(quantity.say(value))
+
+
+def limit_text(finding: Finding) -> str:
+    """The limit of a finding with the sign of how it is to be kept."""
+    sign = {"<=": "≤\u00a0", ">=": "≥\u00a0"}.get(finding.sense or "", "")
+    text = figure_text(finding, finding.limit)
+    return sign + text if text else ""
+
+
+def percent_text(utilisation: float | None) -> str:
+    """A utilisation in percent, rounded up; a dash where there is none."""
+    if utilisation is None:
+        return "–"
+    percent = percent_used(utilisation)
+    return ">999" if not isfinite(percent) or percent > 999.0 else f"{percent:.0f}"
+
+
+def where_text(finding: Finding) -> str:
+    """The component of a finding, and the code of its case."""
+    component = finding.component or "whole line"
+    return f"{component}, {finding.case}" if finding.case else component
+
+
+def open_groups(assessment: Assessment) -> list[list[Finding]]:
+    """Findings that are open, those of one cause together, the gravest first.
+
+    A cause is what is said alike of several components; an estimate of one component; an
+    acceptance; a rule without data.
+    """
+    use = {one.label: one.use for one in assessment.inventory}
+    return groups_of(assessment.every_finding(), use)
+
+
+def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[Finding]]:
+    """The same of findings, and the component ids of pieces and clamps by their labels."""
+
+    def cause(finding: Finding) -> Hashable:
+        if finding.state is State.ACCEPTED and finding.accept is not None:
+            accept = finding.accept
+            return State.ACCEPTED, use.get(finding.component or ""), accept.reason, accept.by
+        if finding.state is State.ESTIMATED:
+            return State.ESTIMATED, use.get(finding.component or "")
+        return State.NOT_JUDGED, finding.rule
+
+    found: list[list[Finding]] = []
+    every = [*findings]
+    for state in OPEN:
+        those = [one for one in every if one.state is state]
+        if state in (State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED):
+            groups = grouped(those, cause)
+        else:
+            groups = joined(those)
+        found += sorted(groups, key=lambda group: governing(group).rank)
+    return found
+
+
+def open_counts(assessment: Assessment) -> Counter[State]:
+    """How many items are open in each state."""
+    return Counter(worst_of(group).state for group in open_groups(assessment))
+
+
+def counts_text(groups: Iterable[Sequence[Finding]]) -> str:
+    """How many items are open in each state, such as ``1 warning, 3 accepted``."""
+    counts = Counter(worst_of(group).state for group in groups)
+    return ", ".join(_counted(counts[state], state) for state in OPEN if counts[state])
+
+
+def _counted(count: int, state: State) -> str:
+    names = {State.FAIL: "failure", State.WARN: "warning", State.NOT_JUDGED: "not judged"}
+    plural = count != 1 and state in (State.FAIL, State.WARN)
+    return f"{count} {names.get(state, state.value)}{'s' * plural}"
+
+
+STATES = {
+    Conclusion.FAILS: State.FAIL, Conclusion.INCOMPLETE: State.UNKNOWN,
+    Conclusion.BY_ACCEPTANCE: State.WARN, Conclusion.OPEN_ITEMS: State.WARN,
+    Conclusion.PASSES: State.PASS,
+}  # fmt: skip
+"""The state as which a conclusion is shown."""
+
+
+def verdict_of(findings: Iterable[Finding], use: Mapping[str, str]) -> Span:
+    """The verdict in a line, such as ``passes with open items: 1 warning, 3 accepted``.
+
+    Parameters
+    ----------
+    use : component ids of pieces and clamps by their labels
+    """
+    found = [*findings]
+    conclusion = conclusion_of(found)
+    told = counts_text(groups_of(found, use))
+    return Span(f"{conclusion.words}{': ' * bool(told)}{told}", STATES[conclusion])
+
+
+def assessment_verdict(assessment: Assessment) -> Span:
+    """The verdict of a mooring in a line, with its sign."""
+    use = {one.label: one.use for one in assessment.inventory}
+    said = verdict_of(assessment.every_finding(), use)
+    sign = "" if said.state is None else f"{said.state.sign} "
+    return Span(f"{sign}{said.text}", said.state)
+
+
+def open_items(assessment: Assessment) -> list[OpenItem]:
+    """The items of page one, with a number each."""
+    groups = open_groups(assessment)
+    return [_item(group, number) for number, group in enumerate(groups, 1)]
+
+
+def _item(group: Sequence[Finding], number: int) -> OpenItem:
+    worst = governing(group)
+    if worst.utilisation is None:  # the greatest value of its quantity
+        quantity = RULES[worst.rule].quantity
+        alike = [one for one in group if RULES[one.rule].quantity == quantity]
+        worst = max(alike, key=lambda one: (one.state.severity, abs(one.value or 0.0)))
+    return OpenItem(worst.state, number, f"{_head(group, worst)}.", plain(_told(group, worst)))
+
+
+def _head(group: Sequence[Finding], worst: Finding) -> str:
+    """What is open, of what, and its use where that is known."""
+    labels = list(dict.fromkeys(one.component or "" for one in group))
+    of = f", {short(named_components(_once(group)), 90)}" if labels != [""] else ""
+    if worst.missing is not None:
+        return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} missing"
+    if worst.state is State.ESTIMATED:
+        return f"{_capital(short(named_components(_once(group)), 90))}: estimated"
+    use = "" if worst.utilisation is None else f": {percent_text(worst.utilisation)}\u00a0%"
+    if worst.state is State.NOT_JUDGED:
+        use = " is not judged"
+        of = f" ({len(labels)})" if len(labels) > 1 else of
+    rules = dict.fromkeys(RULES[one.rule].title for one in group)
+    return f"{_capital(', '.join(rules).lower())}{of}{use}"
+
+
+def _told(group: Sequence[Finding], worst: Finding) -> str:
+    """What was found, against what, and what is to be done or why it is accepted."""
+    found, limit = figure_text(worst, worst.value), limit_text(worst)
+    where = f" ({worst.case})" if worst.case else ""
+    figures = f"{found}{where}, {limit} allowed." if limit else ""
+    if worst.sense == ">=":
+        figures = f"{found}{where}, {limit} required."
+    if worst.accept is not None:
+        until = f", until {worst.accept.until}" if worst.accept.until else ""
+        by = worst.accept.by or "nobody"
+        figures = figures or f"{found}{where}, no figure is published." * bool(found)
+        example = " Replace before signing." if by == EXAMPLE else ""
+        said = f"Accepted: “{worst.accept.reason}” ({by}{until}).{example}"
+        return f"{figures} {said}" if figures else said
+    if worst.state is State.ESTIMATED:
+        estimate = plain(re.split(r" \(", worst.message.partition(" Its ")[2])[0])
+        return f"{figures} {_capital(estimate)}. Obtain the maker’s figure."
+    if figures and worst.rule not in _DIFFERENCES:
+        return f"{figures} {worst.remedy or ''}"
+    return f"{worst.message} {worst.remedy or ''}"
+
+
+def advice(finding: Finding) -> str:
+    """What is to be done about a finding, in short."""
+    if finding.state in (State.PASS, State.NOT_JUDGED):
+        return ""
+    if finding.accept is not None:
+        return "Accepted."
+    if finding.state is State.ESTIMATED:
+        return "On an estimate: obtain the maker’s figure."
+    return plain(finding.remedy or finding.message)
+
+
+def _once(group: Iterable[Finding]) -> list[Finding]:
+    """A finding of each component."""
+    return list({one.component: one for one in group}.values())
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def draft(assessment: Assessment) -> bool:
+    """Whether a report may not be signed: it lacks its number, revision or date, or rests on an
+    acceptance of an example."""
+    document = assessment.file.document
+    given = document is not None and all((document.id, document.revision, document.date))
+    return assessment.draft or not given
+
+
+def verdict_sentence(assessment: Assessment) -> str:
+    """The verdict in a sentence: causes, not findings, and every use over 100 % that does not
+    fail.
+    """
+    groups = open_groups(assessment)
+    counts = Counter(governing(group).state for group in groups)
+    rules = {
+        state: ", ".join(dict.fromkeys(
+            RULES[one.rule].title.lower() for group in groups for one in group if one.state is state
+        ))
+        for state in OPEN
+    }  # fmt: skip
+    said = [
+        f"{_many(counts[State.FAIL], 'failure')} ({rules[State.FAIL]})"
+        if counts[State.FAIL] else "no check fails",
+        f"{_many(counts[State.UNKNOWN], 'figure')} unknown" * (counts[State.UNKNOWN] > 0),
+        f"{_many(counts[State.WARN], 'warning')} ({rules[State.WARN]})"
+        * (counts[State.WARN] > 0),
+        f"{_many(counts[State.ACCEPTED], 'accepted exception')}" * (counts[State.ACCEPTED] > 0),
+        f"{_many(counts[State.ESTIMATED], 'estimated figure')}" * (counts[State.ESTIMATED] > 0),
+        f"{_many(counts[State.NOT_JUDGED], 'check')} without data"
+        * (counts[State.NOT_JUDGED] > 0),
+    ]  # fmt: skip
+    failing = {one.rule for group in groups for one in group if one.state is State.FAIL}
+    over = [
+        f"{RULES[one.rule].title.lower()} of {short(one.component or 'the line', 30)} "
+        f"{percent_text(one.utilisation)}\u00a0%"
+        for one in map(governing, groups)
+        if (one.utilisation or 0.0) > 1.0 and one.rule not in failing
+    ]
+    beyond = f" Over 100 % without failing: {', '.join(dict.fromkeys(over))}." if over else ""
+    return f"{_capital(', '.join(filter(None, said)))}.{beyond}"
+
+
+def _many(count: int, word: str) -> str:
+    number = _NUMBERS[count] if count < len(_NUMBERS) else str(count)
+    return f"{number} {word}{'s' * (count != 1)}"
+
+
+def verdict_words(conclusion: Conclusion) -> str:
+    """The verdict over the sentence."""
+    return _capital(conclusion.words)

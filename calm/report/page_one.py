@@ -1,0 +1,421 @@
+"""Page one of a design check: what an engineer signs."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import nan
+
+from calm.case.leg_result import LegResult
+from calm.checks.assess import RULES
+from calm.checks.assessment import Assessment
+from calm.checks.finding import Finding, State, governing_of_each_rule
+from calm.deck.deck_items import DeckItem, deck_items_of
+from calm.drawing.check_figures import DrawnCase, Label, elevation
+from calm.drawing.line_picture import alike, together
+from calm.drawing.schematic.deck_parts import Cells, parts_of
+from calm.drawing.schematic.shown_parts import ShownPart
+from calm.drawing.schematic.symbols import BALLS
+from calm.quantities import QUANTITIES, Quantity, bearing_of, bearing_text
+from calm.report import blocks, provenance
+from calm.report.blocks import (
+    Beside,
+    Block,
+    Cell,
+    Figure,
+    OpenItem,
+    OpenItems,
+    Prose,
+    Running,
+    SignOff,
+    Span,
+    Table,
+    TitleBlock,
+    number,
+    table_of,
+    words,
+)
+from calm.report.load_cases import LOAD, LoadCase, load_text, worst_of_each_environment
+from calm.report.open_items import (
+    draft,
+    figure_text,
+    limit_text,
+    open_groups,
+    percent_text,
+    short,
+    verdict_sentence,
+    verdict_words,
+    where_text,
+)
+from calm.version import __version__
+
+MOST_CASES, MOST_CHECKS, MOST_LABELS = 8, 10, 24
+MARKS = {
+    State.FAIL: "✗", State.UNKNOWN: "?", State.WARN: "▲", State.ESTIMATED: "≈", State.ACCEPTED: "○",
+    State.NOT_JUDGED: "–", State.PASS: "✓",
+}  # fmt: skip
+"""Signs of the states on paper."""
+_HALF = 0.4999  # of the capacity: what is used more is shown on page one
+_LONGEST = 30  # letters of a name in a table of page one
+
+MOST_REVISIONS = 3
+
+TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
+"""Height of a page between its head and its foot [pt]."""
+_FIXED, _ROW = 250.0, 12.6
+_LINE = 100  # letters of the verdict
+_FIGURE_WIDTH, _WIDTH = 281.0, 510.0
+
+
+@dataclass(frozen=True)
+class SignedMooring:
+    """A mooring as its papers show it.
+
+    Attributes
+    ----------
+    assessment, cases : what is judged, and in which cases
+    items : what is open, with numbers
+    sha256 : of the inputs
+    """
+
+    assessment: Assessment
+    cases: Sequence[LoadCase]
+    items: Sequence[OpenItem]
+    sha256: str
+
+    @property
+    def standing(self) -> list[LoadCase]:
+        """The cases in which it has an equilibrium."""
+        return [one for one in self.cases if one.results]
+
+    @property
+    def document(self) -> str:
+        """Number and revision; nothing where none is given."""
+        given = self.assessment.file.document
+        if given is None or not given.id:
+            return ""
+        return f"{given.id} rev.\u00a0{given.revision}" if given.revision else given.id
+
+    @property
+    def verdict(self) -> str:
+        """The verdict in the head of every page."""
+        said = self.assessment.verdict
+        return f"DRAFT, {said.words}" if draft(self.assessment) else verdict_words(said)
+
+    def running(self) -> Running:
+        """What stands at the head and the foot of every page."""
+        given = self.assessment.file.document
+        date = (given.date if given else None) or provenance.date() or ""
+        own = [given.institution if given else None, f"CALM {__version__}"]
+        foot = "  ".join(filter(None, (*own, f"inputs {self.sha256[:12]}")))
+        title = f"{self.assessment.name}  design check"
+        return Running(self.document, title, self.verdict, date, foot)
+
+
+def title_block(signed: SignedMooring) -> TitleBlock:
+    """The block at the head of page one; a field that nobody gives is empty."""
+    file = signed.assessment.file
+    given, position, depth = file.document, file.position, file.environment.depth
+
+    def field(name: str) -> str:
+        return (getattr(given, name) if given else None) or ""
+
+    kind = "net" if file.legs or len({one.leg.name for one in signed.assessment.stands}) > 1 else ""
+    results = [one for case in signed.standing for one in case.results]
+    surface = any(one.type == "surface" for one in results)
+    place = "" if position is None else provenance.position_text(position)
+    cruise = f"cruise {field('cruise')}" if field("cruise") else ""
+    below = (field("project"), cruise, field("ship"), field("institution"))
+    return TitleBlock(
+        "Design check of a mooring",
+        signed.assessment.name,
+        " · ".join(filter(None, below)),
+        (
+            ("Document", field("id")), ("Rev.", field("revision")),
+            ("Date", field("date") or provenance.date() or ""), ("Page", ""),
+            ("Position", place),
+            ("Water depth", "" if depth is None else _whole("depth_rating").say(depth)),
+            ("Type", kind or ("surface" if surface else "sub-surface")),
+        ),
+    )  # fmt: skip
+
+
+def verdict_box(signed: SignedMooring) -> Prose:
+    """The verdict, and why."""
+    head = f"{verdict_words(signed.assessment.verdict)}: "
+    state = signed.assessment.state
+    return Prose(((Span(head, state), Span(verdict_sentence(signed.assessment))),), state)
+
+
+@dataclass(frozen=True)
+class _Figure:
+    """A column of the load cases: what it shows of a case, a value or one with its component."""
+
+    heading: str
+    of: Callable[[LoadCase], float | tuple[float, str] | None]
+    text: Callable[[float], str]
+    least: bool = False
+    short: str | None = None
+
+    def value(self, case: LoadCase) -> tuple[float, str] | None:
+        """Return the figure of a case, and where it is."""
+        found = self.of(case) if case.results else None
+        return found if found is None or isinstance(found, tuple) else (found, "")
+
+    def field(self, lead: float) -> blocks.Field:
+        """The column, in which what leads is bold."""
+
+        def show(case: LoadCase) -> Cell:
+            found = self.value(case)
+            if found is None:
+                return Cell("–")
+            return Cell(self.text(found[0]), strong=found[0] == lead)
+
+        return number(self.heading, show, short=self.short)
+
+
+def _whole(name: str) -> Quantity:
+    """A quantity in metres without decimals, as page one has depths."""
+    return QUANTITIES[name]
+
+
+def _figures() -> tuple[_Figure, ...]:
+    depth, metres = QUANTITIES["depth"].format, _whole("depth_rating").format
+    return (
+        _Figure("Top depth\nm", lambda one: one.depth, metres, short="top\nm"),
+        _Figure("Knock-\ndown m", lambda one: one.knockdown, depth, short="knock-\ndown m"),
+        _Figure("Offset\nm", lambda one: one.offset, metres, short="offset\nm"),
+        _Figure(
+            f"Largest\ntension {LOAD.display_unit}",
+            lambda one: one.tension,
+            load_text,
+            short=f"tension\n{LOAD.display_unit}",
+        ),
+        _Figure("Safety\nfactor", lambda one: one.factor, "{:.1f}".format, True, "safety\nfactor"),
+        _Figure("Strength\nuse %", lambda one: one.strength, percent_text, short="strength\nuse %"),
+        _Figure("Anchor\nuse %", lambda one: one.anchor, percent_text, short="anchor\nuse %"),
+        _Figure(
+            "Instrument\ntilt °", lambda one: one.tilt, QUANTITIES["tilt"].format, short="tilt\n°"
+        ),
+    )
+
+
+def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
+    """The figures of load cases, of those that any has, without what governs."""
+    known = [one for one in _figures() if any(one.value(case) for case in cases)]
+    return [figure.field(nan) for figure in known]
+
+
+def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
+    """The cases that have room in a table, and what is said of those that have not."""
+    cases, note = [*cases], ""
+    if len(cases) > MOST_CASES:
+        cases = worst_of_each_environment(cases)
+        note = "Of each environment the case with the greatest knockdown."
+    if len(cases) > MOST_CASES:
+        kept = sorted(cases, key=lambda one: -one.knockdown)[:MOST_CASES]
+        note += f" {len(cases) - MOST_CASES} less severe ones are left out."
+        cases = [one for one in cases if one in kept]
+    return cases, note
+
+
+def cases_table(signed: SignedMooring) -> Table:
+    """The load cases, what governs in bold, and where that is in the last row."""
+    cases, note = shown_cases(signed.cases)
+
+    def named(case: LoadCase) -> str:
+        return short(case.words, 40) if case.results else f"{case.words}: no equilibrium"
+
+    leads = []
+    for figure in _figures():
+        known = [found for one in cases if (found := figure.value(one)) is not None]
+        leads.append((min if figure.least else max)(known, default=None))
+    shown = [(one, lead) for one, lead in zip(_figures(), leads, strict=True) if lead is not None]
+    table = table_of(
+        "Load cases",
+        cases,
+        words("", lambda one: Cell(one.code, strong=True), 0.0),
+        words("Case", named),
+        *(figure.field(lead[0]) for figure, lead in shown),
+        note=note,
+        ruled=False,
+        aside="governing figures in bold, and where they are",
+    )
+    where = (Cell(detail=short(lead[1], 15)) for _, lead in shown)
+    row = Cell(), Cell(detail="where"), *where
+    return replace(table, rows=(*table.rows, row), totals=1) if shown else table
+
+
+def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
+    """What governs each rule that has a use, the greatest first; of the release only what its
+    strength does not tell."""
+    found = [one for one in governing_of_each_rule(findings) if one.utilisation is not None]
+    figures = {(one.component, one.value, one.limit) for one in found if one.rule == "strength"}
+    told = [
+        one for one in found
+        if one.rule != "release-load" or (one.component, one.value, one.limit) not in figures
+    ]  # fmt: skip
+    return sorted(told, key=lambda one: -(one.utilisation or 0.0))
+
+
+def governing_table(signed: SignedMooring) -> Table:
+    """The checks that use most of what is there, with bars."""
+    rows = governing_rows(signed.assessment.every_finding())
+    over, half = (sum((one.utilisation or 0.0) > share for one in rows) for share in (1.0, _HALF))
+    kept = rows[: max(over, min(MOST_CHECKS, half))] or rows[:3]
+    rest = rows[len(kept) :]
+    note = "✓ passes  ≈ on an estimate  ▲ warning  ○ accepted  ? not known  ✗ fails.  "
+    note += "Cases: L launch, R rise, B break."
+    if rest:
+        note = f"All other checks: {percent_text(rest[0].utilisation)} % or less (page 4). {note}"
+    return table_of(
+        "Governing checks",
+        kept,
+        *check_fields(MOST_LABELS),
+        note=note,
+        ruled=False,
+        aside="use = demand / capacity, or required / available, rounded up; "
+        "the line in the bars is 100 %; hatched: beyond it",
+    )
+
+
+def check_fields(longest: int) -> tuple[blocks.Field, ...]:
+    """Columns of findings with a bar; names of at most so many letters."""
+    return (
+        words("", lambda one: Cell(state=one.state), 0.0),
+        words("Check", lambda one: RULES[one.rule].title, 1.15),
+        words("", lambda one: Cell(bar=min(one.utilisation, 9.99), state=one.state), 1.5),
+        number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
+        number("Found", lambda one: figure_text(one, one.value)),
+        words("Limit", limit_text, 0.0),
+        words("Where, case", lambda one: short(where_text(one), longest + 8), 1.3),
+    )
+
+
+def sign_off(signed: SignedMooring) -> SignOff:
+    """The revisions, the last one first, and boxes to sign in."""
+    given = signed.assessment.file.document
+
+    def field(name: str) -> str:
+        return (getattr(given, name) if given else None) or ""
+
+    own = (field("revision"), field("date"), field("author"), "")
+    history = [
+        (one.revision or "", one.date or "", one.by or "", one.change or "")
+        for one in (given.history if given else ())
+    ]
+    if own[0] not in [one[0] for one in history] or not history:
+        history.append(own)
+    roles = (("Drawn", field("author")), ("Checked", field("checked")),
+             ("Approved", field("approved")))  # fmt: skip
+    said = "Signatures. The last page says what no check judges: waves, snap loads, fatigue."
+    return SignOff(tuple(history[: -MOST_REVISIONS - 1 : -1]), roles, said)
+
+
+def page_one(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
+    """The blocks of page one; its figure has the height that the tables leave."""
+    cases, checks, signs = cases_table(signed), governing_table(signed), sign_off(signed)
+    rows = len(cases.rows) + len(checks.rows) + len(signs.revisions) + bool(cases.note)
+    rows += len(verdict_sentence(signed.assessment)) // _LINE
+    height = TEXT_HEIGHT[paper] - _FIXED - _ROW * rows
+    items = OpenItems("Open items", tuple(signed.items) or (), _no_items(signed), "more, page 4")
+    yield title_block(signed)
+    yield verdict_box(signed)
+    yield cases
+    if signed.standing and signed.standing[0].as_given:
+        yield Beside((_picture(signed, height),), (items,), _FIGURE_WIDTH / _WIDTH, height + 42.0)
+    else:
+        yield items
+    yield checks
+    yield signs
+
+
+def _no_items(signed: SignedMooring) -> str:
+    return "" if signed.items else "None."
+
+
+def _picture(signed: SignedMooring, height: float) -> Figure:
+    first, *others = signed.standing
+    drawn = [DrawnCase(one.code, one.results) for one in (first, *others)]
+    svg, scale = elevation(
+        signed.assessment.name, drawn, _labels(signed, first), (_FIGURE_WIDTH - 6.0, height)
+    )
+    told = [f"Solid: case {first.code}"]
+    told += ["dotted: strumming"] * any(one.code.endswith("s") for one in others)
+    told += ["dashed: still water"] * any(one.code == "0" for one in others)
+    told += ["thin: other cases"] * any(one.code[-1] not in "s0" for one in others)
+    water = first.results[0].water
+    towards = f" Current towards {bearing_text(bearing_of(water.u[0], water.v[0]))} at the surface."
+    aside = f"to scale, 1 : {_round(scale * 72.0 / 0.0254)}, beside it the line, not to scale"
+    note = f"{', '.join(told)}.{towards} Depths in m."
+    return Figure("The mooring", svg, aside=aside, note=note)
+
+
+def _round(value: float) -> str:
+    """A scale to three digits, such as 17 000."""
+    return f"{float(f'{value:.3g}'):,.0f}".replace(",", "\u00a0")
+
+
+def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
+    """What is named beside the line: floats, instruments, releases, anchors, and the lines between
+    them, as long as they have room."""
+    tags: dict[str | None, str] = {}
+    for (_, label), tag in item_tags(signed).items():
+        if not tag.startswith(MARKS[State.NOT_JUDGED]):
+            tags.setdefault(label, tag)
+    found: list[tuple[bool, Label]] = []
+    for result in case.results:
+        items = deck_items_of(result)
+        own = {one.label: one for one in items}
+        for part in drawn_parts(result, items, lambda *_: ()):
+            if part.junction:
+                continue
+            first = own[part.labels[0]]
+            cable = part.cable is not None and not part.clamped
+            tag = next((tags[label] for label in part.labels if label in tags), "")
+            label = part.rows[0].label
+            if cable:
+                length = "" if first.cut_length is None else f", {first.cut_length:.0f} m"
+                found.append((True, Label(part, f"{label}{length}", "", None, tag)))
+            else:
+                at = case.rows[first.label].upper
+                found.append((False, Label(part, label, f"{at[0]:z.0f}", at, tag)))
+    if len(found) > MOST_LABELS:
+        found = [one for one in found if not one[0]]
+    kept = [label for _, label in found]
+    if len(kept) > MOST_LABELS:  # ends, and every so many of a string
+        step = (len(kept) - 1) / (MOST_LABELS - 1)
+        kept = [kept[round(number * step)] for number in range(MOST_LABELS)]
+    return kept
+
+
+def afloat(result: LegResult) -> bool:
+    """Whether a leg's own top is at the surface."""
+    return result.type == "surface" and result.leg.top.free
+
+
+def drawn_parts(
+    result: LegResult, items: Sequence[DeckItem], cells: Cells
+) -> tuple[ShownPart, ...]:
+    """The parts of a leg as they are drawn: glass as so many balls, runs of names in short."""
+    roles = {one.label: one.role for one in items}
+    found = []
+    for part in parts_of(result.file, items, items, cells, surface=afloat(result)):
+        (row,) = part.rows
+        first, _, last = row.label.partition(" – ")
+        if last and not part.junction and alike(first, last):
+            part = replace(part, rows=(replace(row, label=together([first, last])),))
+        sign = part.floats or part.sign
+        if sign.symbol in BALLS:
+            count = sum(roles[label] == "float" for label in part.labels)
+            sign = replace(sign, count=sign.count * max(count, 1))
+            part = replace(part, sign=sign, floats=None, cable=None)
+        found.append(part)
+    return tuple(found)
+
+
+def item_tags(signed: SignedMooring) -> dict[tuple[str, str | None], str]:
+    """The mark and number of the first item of each rule and component."""
+    tags: dict[tuple[str, str | None], str] = {}
+    for item, group in zip(signed.items, open_groups(signed.assessment), strict=True):
+        for one in group:
+            tags.setdefault((one.rule, one.component), f"{MARKS[item.state]}{item.number}")
+    return tags

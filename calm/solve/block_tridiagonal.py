@@ -1,0 +1,116 @@
+"""Linear systems of blocks that couple only with their neighbours, in NumPy alone.
+
+The interiors of equal chunks are eliminated all at once, each as a small dense matrix with
+partial pivoting. The blocks between the chunks form a smaller system of the same kind, solved in
+the same way. A chain of bars and the nodes of a line in waves are such systems; SciPy's banded
+solver would take longer to load than they take to solve.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Numbers = NDArray[Any]
+
+CHUNK = 6
+"""Blocks eliminated together; the next one stays for the smaller system."""
+DENSE = 10
+"""Blocks of a system that is solved as one dense matrix."""
+
+
+def solve_blocks(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) -> Numbers:
+    """Solve a block-tridiagonal system, or several of the same size.
+
+    Parameters
+    ----------
+    diagonal : (..., n, b, b) blocks of the main diagonal, real or complex
+    upper : (..., n-1, b, b) coupling of block i with block i + 1
+    lower : (..., n-1, b, b) coupling of block i + 1 with block i
+    right : (..., n, b, k) right-hand sides
+
+    Returns
+    -------
+    Numbers
+        (..., n, b, k) solution; NaN throughout if a matrix is singular.
+    """
+    try:
+        return _solved(diagonal, upper, lower, right)
+    except np.linalg.LinAlgError:  # a chunk is singular, though the whole may not be
+        pass
+    try:
+        return _densely(diagonal, upper, lower, right)
+    except np.linalg.LinAlgError:
+        return np.full_like(right, np.nan)
+
+
+def _solved(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) -> Numbers:
+    count, size = diagonal.shape[-3:-1]
+    if count <= DENSE:
+        return _densely(diagonal, upper, lower, right)
+    step = CHUNK + 1
+    chunks = -(-count // step)
+    diagonal, right = _padded(diagonal, chunks * step, True), _padded(right, chunks * step, False)
+    upper, lower = _padded(upper, chunks * step, False), _padded(lower, chunks * step, False)
+
+    def chunked(blocks: Numbers) -> Numbers:
+        return blocks.reshape(*blocks.shape[:-3], chunks, step, *blocks.shape[-2:])
+
+    diagonals, uppers, lowers, rights = map(chunked, (diagonal, upper, lower, right))
+    inside = _dense(
+        diagonals[..., :-1, :, :], uppers[..., : CHUNK - 1, :, :], lowers[..., : CHUNK - 1, :, :]
+    )
+    # right-hand sides: the block above the chunk, the block below it, what is given
+    beside = np.zeros((*inside.shape[:-1], 2 * size + right.shape[-1]), inside.dtype)
+    beside[..., 1:, :size, :size] = lowers[..., :-1, -1, :, :]
+    beside[..., -size:, size : 2 * size] = uppers[..., -2, :, :]
+    beside[..., 2 * size :] = rights[..., :-1, :, :].reshape(*inside.shape[:-1], -1)
+    interior = np.linalg.solve(inside, beside)
+    by_above, by_below, alone = np.split(interior, (size, 2 * size), axis=-1)
+
+    into, out = lowers[..., -2, :, :], uppers[..., :-1, -1, :, :]
+    last, first = np.s_[..., -size:, :], np.s_[..., 1:, :size, :]
+    least_diagonal = diagonals[..., -1, :, :] - into @ by_below[last]
+    least_diagonal[..., :-1, :, :] -= out @ by_above[first]
+    least_right = rights[..., -1, :, :] - into @ alone[last]
+    least_right[..., :-1, :, :] -= out @ alone[first]
+    between = _solved(
+        least_diagonal,
+        -out @ by_below[first],
+        -into[..., 1:, :, :] @ by_above[..., 1:, -size:, :],
+        least_right,
+    )
+
+    found = alone - by_below @ between
+    found[..., 1:, :, :] -= by_above[..., 1:, :, :] @ between[..., :-1, :, :]
+    whole = np.concatenate(
+        [found.reshape(*rights[..., :-1, :, :].shape), between[..., np.newaxis, :, :]], axis=-3
+    )
+    return whole.reshape(*right.shape)[..., :count, :, :]
+
+
+def _densely(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) -> Numbers:
+    flat = right.reshape(*right.shape[:-3], -1, right.shape[-1])
+    return np.linalg.solve(_dense(diagonal, upper, lower), flat).reshape(right.shape)
+
+
+def _dense(diagonal: Numbers, upper: Numbers, lower: Numbers) -> Numbers:
+    """The whole matrices (..., n b, n b)."""
+    *many, count, size, _ = diagonal.shape
+    matrix = np.zeros((*many, count, size, count, size), diagonal.dtype)
+    blocks = np.moveaxis(matrix, -2, -3)  # (..., row, column, b, b)
+    at = np.arange(count)
+    blocks[..., at, at, :, :] = diagonal
+    blocks[..., at[:-1], at[1:], :, :] = upper
+    blocks[..., at[1:], at[:-1], :, :] = lower
+    return matrix.reshape(*many, count * size, count * size)
+
+
+def _padded(blocks: Numbers, count: int, is_diagonal: bool) -> Numbers:
+    """Blocks up to a number of them: of unit matrices on the diagonal, else of zeros."""
+    padded = np.zeros((*blocks.shape[:-3], count, *blocks.shape[-2:]), blocks.dtype)
+    there = blocks.shape[-3]
+    padded[..., :there, :, :] = blocks
+    if is_diagonal:
+        padded[..., there:, :, :] = np.eye(blocks.shape[-1])
+    return padded

@@ -1,0 +1,131 @@
+"""The two speeds of the solver: interpreted, or compiled by numba. Both give the same digits.
+
+Compiled code is loaded from the cache once that saves more time than it takes. If the cache has
+none, a child process compiles it as soon as that pays, this process goes on with the interpreted
+solver, and it changes over when the child has finished. `CALM_COMPILED=never` and `always`, and the
+`compiled` of a `Settings`, settle the question instead; then this process compiles by itself.
+"""
+
+import os
+import sys
+from enum import Enum
+from functools import cache
+from importlib.util import find_spec
+from multiprocessing import parent_process
+from pathlib import Path
+from subprocess import DEVNULL, Popen
+
+from calm.physics.compiled import cache_folder, is_cached
+from calm.physics.line import Line
+from calm.solve.solution import Settings
+
+WARM = 60
+"""Number of lines for which loading compiled code from the cache pays."""
+COLD = 1200
+"""Number of lines, announced by `expect_many`, for which compiling pays."""
+UNANNOUNCED = 250
+"""Number of solved lines, beyond those announced, after which many more are expected."""
+AS_MANY = 8
+"""Number of pieces and clamps of an ordinary line. The work of a line is in proportion to it."""
+
+
+class CompiledPart(Enum):
+    """A part of the solver that is compiled by itself. Its value is the law compiled last."""
+
+    LINE = "find_now"
+    NEARBY = "audited"
+    LEGS = "do_task"
+
+
+class _Pace:
+    """The number of lines that one part of the solver has solved, and its speed.
+
+    `announced` and `solved` are numbers of lines, `work` is that of ordinary lines.
+    """
+
+    def __init__(self, solver: CompiledPart) -> None:
+        self.solver = solver
+        self.announced = self.solved = self.work = self.asked_at = 0.0
+        self.compiled = False
+        self.child: Popen[bytes] | None = None
+
+    def consider(self) -> None:
+        """Change over to compiled code if it is there, or have it compiled if that pays."""
+        if self.compiled:
+            return
+        if self.child is not None:
+            self.compiled = self.child.poll() == 0
+            return
+        work = max(self.announced, self.work)
+        if work >= max(WARM, 2.0 * self.asked_at):
+            self.asked_at = work
+            self.compiled = is_cached(self.solver.value)
+        if self.compiled or parent_process() is not None:
+            return
+        if self.announced >= COLD or self.solved - self.announced >= UNANNOUNCED:
+            self.child = _compile_ahead(self.solver)
+
+
+_paces = {solver: _Pace(solver) for solver in CompiledPart}
+
+
+def expect_many(lines: float, solver: CompiledPart = CompiledPart.LINE) -> None:
+    """Announce that so many lines are about to be solved."""
+    pace = _paces[solver]
+    pace.announced = pace.solved + lines
+    if _may_choose():
+        pace.consider()
+
+
+def runs_compiled(
+    settings: Settings, line: Line | None = None, solver: CompiledPart = CompiledPart.LINE
+) -> bool:
+    """Whether to run compiled code for the line that is solved next; it is counted."""
+    if settings.compiled is not None:
+        return settings.compiled
+    if not _may_choose():
+        return os.environ.get("CALM_COMPILED") == "always" and _has_numba()
+    if line is not None:
+        pieces = len(line.length) + len(line.clamp_piece)
+        count_lines(1.0, solver, max(pieces / AS_MANY, 1.0))
+    return _paces[solver].compiled
+
+
+def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -> None:
+    """Count lines that are solved next; their work is in ordinary lines."""
+    pace = _paces[solver]
+    pace.solved += lines
+    pace.work += lines if work is None else work
+    if _may_choose():
+        pace.consider()
+
+
+def _may_choose() -> bool:
+    return os.environ.get("CALM_COMPILED") not in ("never", "always") and _has_numba()
+
+
+@cache
+def _has_numba() -> bool:
+    return find_spec("numba") is not None
+
+
+def _compile_ahead(solver: CompiledPart) -> "Popen[bytes] | None":
+    """Start a child process that compiles a part of the solver into the cache.
+
+    The child may outlive this process, so it shares no stream with it.
+    """
+    if cache_folder() is None or not sys.executable:
+        return None
+    package = str(Path(__file__).parents[2])
+    path = os.pathsep.join(filter(None, [package, os.environ.get("PYTHONPATH")]))
+    try:
+        return Popen(
+            [sys.executable, "-m", "calm.solve.compile_ahead", solver.name],
+            stdin=DEVNULL,
+            stdout=DEVNULL,
+            stderr=DEVNULL,
+            start_new_session=True,
+            env={**os.environ, "CALM_COMPILED": "always", "PYTHONPATH": path},
+        )
+    except OSError:
+        return None

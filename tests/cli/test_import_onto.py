@@ -1,0 +1,130 @@
+"""`calm import LIST --onto MOORING`: serial numbers of a list, on the line that carries them."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray
+
+LINE = """\
+position: {latitude: 48 deg, longitude: -10 deg}
+environment:
+  depth: 500 m
+  current: {speed: 0.1 m/s, toward: 0 deg}
+line:
+  - {use: glass-17in, count: 6, label: top}
+  - use: wire-jacketed-8
+    length: 390 m   # measured
+    label: wire
+    clamps:
+      - {use: sbe37, at: 10 m, label: upper}
+      - {use: sbe37, at: 110 m, label: middle}
+      - {use: sbe37, at: 310 m, label: lower}
+  - {use: release-ar861, label: release}
+  - {use: anchor-wheels-3}
+deployed:
+  date: 2026-03-01   # by the mate
+"""
+"""Clamps at some 113, 213 and 413 m in still water."""
+
+CSV = """\
+name,serial number,nominal depth[m],clock offset[s]
+MicroCAT,3222,115,12
+MicroCAT,3223,215,-3
+MicroCAT,3224,415,
+"""
+HEIGHTS = """\
+instrument,s/n,height above bottom [m]
+MicroCAT,3222,387
+MicroCAT,3223,287
+lower,3224,
+"""
+RODB = """\
+Mooring              = m1
+WaterDepth           = 500
+Columns              = z:instrument:serialnumber
+  115  337  3222
+  215  337  3223
+  415  337  3224
+"""
+OCEANARRAY = """\
+name: m1
+waterdepth: 500
+inline:
+  - {instrument: release, serial: 77, hab: 10}
+clamp:
+  - {instrument: microcat, serial: 3222, hab: 385}
+  - {instrument: microcat, serial: 3223, depth: 215}
+  - {instrument: microcat, serial: 3224, hab: 85}
+"""
+
+
+def imos(path):
+    """Three instruments one after the other, as in an aggregated product of IMOS."""
+    index = ("OBSERVATION", np.repeat([0, 1, 2], 4), {"instance_dimension": "INSTRUMENT"})
+    xarray.Dataset(
+        {
+            "TEMP": ("OBSERVATION", np.arange(12.0), {"units": "degree_Celsius"}),
+            "instrument_index": index,
+            "instrument_id": ("INSTRUMENT", [f"M1; SBE37; 322{i}" for i in (2, 3, 4)]),
+            "NOMINAL_DEPTH": ("INSTRUMENT", [115.0, 215.0, 415.0], {"units": "m"}),
+        },
+        {"TIME": ("OBSERVATION", np.tile(np.arange(4.0), 3), {"units": "days since 2026-03-01"})},
+    ).to_netcdf(path, engine="h5netcdf")
+
+
+@pytest.fixture
+def assigned(calm, folder):
+    def run(name, text=None, *options):
+        (folder / "m.yaml").write_text(LINE)
+        if text is not None:
+            (folder / name).write_text(text)
+        done = calm("import", name, "--onto", "m.yaml", "-o", "new.yaml", *options)
+        out = folder / "new.yaml"
+        return done, out.read_text() if out.exists() else ""
+
+    return run
+
+
+@pytest.mark.parametrize(("name", "text"), [
+    ("list.csv", CSV), ("heights.csv", HEIGHTS), ("info.dat", RODB), ("m.yml", OCEANARRAY),
+    ("imos.nc", None),
+])  # fmt: skip
+def test_each_instrument_is_assigned_and_reported(assigned, folder, name, text):
+    imos(folder / "imos.nc")
+    done, written = assigned(name, text)
+    assert done.code == 0, done.err
+    for label, serial in (("upper", 3222), ("middle", 3223), ("lower", 3224)):
+        assert f"{{label: {label}, serial: {serial}" in written
+        assert any(str(serial) in line and f"`{label}`" in line for line in done.err.splitlines())
+    # all else stays byte for byte
+    kept = written.splitlines()
+    assert [line for line in LINE.splitlines() if line not in kept] == []
+
+
+def test_clock_offsets_and_what_has_no_place(assigned, calm):
+    done, written = assigned("list.csv", f"{CSV}Aquadopp,99,300,\n", "--json", "out.json")
+    assert done.code == 0, done.err
+    assert "{label: upper, serial: 3222, remark: clock 12 s late}" in written
+    assert "{label: middle, serial: 3223, remark: clock 3 s early}" in written
+    assert "list.csv, line 5: Aquadopp 99 is at no place of the line" in done.err
+    with open("out.json") as file:
+        document = json.load(file)
+    assert len(document["assigned"]) == 3 and len(document["doubts"]) == 1
+    assert calm("check", "new.yaml").code in (0, 1)
+
+
+def test_the_label_of_a_part_is_enough(assigned):
+    done, written = assigned("list.csv", "name,serial\nmiddle,41\n")
+    assert done.code == 0 and "{label: middle, serial: 41}" in written
+
+
+@pytest.mark.parametrize(("text", "said"), [
+    ("name,colour\nMicroCAT,red\n", "no column for serial numbers or nominal depths"),
+    ("name,serial,depth[m]\nMicroCAT,3222,deep\n", "`deep`"),
+    ("name,serial,depth[kg]\nMicroCAT,3222,12\n", "kg"),
+    ("name,serial,depth[m]\nMicroCAT,3222,168.4\n", "may be `upper` or `middle`"),
+])  # fmt: skip
+def test_lists_that_cannot_be_assigned_are_refused(assigned, text, said):
+    done, written = assigned("list.csv", text)
+    assert done.code == 2 and said in done.err and written == ""

@@ -1,0 +1,146 @@
+"""General tests of values: each kind of fault is found where it was put, and nowhere else."""
+
+import numpy as np
+import pytest
+
+from calm.records.value_tests import (
+    CurrentValues,
+    current_doubts,
+    exchanged_pair,
+    impossible_values,
+    level_doubts,
+    sector_doubts,
+    series_doubts,
+    speed_doubts,
+)
+
+COUNT = 720
+TIMES = np.datetime64("2026-03-01", "ns") + np.arange(COUNT) * np.timedelta64(1, "h")
+HOURS = np.arange(COUNT, dtype=float)
+DEPTH = np.array([20.0, 60.0, 120.0])
+
+
+def tide(period: float, size: float = 0.3) -> np.ndarray:
+    """A tide and a slow change, at three levels."""
+    angle = 2.0 * np.pi * HOURS[:, np.newaxis] / period
+    slow = 0.1 * np.cos(2.0 * np.pi * HOURS[:, np.newaxis] / 331.7)
+    return (size * np.cos(angle) + slow) * np.array([1.0, 0.7, 0.4])
+
+
+def doubts(u=None, v=None, times=TIMES, depth=DEPTH, water_depth=130.0, **more):
+    u = tide(12.4206) if u is None else u
+    v = tide(12.4206, 0.2) + 0.02 * np.sin(HOURS[:, np.newaxis] / 7.7) if v is None else v
+    return [*current_doubts(CurrentValues(depth, u, v, times, water_depth, **more))]
+
+
+@pytest.mark.parametrize("step", [1, 6, 12])
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_tides_are_beyond_doubt_at_any_step(step, noise):
+    stir = noise * np.random.default_rng(3).standard_normal((2, COUNT, 3))
+    u, v = tide(12.4206) + stir[0], tide(12.0, 0.2) + stir[1]
+    assert doubts(u[::step], v[::step], TIMES[::step]) == []
+
+
+def test_two_instruments_in_turn():
+    u = tide(12.4206)
+    u[1::2, 1] += 0.5
+    (said,) = doubts(u)
+    assert said.startswith("1 of 3 series look like two in turn: readings next to each other dif")
+
+
+def test_a_stretch_that_stands_twice():
+    u, v = tide(12.4206), tide(11.7, 0.2)
+    u[400:460], v[400:460] = u[100:160], v[100:160]
+    (said,) = doubts(u, v)
+    assert said == (
+        "60 readings from 2026-03-17T16:00 are the same as those from 2026-03-05T04:00: was a part "
+        "of the record copied?"
+    )
+    u[410:450] += 1e-9  # one digit is enough
+    assert doubts(u, v) == []
+
+
+@pytest.mark.parametrize(("length", "told"), [(60, False), (72, True)])
+def test_a_tenth_without_change(length, told):
+    u = tide(12.4206)
+    v = tide(12.0, 0.2)
+    u[10 : 10 + length, 2], v[10 : 10 + length, 2] = 0.11, 0.07
+    said = doubts(u, v)
+    assert len(said) == told
+    if told:
+        assert "1 of 3 levels keep one value for a tenth" in said[0]
+        assert f"at 120 m, {length} readings from 2026-03-01T10:00" in said[0]
+
+
+def test_levels_against_the_water():
+    known = np.ones((4, 3), bool)
+    assert [*level_doubts(DEPTH, known, 130.0)] == []
+    said, _ = level_doubts(DEPTH / 0.3048, known, 130.0)
+    assert said == (
+        "2 of 3 levels with values are deeper than the water, 130.0 m: the deepest is at 393.7 m "
+        "(120.0 m, if these are feet)"
+    )
+    known[:, 1:] = False
+    said = [*level_doubts(DEPTH, known, 130.0)]
+    assert said[0] == "1 of 3 levels above the seabed have no value at any time: 60 to 60 m"
+    assert said[1].startswith("the current is not given below 20.0 m")
+
+
+@pytest.mark.parametrize(("speeds", "unit", "factor", "likely"), [
+    (np.linspace(0.0, 0.01, 99), "cm/s", 0.01, "; are they in m/s or kn?"),
+    (np.linspace(0.0, 0.8, 99), "m/s", 1.0, None),
+    (np.linspace(0.0, 0.0001, 99), "m/s", 1.0, "in the declared unit, m/s"),
+])  # fmt: skip
+def test_speeds_against_their_unit(speeds, unit, factor, likely):
+    said = [*speed_doubts(speeds, unit, factor)]
+    assert len(said) == (likely is not None)
+    assert all(one.endswith(str(likely)) for one in said)
+
+
+def test_currents_stronger_than_any_at_their_depth():
+    deep = np.array([100.0, 1500.0, 3000.0])
+    assert [one for one in doubts(depth=deep, water_depth=3100.0) if "reaches" in one] == []
+    (said,) = (one for one in doubts(6.0 * tide(12.4), depth=deep, water_depth=3100.0)
+               if "reaches" in one)  # fmt: skip
+    assert said.startswith("the current reaches 1.") and "below 1000 m" in said
+
+
+@pytest.mark.parametrize(("turn", "told"), [(1.0, 0), (0.1, 1), (np.pi / 180.0, 1)])
+def test_directions_in_another_unit(turn, told):
+    towards = np.radians(turn * np.arange(0.0, 360.0, 5.0))
+    assert len([*sector_doubts(np.sin(towards), np.cos(towards))]) == told
+
+
+def test_shares_of_good_pings_and_times():
+    good = np.full((COUNT, 3), 0.9)
+    good[:5, 0] = 0.3
+    assert doubts(good=good) == ["5 of 2160 currents have less than half of their pings good"]
+    early = TIMES - np.timedelta64(40_000, "D")
+    (said,) = doubts(times=early)
+    assert said.startswith("720 of 720 times are before 1950 or after ")
+    broken = np.concatenate([TIMES[:300], TIMES[300:] + np.timedelta64(9, "D")])
+    assert doubts(times=broken) == [
+        "1 gap in time: the longest is of 217 h, from 2026-03-13T11:00 to 2026-03-22T12:00, where "
+        "the step is 1 h"
+    ]
+
+
+def test_series_may_be_short_or_empty():
+    for count in (0, 1, 2, 5):
+        assert [*series_doubts(np.zeros((count, 1, 1)), TIMES[:count])] == []
+    assert [*series_doubts(np.full((COUNT, 2, 1), np.nan), TIMES, ("", ""))] == []
+
+
+def test_values_of_no_sea_water():
+    wrong, said, most = impossible_values("temperature", np.array([10.0, 99.0, 11.0, np.nan]))
+    assert (wrong.tolist(), most) == ([False, True, False, False], False)
+    assert said.startswith("1 of 3 values are no temperature of sea water, -6 to 40 °C")
+    assert impossible_values("salinity", np.array([0.0, 35.0]))[1] == ""
+    assert impossible_values("salinity", np.array([44.0, 46.0]))[2]
+
+
+def test_the_exchange_that_puts_means_in_order():
+    assert exchanged_pair(np.array([15.0, 9.0, 11.0, 8.0])) == (1, 2)
+    assert exchanged_pair(np.array([15.0, 11.0, 9.0, 8.0])) is None
+    assert exchanged_pair(np.array([8.0, 15.0, 7.0, 14.0, 6.0])) is None
+    assert exchanged_pair(np.array([9.0, 11.0, 8.0])) is None
