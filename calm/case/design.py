@@ -37,7 +37,7 @@ from calm.case.result_tables import (
     documents,
 )
 from calm.case.strumming import Strumming, StrummingBand
-from calm.errors import InputError, NoEquilibrium, Problem, UsageError
+from calm.errors import InputError, NoEquilibrium, Problem, UsageError, how_to_install
 from calm.files import MooringFile, Piece
 from calm.files.environment import Environment
 from calm.files.legs import FileLeg, nodes_of
@@ -550,7 +550,10 @@ class Result:
         """
         form = type(self).plot_form
         assert form is not None, "a design is read by calm.load"
-        return form(self, ax)
+        try:
+            return form(self, ax)
+        except ModuleNotFoundError as missing:
+            raise UsageError(how_to_install(missing) or str(missing)) from None
 
     def to_pandas(self) -> Any:
         """Return the components as a pandas data frame."""

@@ -1,6 +1,7 @@
 import json
 import re
 
+import pypdfium2
 import pytest
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -284,6 +285,20 @@ def test_a_report_is_a_folder_of_five_files_the_same_every_time(calm, write_moor
         assert content == (folder / "deep/er" / name).read_bytes(), name
     assert (folder / "first/report.json").read_text() == again.out
     assert (folder / "first/report.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_full_writes_the_pages_of_each_mooring_too(calm, write_mooring, folder):
+    text = (folder / write_mooring("north.yaml")).read_text(encoding="utf-8")
+    (folder / "north.yaml").write_text(text.replace("name: Test", "name: North"), encoding="utf-8")
+    files = ("north.yaml", write_mooring("south.yaml"))
+    done = calm("check", *files, "--report", "r", "--full", "--page", "letter")
+    assert "the report is in r" in done.err
+    for name, pages in (("report", 3), ("North", 6), ("Test", 6)):
+        with pypdfium2.PdfDocument(folder / "r" / f"{name}.pdf") as pdf:
+            assert len(pdf) == pages
+            assert pdf[0].get_size() == pytest.approx((612.0, 792.0), abs=0.1)
+    refused = calm("check", *files, "--full")
+    assert refused.code == 2 and "beside the --report" in refused.err
 
 
 def test_a_report_that_cannot_be_written_loses_nothing_else(
