@@ -127,7 +127,8 @@ def test_warnings_are_in_the_table_and_in_json(calm, write_mooring):
     file = write_mooring(speed="2 m/s", buoyancy="4000 N")
     assert "! Anchor weight in water is" in calm("run", file).out
     done = calm("run", file, "--json", "-")
-    assert any(text.startswith("Anchor weight in water is") for text in json.loads(done.out)["warnings"])
+    warnings = json.loads(done.out)["warnings"]
+    assert any(text.startswith("Anchor weight in water is") for text in warnings)
     assert done.err == ""
 
 
