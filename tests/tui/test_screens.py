@@ -41,7 +41,7 @@ def test_a_broken_file_opens_as_text_with_its_mistakes_and_is_mended(drive, smal
         area = driver.app.screen.text_area
         area.load_text(MOORING)
         await driver.settle()
-        assert "The text can be read" in driver.screen
+        assert "The text is valid" in driver.screen
         await driver.press("escape")
         await driver.settle()
         assert driver.app.screen is driver.builder
@@ -150,15 +150,15 @@ def test_to_look_at_the_text_changes_nothing_of_it(drive, small, before, after):
 
 def test_what_is_missing_is_said_and_the_last_picture_stays_dimmed(drive, small):
     async def story(driver):
-        assert "the last complete line" not in driver.screen
+        assert "last valid line" not in driver.screen
         await driver.press("home", "delete")
         await driver.settle()
         assert driver.view.missing
         assert driver.view.missing[0] in driver.screen
-        assert "the last complete line" in driver.screen
+        assert "last valid line" in driver.screen
         await driver.press("u")
         await driver.settle()
-        assert "the last complete line" not in driver.screen
+        assert "last valid line" not in driver.screen
 
     drive(story, small)
 
