@@ -27,8 +27,6 @@ from calm.files.components import FLEXIBLE_KINDS
 from calm.files.mooring_file import leg_numbers
 from calm.solve import Status
 
-HANDLED = ("float", "instrument", "release", "line")
-"""Roles of what takes time on deck by itself; what joins pieces is shackled on with them."""
 FAINT = 0.1
 """Current in which a line is drawn that still water leaves slack [m/s]."""
 
@@ -157,7 +155,6 @@ def deck_of(
     ship_speed: float = SHIP_SPEED,
     streamed: float | None = None,
     course: float | None = None,
-    deck_time: float | None = None,
 ) -> Deck:
     """The sheets of a mooring, or of a net, of which neither drop nor rise is solved.
 
@@ -166,8 +163,6 @@ def deck_of(
     moorings : the same one in each environment, that of the sheets first, and cut alike in all
     ship_speed, streamed, course : of the anchor drop, see `calm.drop.drop_plan` [m/s], [m],
         [degrees]
-    deck_time : of handling a piece on deck, but what joins pieces [s]; by role in the file's
-        `document` where not given
 
     Raises
     ------
@@ -206,7 +201,7 @@ def deck_of(
     if order is Order.ANCHOR_LAST and not first.several:
         try:
             stands = result if result.design is first else None
-            times = _deck_times(first.file, deck_time)
+            times = _deck_times(first.file)
             plan = drop_plan(first, ship_speed, streamed, course, result=stands, deck_time=times)
         except NoEquilibrium as failure:
             plan = failure
@@ -231,10 +226,8 @@ def deck_of(
     )
 
 
-def _deck_times(file: MooringFile, each: float | None) -> Mapping[str, float] | None:
-    """Return the time of handling a piece by its role [s]; None where nobody gives it."""
-    if each is not None:
-        return dict.fromkeys(HANDLED, each)
+def _deck_times(file: MooringFile) -> Mapping[str, float] | None:
+    """Return the time of handling a piece by its role [s]; None if the file does not give it."""
     given = None if file.document is None else file.document.deck_time
     return None if given is None else {str(role): time for role, time in given.items()}
 

@@ -159,7 +159,7 @@ class Heading:
 class Listing:
     """Text as it stands in a file; on paper that is attached by its `name`, where it has one.
 
-    One of more than `most` lines is in the attachment alone.
+    One that takes more than `most` lines there is in the attachment alone.
     """
 
     title: str

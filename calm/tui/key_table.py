@@ -61,17 +61,17 @@ paste(0) | V | paste above |  | Paste above the cursor.
 edit_column('length') | l | length |  | Edit the length of a piece, or the position of a clamp.
 edit_column('label') | n | label |  | Edit the label.
 edit_column('count') | equals_sign,asterisk | count |  | Edit the count.
-screen.change_component | O | change component |  | Edit the component of the row in a form, if
-  the file defines it.
-equipment | N | serial number |  | Serial number, calibration, sampling, battery, termination
-  and planned depth of the row.
+screen.change_component | O | change component |  | Edit the component of the row in a form, if the
+  file defines it.
+equipment | N | serial number |  | Serial number, calibration, sampling, battery, termination and
+  planned depth of the row.
 find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
 find_next(1) | greater_than_sign,f3 | find next |  | Go to the next match.
 find_next(-1) | less_than_sign | find previous |  | Go to the previous match.
-weakest | W | weakest |  | Go to the piece with the highest use of strength.
+weakest | percent_sign | weakest |  | Go to the piece with the highest use of strength.
 column | number_sign | fill column |  | Serial numbers, lengths, labels or codes of the marked rows,
   or of all rows with the component under the cursor; a list can be pasted.
-repeat | R | repeat |  | Add several copies of the piece, or of the marked pieces.
+repeat | plus | repeat |  | Add several copies of the piece, or of the marked pieces.
 next_finding | f8,g | next finding |  | Go to the next row with a finding of the most serious state;
   the last line of the screen shows the finding.
 why | y | why |  | Show all findings of this row, with remedies.
@@ -87,18 +87,18 @@ move_column(1) | right | right | - | Go to the column on the right.
 screen.back | escape | back | - | Return to the line of the verdict that led here.
 [anywhere] On the main screen
 undo | u | undo | 3 | Undo the last change; repeat to undo earlier changes.
-suspend | ctrl+z | suspend |  | Suspend to the shell, `fg` returns; undo while a value is
-  edited, and in a browser.
+suspend | ctrl+z | suspend |  | Suspend to the shell, `fg` returns; undo while a value is edited,
+  and in a browser.
 redo | U,ctrl+y | redo |  | Redo the last undone change.
 water | w | water | 4 | Edit depth, density, current and wind of the environments.
 next_environment | e | environment |  | Show the line in the next environment.
 advise | p | advice | 10 | Propose changes that correct a finding or meet a target; they are shown
   before you accept them.
-compare | D | compare |  | Show the changes since the file was saved.
+compare | ctrl+d | compare |  | Show the changes since the file was saved.
 figures | f | missing values |  | Enter missing component values with their source.
-verdict | G | verdict |  | Read the verdict line by line: Enter goes to the row of a line, Esc
+verdict | f6 | verdict |  | Read the verdict line by line: Enter goes to the row of a line, Esc
   returns.
-search('below') | B | catalogue |  | Browse the catalogue.
+search('below') | f7 | catalogue |  | Browse the catalogue.
 define | o | own component |  | Define a component of your own.
 picture('elevation') | 1 | elevation |  | Show the line from the side.
 picture('plan') | 2 | plan |  | Show the line from above.
@@ -108,13 +108,13 @@ zoom | z | zoom |  | Show the picture on the whole screen, or restore the screen
 sheet('mooring') | m | name, position |  | Edit name, description and position.
 sheet('document') | M | document |  | Edit number, revisions, author, ship and cruise for the title
   block.
-sheet('deployed') | L | as deployed |  | Edit date, position and depth of the deployment, and serial
-  number, length, remark and release codes of the row.
+sheet('deployed') | at | as deployed |  | Edit date, position and depth of the deployment, and
+  serial number, length, remark and release codes of the row.
 sheet('tow') | T | tow |  | Edit speed and course of a tow; turns a mooring into a tow.
 settings | comma | settings |  | Edit solver, limits of the check, uncertainty and units of output.
-begin | b | begin |  | Start an empty line from a template: deep, shelf, ADCP, taut or slack
-  surface mooring, or tow.
-papers | P | documents |  | Show the bill of material; write the report of the check or the deck
+begin | b | begin |  | Start an empty line from a template: deep, shelf, ADCP, taut or slack surface
+  mooring, or tow.
+papers | f9 | documents |  | Show the bill of material; write the report of the check or the deck
   sheets.
 history | h | history |  | Show the history of changes, and go back to an earlier state.
 text | t | text |  | Edit the file as text, with its mistakes.
@@ -198,6 +198,9 @@ leave | escape | cancel |  | Discard all changes.
 app.focus_next | down | next |  | Go to the next field.
 app.focus_previous | up | previous |  | Go to the previous field.
 [question] A question, answered by the letter in front of each answer
+move(-1) | up | up |  | Go to the answer above.
+move(1) | down | down |  | Go to the answer below.
+give | enter | choose |  | Choose the marked answer.
 leave | escape | go back |  | Go back, where possible.
 [help] This help
 dismiss | escape,q,enter,question_mark,f1 | close |  | Close the help.
