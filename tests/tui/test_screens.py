@@ -84,7 +84,7 @@ def test_a_mistake_in_another_file_is_told_with_its_name(drive, small, folder):
         assert "1 mistake in now.csv" in driver.screen.splitlines()[0]
         await driver.press("ctrl+home", "down", "f8")
         assert screen.text_area.cursor_location[0] == 1
-        assert "no mistakes in small.yaml itself" in driver.screen.splitlines()[-1]
+        assert "small.yaml itself has no mistakes" in driver.screen.splitlines()[-1]
         await driver.press("escape")
         assert "now.csv, line 3:5" in driver.screen
         assert "1 mistake in now.csv" in driver.screen.splitlines()[0]
