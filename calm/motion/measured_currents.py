@@ -223,6 +223,7 @@ class CurrentSmoother:
         step = np.diff(self.hours, prepend=self.hours[:1])
         self.usual = STEP**2 * step[:, None] * np.ones(1 + sensors)
         self.stepped = self.usual.copy()
+        self._forwards: dict[tuple[float, ...], Forward] = {}
         self.bend = np.zeros((len(one.time), len(self.still)))
         self._slopes_at = np.full((len(one.time), 2 * count), np.inf)
         self._slopes_factor = np.full(len(self.names), np.inf)
@@ -260,8 +261,14 @@ class CurrentSmoother:
         return forward.depths(self.knot_depth[times], *self.currents(state))
 
     def forward(self, factor: Floats) -> Forward:
-        """Return the mooring with factors of these logarithms."""
-        return Forward(self.mooring, dict(zip(self.names, np.exp(factor).tolist(), strict=True)))
+        """Return the mooring with factors of these logarithms; the latest ones are kept."""
+        key = tuple(factor.tolist())
+        if key not in self._forwards:
+            factors = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
+            while len(self._forwards) > 2 * len(self.names):
+                del self._forwards[next(iter(self._forwards))]
+            self._forwards[key] = Forward(self.mooring, factors)
+        return self._forwards[key]
 
     def linear(self) -> Floats:
         """Return (n, p) depths at the state, and renew the slopes where it has moved far."""
