@@ -28,7 +28,7 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import duration, say
 
 GREATEST_DIFFERENCE = 0.2
-"""Beyond it two metals that touch corrode each other in sea water [V]."""
+"""Potential difference above which two metals in contact corrode in sea water [V]."""
 
 _BALANCED = re.compile(r"\b(torque[- ]balanced|rotation[- ]res\w*|non[- ]rotating)\b")
 _UNBALANCED = re.compile(
@@ -44,12 +44,12 @@ GRAPPLED = 100.0
 """Depth of water down to which a line is dived or grappled for if its release fails [m]."""
 
 LEAST_BELOW_RELEASE = 1.0
-"""How far above its anchor a release should stand [m]."""
+"""Recommended minimum height of a release above its anchor [m]."""
 
 
 @rule("release-present", once=True)
 def release_present(handling: Handling) -> Iterator[Verdict]:
-    """Return whether a line says what lets go of its anchor, and whether that frees it."""
+    """Check that the line has a release in its load path, and that opening it frees the mooring."""
     leg = handling.leg
     release, pieces = leg.file.release, leg.file.pieces
     for clamp in clamps_in(pieces):
@@ -120,11 +120,11 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
 
 @rule("swivel", once=True)
 def swivel(handling: Handling) -> Iterator[Verdict]:
-    """A swivel at an end of every wire that bears torque, if a float that leans holds that end.
+    """Check that each wire that is not torque-balanced has a swivel between it and a tilting float.
 
-    A wire rope that is not torque-balanced turns under load and back as the load goes, and a float
-    in the current holds it: it kinks. A swivel at either end lets it turn, as do chain and
-    synthetic rope, which bear no torque.
+    Wire rope that is not torque-balanced twists as its load changes. A float in the current resists
+    that rotation, and the wire kinks. A swivel at either end lets the wire turn; so do chain and
+    synthetic rope, which transmit no torque.
     """
     pieces = handling.leg.file.pieces
     for index, piece in enumerate(pieces):
@@ -157,7 +157,9 @@ def _bears_torque(component: Component) -> bool:
 
 
 def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
-    """The float at which a wire ends that way, and whether a swivel is between; None for none."""
+    """Find the float at this end of a wire, and whether a swivel lies between; None without a
+    float.
+    """
     has_swivel = False
     for piece in way:
         if isinstance(piece.component, Flexible):
@@ -170,7 +172,7 @@ def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
 
 
 _TOUCH = 0.05
-"""What clamps may overlap by, since what they hold stands beside the line [m]."""
+"""Overlap allowed between neighbouring clamps [m]; a clamped instrument sits off the line."""
 
 
 @rule("clamp-place", once=True)
@@ -230,9 +232,9 @@ def _is_insulated(part: Piece | Clamp) -> bool:
 
 
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
-    """Return neighbours far apart in the galvanic series: base, noble, and how far [V].
+    """Yield adjoining dissimilar metals: the less noble, the more noble, their potential [V].
 
-    Those of them that are `insulated` are among them: what insulates them is to be fitted.
+    Pairs with an `insulated` part are included, because the insulation still has to be fitted.
     """
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
@@ -256,7 +258,7 @@ _HOLDS = "Take a clamp that holds more, two of them, or a stopper below it."
 
 @rule("clamp-grip")
 def clamp_grip(result: LegResult) -> Iterator[Verdict]:
-    """Pull of what is clamped on the line: its weight in water and the drag of the current."""
+    """Check the force on each clamp [N], from its weight in water and the drag of the current."""
     water, depth = result.leg.water, np.asarray(result.clamps.depth)
     flows, densities = water.current_at(depth), water.density_at(depth).tolist()
     for part in _clamps(result.leg):
@@ -270,10 +272,10 @@ def clamp_grip(result: LegResult) -> Iterator[Verdict]:
 
 @rule("clamp-grip", situation="launch and recovery", once=True)
 def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
-    """Judge the greater pull along the line, of the fall, which drags up, or the rise, down.
+    """Check the larger axial force on each clamp [N] during anchor descent or ascent.
 
-    The fall is that at touchdown and the rise at terminal speed, with the drag of what is clamped
-    in the flow along its axis.
+    The descent speed is the maximum of the launch, the ascent speed the terminal rise speed. Drag
+    coefficients are those for flow along the axis of the clamped item.
     """
     launch, rise = handling.launch, handling.recovery
     deep = np.array(handling.leg.water.depth)
@@ -298,10 +300,11 @@ McLane Moored Profiler, user manual."""
 
 @rule("profiler")
 def profiler(result: LegResult) -> Iterator[Verdict]:
-    """Tension, wire, way and drive of a profiler where it is; it is judged at its stops, too.
+    """Check the tension, wire, path and drive force of each profiler at its present position.
 
-    Along the wire it meets its own speed and, at most, the current times the sine of the tilt.
-    What its wheels rub with, and what it weighs by its compressibility, is not known.
+    The situations with the profiler at its stops are checked in the same way. Along the wire, the
+    flow past the profiler is its own speed plus at most the current times the sine of the tilt.
+    Wheel friction and the effect of compressibility on its weight are unknown and neglected.
     """
     for row in result.clamps:
         if isinstance(row.part.component, Profiler):
@@ -336,7 +339,9 @@ def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
 
 
 LONGEST_PROFILE = 8.0 * 3600.0 / 1.25
-"""What a profile may take: a McLane profiler gives up after 1.25 times that, or 8 hours [s]."""
+"""Longest duration of a profile [s]. A McLane profiler stops after 1.25 times the expected time, or
+8 hours.
+"""
 
 
 def _lasting(travels: Sequence[ProfilerTravel], part: Clamp) -> Iterator[Verdict]:
@@ -348,7 +353,7 @@ def _lasting(travels: Sequence[ProfilerTravel], part: Clamp) -> Iterator[Verdict
 
 
 def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
-    """Yield what stands in the way of a profiler, and the wire that it does not fit."""
+    """Yield clamps that obstruct a profiler, and a wire of unsuitable diameter."""
     upper, lower = part.travel or (0.0, 0.0)
     for other in wire.clamps:
         if upper < other.at < lower and other is not part:
