@@ -80,8 +80,7 @@ def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = 
 
 
 def to_documents(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> list[dict[str, Any]]:
-    """Return a JSON object for each component: `id`, `family` and every field (SI or degrees, None if
-    absent).
+    """Return JSON objects: `id`, `family` and every field (SI or degrees, None if absent).
 
     `derived` contains derived values, `same_thing` the ids that describe the same product,
     preferred one first.
