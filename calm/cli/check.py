@@ -47,8 +47,8 @@ def check(
     Each mooring is solved as given, in still water, with strumming cables and, if
     its file requires it, at high and low water and with biofouling. An anchor-last
     launch, the release, and a break at each connection follow. The exit code is
-    0 if every rule passes, 1 if a rule fails or lacks a value, 3 if a mooring
-    has no equilibrium.
+    1 if a rule fails or lacks a value, 3 if a mooring has no equilibrium, and 0
+    otherwise.
 
     Parameters
     ----------
