@@ -11,6 +11,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
@@ -175,9 +176,35 @@ def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = 
 
 
 def nearest(text: str, known: Iterable[str]) -> str | None:
-    """Return the known name most similar to a text; None if none is similar."""
-    found = difflib.get_close_matches(text[:LONGEST_TEXT], list(known), 1)
-    return found[0] if found else None
+    """The name most like a text, None when none is like it.
+
+    Letters decide which names are alike, and their words and figures which of these comes first:
+    for ``chain-g30-16``, ``chain-short-g30-16`` precedes ``chain-g80-16``.
+    """
+    given = text[:LONGEST_TEXT]
+    alike = difflib.get_close_matches(given, list(known), 50)
+    wanted = _parts(given)
+    return max(alike, key=lambda name: _likeness(wanted, _parts(name)), default=None)
+
+
+def _parts(name: str) -> list[str]:
+    """Words and figures of a name; a size in millimetres is its figure."""
+    parts = re.split(r"[\W_]+", name.casefold())
+    return [re.sub(r"(?<=\d)mm$", "", part) for part in parts if part]
+
+
+def _likeness(wanted: Sequence[str], parts: Sequence[str]) -> float:
+    """Mean likeness of the parts wanted to those of a name, 1 if all are equal."""
+    best = [max((_alike(one, other) for other in parts), default=0.0) for one in wanted]
+    return sum(best) / max(len(best), 1) - 0.02 * max(len(parts) - len(wanted), 0)
+
+
+def _alike(one: str, other: str) -> float:
+    """Likeness of two words by their letters, of two figures by their ratio."""
+    if one.isdecimal() and other.isdecimal():
+        least, greatest = sorted((float(one), float(other)))
+        return least / greatest if greatest else 1.0
+    return difflib.SequenceMatcher(None, one, other).ratio() ** 2
 
 
 def shown(value: object) -> str:

@@ -21,7 +21,7 @@ LINES = Path(__file__).resolve().parents[1] / "lines"
 SCREENS: dict[str, tuple[str, tuple[int, int], tuple[str, ...]]] = {
     "build-catalogue": ("upward-adcp-300m", (150, 40), ("a", *"twin", "space", *"release")),
     "build-water": ("deep-current-meters", (120, 32), ("w",)),
-    "build-verdict": ("upward-adcp-300m", (110, 40), ("G", "down")),
+    "build-verdict": ("upward-adcp-300m", (110, 40), ("f6", "down")),
 }
 """By the name of a picture the line that is opened, the size of the terminal, and the keys."""
 

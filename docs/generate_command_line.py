@@ -27,10 +27,11 @@ Data goes to the standard output, narration to the standard error.
 
 
 def commands(parent: App, words: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
-    """The words of every command, a group before its members."""
+    """The words of every command, a group before its members; of several names the first."""
     yield words
+    named = {id(parent[name]): name for name in reversed([*parent]) if not name.startswith("-")}
     for name in parent:
-        if not name.startswith("-") and parent[name].show:
+        if name in named.values() and parent[name].show:
             yield from commands(parent[name], (*words, name))
 
 

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import prod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,6 +27,7 @@ from calm.files import Clamp, CurrentTable, Piece
 from calm.files.pieces import clamps_down
 from calm.physics.compiled import by_address, outcome
 from calm.physics.line import Floats, Integers, Water
+from calm.records.given import as_file, is_record
 from calm.solve import Status
 from calm.solve.audit import referee_of
 from calm.solve.mooring import MORE_ROOM, SearchTask, run_search, search_of
@@ -36,6 +37,9 @@ from calm.solve.solution import FOUND
 if TYPE_CHECKING:
     import pandas
     from xarray import Dataset
+
+    from calm.records.given import Given
+    from calm.records.record import Levels
 
 BLOCK = 1024
 """Number of profiles that a worker takes at a time."""
@@ -145,9 +149,9 @@ class Profiles(Columnar):
 
 def solve_profiles(
     mooring: Design,
-    u: ArrayLike,
-    v: ArrayLike,
-    depth: ArrayLike,
+    u: ArrayLike | Given,
+    v: ArrayLike | None = None,
+    depth: ArrayLike | None = None,
     w: ArrayLike | None = None,
     *,
     workers: int | None = None,
@@ -163,7 +167,9 @@ def solve_profiles(
     ----------
     u, v, w : (..., k) current to the east, to the north, upward [m/s]; w is 0 by default. A
         level with a NaN is ignored, as is a level above the surface; values are linear between
-        levels, and constant beyond.
+        levels, and constant beyond. In place of the arrays, `u` may be a record of currents as
+        `calm batch` reads it: a path, an `xarray.Dataset`, or a `pandas.DataFrame` with the
+        columns of a CSV file. Its profiles are in the order of time.
     depth : (k,), or the shape of u, depths of the levels, in any order [m]
     workers : number of threads; by default one per available processor
 
@@ -171,14 +177,36 @@ def solve_profiles(
     ------
     UsageError
         The design is a tow.
+    InputError
+        The record cannot be read.
     TypeError
-        The current is not numeric.
+        The current is not numeric, or `v` or `depth` is missing.
     ValueError
         The shapes of the arrays do not match, or there is less than one worker.
     NoEquilibrium
         A piece has a fitted length, and no length fits.
     """
-    return Batch(mooring).solve(u, v, depth, w, workers=workers)
+    batch = Batch(mooring)
+    if is_record(u):
+        if any(each is not None for each in (v, depth, w)):
+            raise TypeError("a record holds the whole current; give no v, depth or w beside it")
+        levels, east, north, up = _recorded(mooring, u)
+        return batch.solve(east, north, levels, up, workers=workers)
+    if v is None or depth is None:
+        raise TypeError("u needs v and depth, unless it is a path, a dataset or a table")
+    return batch.solve(cast("ArrayLike", u), v, depth, w, workers=workers)
+
+
+def _recorded(mooring: Design, given: Any) -> Levels:
+    """Depth, u, v, w of all profiles of a record."""
+    from calm.records.current_file import open_record
+    from calm.records.current_terms import Terms
+
+    at = mooring.file.position
+    place = None if at is None else (at.latitude, at.longitude)
+    terms = Terms(float(mooring.water.depth), place)
+    with as_file(given) as path, open_record(path, terms) as record:
+        return record.profiles(0, record.count)
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ from calm.case.result_tables import (
     documents,
 )
 from calm.case.strumming import Strumming, StrummingBand
-from calm.errors import InputError, NoEquilibrium, Problem, UsageError
+from calm.errors import InputError, NoEquilibrium, Problem, UsageError, how_to_install
 from calm.files import MooringFile, Piece
 from calm.files.environment import Environment
 from calm.files.legs import FileLeg, nodes_of
@@ -65,11 +65,18 @@ _SKIN = 1e-3  # m above the surface, in which water turns into air
 
 @dataclass(frozen=True)
 class Design:
-    """A mooring, a tow or a net of legs.
+    """A mooring, a tow or a net of legs, as `calm.load` reads it from a file.
+
+    `solve` finds its equilibrium, `with_` gives a design with other values, and `environment` and
+    `legs` show what was read. A design is never changed::
+
+        design = calm.load("mooring.yaml")
+        longer = design.with_("wire 1", length="480 m")
+        print(longer.solve(environment="storm").top.knockdown)
 
     Attributes
     ----------
-    file : the file of the design
+    file : contents of the file, in SI units
     for_surface, memory : see `Leg`
     lines, given_water : replacements for the lines and the water of the file
     near : an equilibrium near which the search for that of several legs begins
@@ -173,21 +180,24 @@ class Design:
     def with_(
         self, label: str | None = None, /, environment: OtherEnvironment | None = None, **keys: Any
     ) -> Design:
-        """Return the design with some values of its file changed (see `Origin.changed`).
+        """Return a design with some values of the file changed; this design stays as it is.
+
+        Values are written as in the file, with their units: ``with_("wire 1", length="480 m")``,
+        ``with_(tow={"speed": "4 kn"})``,
+        ``with_(environment={"current": {"speed": "0.3 m/s", "toward": "90 deg"}})``. None removes
+        a key. Keys of a mapping are changed one by one.
 
         Parameters
         ----------
-        label : label of the piece or clamp that has the keys; by default the keys are those of the
-            file: ``design.with_("wire 1", length="480 m")``, ``design.with_(tow={"speed": "4
-            kn"})``
+        label : label of the piece or clamp whose keys are changed; without it, those of the file
         environment : name of one of its `environments`, an environment file, or keys of its own
 
         Raises
         ------
         InputError
-            The values are invalid.
+            The values are wrong, such as a number without its unit.
         UsageError
-            No piece has the label, or the design was not loaded from a file.
+            No piece or clamp has the label, or the design was not loaded from a file.
         """
         if self.origin is None:
             raise UsageError("a design that was not loaded from a file has no values to change")
@@ -259,9 +269,16 @@ class Design:
         return tuple(replace(leg, for_surface=surface) for leg, surface in pairs)
 
     def solve(self, environment: OtherEnvironment | None = None) -> Result:
-        """Find the static equilibrium, by default in the environment of the file.
+        """Find the static equilibrium.
 
-        Raises NoEquilibrium, with status, message and advice, if no equilibrium passes every check.
+        Parameters
+        ----------
+        environment : name of one of its `environments`, an environment file, or keys as in `with_`
+
+        Raises
+        ------
+        NoEquilibrium
+            No equilibrium passes every check: `status`, `message` and `advice` say why.
         """
         if environment is not None:
             return self.with_(environment=environment).solve()
@@ -533,14 +550,17 @@ class Result:
         """
         form = type(self).plot_form
         assert form is not None, "a design is read by calm.load"
-        return form(self, ax)
+        try:
+            return form(self, ax)
+        except ModuleNotFoundError as missing:
+            raise UsageError(how_to_install(missing) or str(missing)) from None
 
     def to_pandas(self) -> Any:
         """Return the components as a pandas data frame."""
         return self.components.to_pandas()
 
     def to_xarray(self) -> Any:
-        """The dataset that `calm run --netcdf` writes: components, clamps and shape, with units."""
+        """The dataset that `calm run -o FILE.nc` writes: components, clamps, shape, with units."""
         from io import BytesIO
 
         from xarray import load_dataset

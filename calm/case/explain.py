@@ -17,7 +17,7 @@ from calm.files import Place
 from calm.files.mooring_file import refuse_tow
 from calm.files.pieces import clamps_in
 from calm.physics.line import Floats, Line, Water
-from calm.solve import Solver, expect_many
+from calm.solve import CompiledPart, expect_many
 
 SOLVES = 100.0
 """Approximate number of equilibria per explanation, by computing time."""
@@ -146,7 +146,7 @@ def explain(result: Result, label: str | None = None) -> Explanation:
     except LookupError as error:
         raise UsageError(str(error.args[0])) from None
     expect_many(SOLVES)
-    expect_many(SOLVES, Solver.NEARBY)
+    expect_many(SOLVES, CompiledPart.NEARBY)
     figures = figures_of(result, part.place)
     quantities: tuple[str, ...] = ("knockdown", "excursion")
     surface = leg_at(result, part.place).type == "surface"

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -129,16 +130,30 @@ class Origin:
             inner = value if isinstance(value, Mapping) and not at else {None: value}
             for key, each in inner.items():
                 where = (*at, name) if key is None else (*at, name, key)
-                written = str(each) if isinstance(each, (int, float)) else each
-                draft = draft.put_at(where, written)
+                draft = draft.put_at(where, _written(each))
         named = None if isinstance(environment, Mapping) else environment
         return replace(self, text=draft.text, environment=named or self.environment)
+
+
+def _written(value: Any) -> Any:
+    """A value as the text of a file has it: numbers within lists and mappings are texts, too."""
+    if isinstance(value, Mapping):
+        return {key: _written(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_written(each) for each in value]
+    if isinstance(value, bool):
+        return str(value).lower()
+    return str(value) if isinstance(value, Real) else value
 
 
 def _place_of(file: MooringFile, label: str) -> Location:
     from calm.files.editing import LINE, clamps_of
 
     places = {part.label: part.place for part in parts_of(file.pieces)}
+    numbered = re.compile(rf"{re.escape(label)} \d+")  # as the pieces of a `count` are labelled
+    copies = [place for name, place in places.items() if numbered.fullmatch(name)]
+    if len({(place.item, place.clamp) for place in copies}) == 1:
+        places.setdefault(label, copies[0])
     if label not in places:
         raise UsageError(unknown(f"no piece or clamp is labelled `{label}`", label, places))
     place = places[label]

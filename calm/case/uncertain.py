@@ -23,7 +23,7 @@ from calm.case.leg import Leg
 from calm.case.line_figures import ClampFigures, LineFigures
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats
-from calm.solve import Solver, expect_many
+from calm.solve import CompiledPart, expect_many
 
 BLOCK = 128
 """Number of samples that a process solves at a time."""
@@ -152,7 +152,7 @@ def uncertain(
     """
     leg = result.design.moored
     checked_samples(samples)
-    expect_many(samples, Solver.NEARBY)
+    expect_many(samples, CompiledPart.NEARBY)
     _figures(leg, [Draw()])  # loads compiled code once, before processes are forked
     normal = normals_of(samples, seed) if normals is None else normals()
     draws = draws_of(leg.file.uncertainty, normal)

@@ -59,7 +59,7 @@ from calm.errors import NoEquilibrium, or_why_not
 from calm.files import MooringFile, Place
 from calm.files.pieces import STAND_IN
 from calm.files.rule_texts import RULES as TEXTS
-from calm.solve import Solver, expect_many
+from calm.solve import CompiledPart, expect_many
 
 
 def judged_stand(
@@ -384,7 +384,7 @@ def with_probabilities(
         The number of samples is not a power of two, or none that is solved.
     """
     normals = normals_of(checked_samples(samples), seed)
-    expect_many(samples * len(assessment.stands), Solver.NEARBY)
+    expect_many(samples * len(assessment.stands), CompiledPart.NEARBY)
     draws = draws_of(assessment.file.uncertainty, normals)
     stands = tuple(_stand(stand, draws, mapped) for stand in assessment.stands)
     first = next((stand for stand in assessment.stands if stand.result is not None), None)

@@ -22,8 +22,8 @@ catalog = App(
     help_epilogue="""Examples:
 
   calm catalog list --kind chain
-  calm catalog search steel sphere
-  calm catalog search 8mm wire "breaking>30kN"
+  calm catalog list steel sphere
+  calm catalog list 8mm wire "breaking>30kN"
   calm catalog show glass-17in
   calm catalog add our-glass kind=sphere role=float "diameter=432 mm" "buoyancy=250 N" source=tank
   calm catalog check mine.yaml""",
@@ -32,32 +32,15 @@ catalog = App(
 Kind = Literal["sphere", "cylinder", "body", "profiler", "cable", "chain", "anchor", "assembly"]
 
 
-@catalog.command(name="list")
-def list_components(*, kind: Kind | None = None, json: bool = False) -> ExitCode:
-    """List the components, family by family.
+@catalog.command(name=["list", "search"], usage="Usage: calm catalog list [OPTIONS] [WORD...]")
+def list_components(
+    words: list[str] | None = None, /, *, kind: Kind | None = None, json: bool = False
+) -> ExitCode:
+    """List the components, family by family, or those that have every word.
 
-    Parameters
-    ----------
-    kind
-        Only components of one kind.
-    json
-        As JSON: objects with every field, in SI units and degrees.
-    """
-    catalogue = _load()
-    chosen = {
-        identifier: definition
-        for identifier, definition in catalogue.all().items()
-        if kind in (None, definition.kind)
-    }
-    return _show(catalogue, chosen, json)
-
-
-@catalog.command(usage="Usage: calm catalog search [OPTIONS] WORD...")
-def search(words: list[str], /, *, json: bool = False) -> ExitCode:
-    """List the components that have every word, those most used first.
-
-    Favourites and the components last used in the line builder come first, then
-    those that the shipped lines use. Misspelt words are corrected.
+    Of components found by words, favourites and those last used in the line
+    builder come first, then those that the shipped lines use. Misspelt words
+    are corrected.
 
     Parameters
     ----------
@@ -65,27 +48,38 @@ def search(words: list[str], /, *, json: bool = False) -> ExitCode:
         Words or parts of words from the id, name, maker, trade name, material
         or source. Sizes in millimetres or inches (`8mm wire`, `17in glass`) and
         limits (`breaking>50kN`, `net<-100`, `depth>=6000`) are understood.
+    kind
+        Only components of one kind.
     json
         As JSON: objects with every field, in SI units and degrees.
     """
+    catalogue = _load()
+    if words:
+        return _show(catalogue, _search(catalogue, " ".join(words), kind), json)
+    every = catalogue.all().items()
+    return _show(catalogue, {id: each for id, each in every if kind in (None, each.kind)}, json)
+
+
+def _search(catalogue: Catalogue, text: str, kind: str | None) -> dict[str, Defined]:
+    """The components that have every word of a text, or, with a note, all words but one."""
     from calm.assemble.catalogue_search import Index
     from calm.files.editing.user_state import Remembered
 
-    catalogue, text = _load(), " ".join(words)
     index, remembered = Index(catalogue), Remembered()
+    kinds = None if kind is None else [kind]
     spelt = index.spelt(text)
     if spelt != text:
         narrate(f"no component matches `{text}`; searched for `{spelt}`")
     first, asked = [*remembered.favourites, *remembered.recent], spelt.split()
     fewer = (" ".join(asked[:i] + asked[i + 1 :]) for i in reversed(range(len(asked))))
-    found = index.search(spelt, first=first)
+    found = index.search(spelt, kinds, first=first)
     if not found:
         narrate(f"no component matches `{spelt}`; define one with `calm catalog add`")
-        some = next((text for text in fewer if text and index.search(text, first=first)), "")
+        some = next((text for text in fewer if text and index.search(text, kinds)), "")
         if some:
             narrate(f"with `{some}` alone:")
-            found = index.search(some, first=first)
-    return _show(catalogue, {each.id: catalogue.get(each.id) for each in found}, json)
+            found = index.search(some, kinds, first=first)
+    return {each.id: catalogue.get(each.id) for each in found}
 
 
 @catalog.command(name="show", usage="Usage: calm catalog show [OPTIONS] ID...")

@@ -38,7 +38,6 @@ def check(
     allow_unknown: bool = False,
     uncertainty: bool = False,
     samples: options.Samples = 2048,
-    seed: options.Seed = 0,
     workers: int | None = None,
     units: options.Units = None,
 ) -> ExitCode:
@@ -99,7 +98,7 @@ def check(
     if against is not None and (report is None or len(files) > 1):
         raise UsageError("--against compares one mooring with an earlier design in its --report")
     _check_missing(missing, output, files, (json, report))
-    draws = options.draws_of(uncertainty, samples, seed)
+    draws = options.draws_of(uncertainty, samples)
     if report is not None:
         given = [*files, *map(Path, environment or ()), *(catalog or ()), *filter(None, [against])]
         _check_report(report, json, given)

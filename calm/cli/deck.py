@@ -27,7 +27,6 @@ def deck(
     ship_speed: str = "1 m/s",
     streamed: str | None = None,
     course: str | None = None,
-    deck_time: str | None = None,
     catalog: options.CatalogFiles = None,
     units: options.Units = None,
 ) -> ExitCode:
@@ -61,18 +60,13 @@ def deck(
     course
         Course over the ground while the line is towed out; by default against
         the surface current.
-    deck_time
-        Handling time of each piece and clamp before it goes over, such as "3
-        min", except shackles and rings; by default by role, from `document:
-        deck_time:` in the file. Without either the plan has no start of the
-        run.
 
     Examples
     --------
       calm deck mooring.yaml -o cruise/
       calm deck mooring.yaml -o cruise/ --page a3 --environment storm
       calm deck north.yaml south.yaml -o cruise/
-      calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --course "245 deg" --deck-time "3 min"
+      calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --course "245 deg"
       calm deck shallow.yaml -o cruise/ --order anchor-first
     """
     from calm.deck import deck_items, deck_of
@@ -85,7 +79,6 @@ def deck(
         ship_speed=(ship_speed, "speed"),
         streamed=(streamed, "length"),
         course=(course, "angle"),
-        deck_time=(deck_time, "time"),
     )
     designs, tows = reading.read_designs(files, environment, catalog or [], None, "calm deck")
     if tows:

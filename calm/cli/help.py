@@ -12,9 +12,8 @@ if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions
 
 _VALUES = {
-    "FILE|-": "json csv netcdf",
-    "FILE": "html pdf plot catalog currents pressures sea-level onto against update scatter "
-    "elements",
+    "FILE|-": "json",
+    "FILE": "plot catalog currents pressures sea-level onto against update scatter elements",
     "DIR": "report",
     "NAME": "environment",
     "LABEL,...": "hold-out",
@@ -36,9 +35,9 @@ _VALUES = {
     "COLUMNS": "columns",
     "NUMBER": "port gamma k cd",
     "A/B": "time",
-    "TIME": "deck-time gap step tp swell-tp duration",
+    "TIME": "gap step tp swell-tp duration",
     "COUNT": "samples workers",
-    "N": "every seed",
+    "N": "every",
     "ADDRESS": "scheduler",
     "DENSITY": "density",
     "N/m": "weight",
@@ -64,6 +63,9 @@ class HelpAtWidth:
             written = getattr(entry.description, "primary_renderable", None)
             if isinstance(written, Text):
                 entry.description.primary_renderable = Text(" ".join(written.plain.split()))
+            if entry.choices is not None and len(entry.choices) == 1:
+                panel.entries[place] = entry.copy(metavar=entry.choices[0], choices=None)
+                continue
             value = next((_VALUE_OF[name] for name in entry.names if name in _VALUE_OF), None)
             if value and entry.metavar:
                 several = "..." if entry.metavar.endswith("...") else ""

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING
 
 from calm.cli import options
 from calm.cli.outputs import ExitCode, OutputPath, Outputs, narrate
@@ -32,7 +30,6 @@ def locate(
     hemisphere: str = "",
     update: Path | None = None,
     accept: bool = False,
-    output: Annotated[Path | None, Parameter(name=["--output", "-o"], show=False)] = None,
 ) -> ExitCode:
     """Locate an anchor from ship-to-release acoustic ranges.
 
@@ -121,9 +118,6 @@ def locate(
         narrate("--sound-speed is ignored because the ranges are already in metres")
     for notice in survey.notices:
         narrate(f"{file}: {notice}")
-    if output is not None:
-        narrate("-o is now --update: the file is edited in place")
-        update = update or output
     mooring = None if update is None else range_fit.located_mooring(update)
     about = None if near is None else parse_place(near)
     if about is None and mooring is not None and mooring.position is not None:

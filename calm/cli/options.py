@@ -29,7 +29,6 @@ EnvironmentName = Annotated[
     Parameter(help="Use this environment: a name from the mooring file, or an environment file."),
 ]
 Samples = Annotated[int, Parameter(help="Number of samples, a power of two.")]
-Seed = Annotated[int, Parameter(help="Seed of the samples; the same seed gives the same figures.")]
 Threads = Annotated[
     int | None, Parameter(help="Number of threads; by default one for each processor.")
 ]
@@ -147,20 +146,15 @@ def span_of(option: str, text: str, between: tuple[float, float], in_words: str)
     return np.timedelta64(round(seconds * 1e9), "ns")
 
 
-def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | None:
+def draws_of(uncertainty: bool, samples: int) -> tuple[int, int] | None:
     """Samples and seed of `--uncertainty`; None without it.
 
-    UsageError: the number of samples is not a power of two, the seed is negative, or either was
-    given without `--uncertainty`.
+    UsageError: the number of samples is not a power of two, or was given without `--uncertainty`.
     """
     from calm.case.draws import SAMPLES, checked_samples
 
     if not uncertainty:
-        for option, value, usual in (("--samples", samples, SAMPLES), ("--seed", seed, 0)):
-            if value != usual:
-                raise UsageError(f"{option}: {value} needs --uncertainty")
+        if samples != SAMPLES:
+            raise UsageError(f"--samples: {samples} needs --uncertainty")
         return None
-    checked_samples(samples)
-    if seed < 0:
-        raise UsageError(f"--seed: {seed} is below 0")
-    return samples, seed
+    return checked_samples(samples), 0

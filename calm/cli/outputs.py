@@ -8,7 +8,7 @@ import os
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
@@ -156,10 +156,6 @@ class Shown(Protocol):
     def file(self) -> Path:
         """The file."""
 
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """Warnings to narrate if only CSV is printed."""
-
     def document(self) -> dict[str, Any]:
         """The JSON object."""
 
@@ -170,62 +166,59 @@ class Shown(Protocol):
         """A picture, page or dataset by the suffix of its file; None if there is no result."""
 
 
+APIECE = (".html", ".pdf", ".svg", ".png", ".nc")
+"""Suffixes of outputs that are written once for each mooring file."""
+
+SUFFIXES = (".json", ".csv", *APIECE)
+"""Suffixes of all outputs that -o writes."""
+
+
 @dataclass(frozen=True)
 class Outputs:
-    """The outputs asked for: a path each, ``-`` for the standard output, None where not asked.
+    """The outputs of a command.
 
     Parameters
     ----------
     files : the files the outputs are made from; none where the question is in the options
-    json, csv : one JSON document, one CSV table
-    plot, html, pdf, netcdf : a picture, a page, a report, a dataset for each file
+    json : where the JSON document goes, ``-`` for the standard output; None where not requested
+    written : further files, each of the kind that its suffix names
+    suffixes : the suffixes that these may have
     """
 
     files: tuple[Path, ...] = ()
     json: Path | None = None
-    csv: Path | None = None
-    plot: Path | None = None
-    html: Path | None = None
-    pdf: Path | None = None
-    netcdf: Path | None = None
+    written: tuple[Path, ...] = ()
+    suffixes: tuple[str, ...] = SUFFIXES
 
-    @property
-    def drawn_paths(self) -> tuple[tuple[Path, ...], ...]:
-        """Of each kind asked for, a path for each file; of several, with the file's name added."""
-        asked = [path for path in (self.plot, self.html, self.pdf, self.netcdf) if path is not None]
-        return tuple(tuple(self._for_each(path)) for path in asked)
-
-    def _for_each(self, path: Path) -> Iterator[Path]:
-        for file in self.files:
-            yield path if len(self.files) == 1 else path.with_stem(f"{path.stem}-{file.stem}")
+    def apiece(self, path: Path) -> list[Path]:
+        """The paths of an output that is written once for each file: of several, with its name."""
+        if len(self.files) == 1:
+            return [path]
+        return [path.with_stem(f"{path.stem}-{file.stem}") for file in self.files]
 
     def __post_init__(self) -> None:
         """Refuse outputs that could not be written, before anything is solved.
 
         UsageError: a path that cannot be written, that another output or a mooring file has
-        already, or that looks like an option; a picture of an unknown format.
+        already, or that looks like an option; an unknown suffix.
         """
         from calm.report.folder import check_destination
         from calm.report.provenance import moment
 
-        asked = [path for path in (self.json, self.csv) if path is not None]
-        asked += [path for paths in self.drawn_paths for path in paths]
+        asked = [] if self.json is None else [self.json]
+        for path in self.written:
+            asked += self.apiece(path) if path.suffix.lower() in APIECE else [path]
         for path in asked:
             if str(path).startswith("-") and path != STDOUT:
                 raise UsageError(
                     f"{path} was given where a path is needed; write ./{path} for a file"
                 )
-        if self.plot is not None:
-            from calm.drawing.picture import check_format
-
-            check_format(self.plot)
-        ends = (self.html, ".html"), (self.pdf, ".pdf"), (self.netcdf, ".nc")
-        for report, ending in ends:
-            if report is not None and report.suffix != ending:
-                raise UsageError(
-                    f"cannot write {report}: the name of this report must end in {ending}"
-                )
-        if self.drawn_paths:
+        *kinds, last = self.suffixes
+        for path in self.written:
+            if path.suffix.lower() not in self.suffixes:
+                allowed = f"{', '.join(kinds)} or {last}"
+                raise UsageError(f"cannot write {path}: its name must end in {allowed}")
+        if any(path.suffix.lower() in APIECE for path in self.written):
             moment()
         mooring_files = set(map(os.path.realpath, self.files))
         for real, count in Counter(map(os.path.realpath, asked)).items():
@@ -261,7 +254,7 @@ class Outputs:
             write_file(self.json, text().encode())
 
     def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
-        """Write the files, then the standard output: what was asked for there, or the tables.
+        """Write the files, then the standard output: JSON if requested there, or the tables.
 
         There is something to show of each of `files`, in order; the CSV table of all of them is
         made only where it was asked for. UsageError: the system refuses to write.
@@ -269,24 +262,20 @@ class Outputs:
         from calm.report.folder import write_file
         from calm.report.result_files import to_json
 
-        texts: dict[Path, str] = {}
-        if self.json is not None:
-            texts[self.json] = to_json([each.document() for each in shown])
-        if self.csv is not None:
-            texts[self.csv] = to_csv()
-        for path, text in texts.items():
-            if path != STDOUT:
-                write_file(path, text.encode("utf-8", "replace"))
-        for paths in self.drawn_paths:
-            for path, each in zip(paths, shown, strict=False):
-                content = each.rendered(path.suffix)
+        def document() -> str:
+            return to_json([each.document() for each in shown])
+
+        together = {".json": document, ".csv": to_csv}
+        for path in self.written:
+            suffix = path.suffix.lower()
+            if suffix in together:
+                write_file(path, together[suffix]().encode("utf-8", "replace"))
+                continue
+            for one, each in zip(self.apiece(path), shown, strict=True):
+                content = each.rendered(suffix)
                 if content is not None:
-                    write_file(path, content)
-        if STDOUT in texts:
-            show(texts[STDOUT])
+                    write_file(one, content)
+        if self.json == STDOUT:
+            show(document())
         else:
             show_parts(*(part for each in shown for part in each.parts()))
-        if self.csv == STDOUT:
-            for each in shown:
-                for warning in each.warnings:
-                    narrate(f"{each.file}: {warning}")

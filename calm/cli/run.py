@@ -4,17 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
 from calm.cli import options, reading, tow_speeds
-from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest
+from calm.cli.outputs import STDOUT, SUFFIXES, ExitCode, Outputs, gravest
 from calm.cli.solved_file import solve_files
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
+    from cyclopts import Token
+
     from calm.case import Design
+
+
+def _dash(_: object, tokens: Sequence[Token]) -> str:
+    """Accept the dash of `--json -`. UsageError: anything else."""
+    if (value := tokens[0].value) != "-":
+        raise UsageError(f"--json {value}: --json - prints the result; -o FILE.json writes a file")
+    return value
+
+
+PrintedJson = Annotated[Literal["-"] | None, Parameter(allow_leading_hyphen=True, converter=_dash)]
 
 
 def run(
@@ -23,49 +35,35 @@ def run(
     *,
     environment: options.EnvironmentName = None,
     catalog: options.CatalogFiles = None,
-    json: OutputPath = None,
-    csv: OutputPath = None,
-    netcdf: Path | None = None,
-    plot: Path | None = None,
-    html: Path | None = None,
-    pdf: Path | None = None,
+    output: Annotated[list[Path] | None, Parameter(alias="-o", allow_leading_hyphen=True)] = None,
+    json: PrintedJson = None,
     speeds: options.Signed = None,
     explain: bool = False,
     schematic: bool = False,
     uncertainty: bool = False,
     samples: options.Samples = 2048,
-    seed: options.Seed = 0,
     units: options.Units = None,
     verbose: Annotated[bool, Parameter(name=["--verbose", "-v"], negative=())] = False,
 ) -> ExitCode:
     """Solve moorings, tows and nets of legs, and print the table of each line.
 
     All files are read first: if one cannot be used, its mistakes are listed and
-    nothing is solved. The table is printed unless `-` asks for JSON or CSV; errors
-    go to the standard error.
+    nothing is solved. Errors go to the standard error.
 
     Parameters
     ----------
     files
         Mooring files; one with `tow:` is a tow, one with `legs:` a net.
+    output
+        Write the result, as the suffix says. Repeatable. One file for all moorings: .json;
+        .csv of the components, or with --speeds of the speeds. One for each mooring (of
+        several, p.svg becomes p-FILE.svg): .svg or .png, the line drawn; .html or .pdf, a
+        report of its table, drawings and inputs; .nc, NetCDF with the names of `calm batch`.
     json
-        Write the result as JSON, - to print it; several files give an array.
-    csv
-        Write the components, or with --speeds the speeds, as CSV, units in the header,
-        - to print it.
-    netcdf
-        Write the result as NetCDF, with the names of `calm batch`; for several files one
-        each, as with --plot.
-    plot
-        Draw it, as .svg, .png or .pdf; for several files p.png becomes p-FILE.png.
-    html
-        Write a report of the line, its table, drawings and inputs, as one
-        self-contained .html file; for several files one each, as with --plot.
-    pdf
-        Write the same report as .pdf.
+        Print the result as JSON in place of the table; of several files an array.
     speeds
         Solve tows at the speeds A:B:STEP, both ends included, and print a row for each;
-        --plot draws depth, layback and tension against speed. A speed without
+        -o draws depth, layback and tension against speed. A speed without
         equilibrium is a row with its status and makes the exit code 3.
     explain
         Show the contribution of each drag force to the knockdown, and the effect of
@@ -84,21 +82,22 @@ def run(
     Examples
     --------
       calm run mooring.yaml
-      calm run mooring.yaml --environment storm --plot storm.png
-      calm run mooring.yaml --csv components.csv --json result.json
+      calm run mooring.yaml --environment storm -o storm.png
+      calm run mooring.yaml -o components.csv -o result.json
       calm run mooring.yaml --explain
-      calm run mooring.yaml --uncertainty --plot band.png
+      calm run mooring.yaml --uncertainty -o band.svg
       calm run mooring.yaml --schematic
-      calm run mooring.yaml --html mooring.html --pdf mooring.pdf
+      calm run mooring.yaml -o mooring.html -o mooring.pdf
       calm run spring.yaml neap.yaml tow.yaml --json -
-      calm run tow.yaml --speeds "1 knot:12 knot:0.5 knot" --plot speeds.png
+      calm run tow.yaml --speeds "1 knot:12 knot:0.5 knot" -o speeds.svg
     """
-    outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
-    draws = options.draws_of(uncertainty, samples, seed)
+    suffixes = SUFFIXES if speeds is None else tow_speeds.SUFFIXES
+    outputs = Outputs(tuple(files), json and STDOUT, tuple(output or ()), suffixes)
+    draws = options.draws_of(uncertainty, samples)
     chosen = None if speeds is None else tow_speeds.speed_range(speeds)
     single = {
-        "--netcdf": netcdf, "--html": html, "--pdf": pdf, "--explain": explain,
-        "--schematic": schematic, "--uncertainty": uncertainty, "--verbose": verbose,
+        "--explain": explain, "--schematic": schematic, "--uncertainty": uncertainty,
+        "--verbose": verbose,
     }  # fmt: skip
     if chosen is not None and (asked := [option for option, value in single.items() if value]):
         raise UsageError(f"{', '.join(asked)} cannot be combined with --speeds")

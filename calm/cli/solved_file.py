@@ -39,11 +39,6 @@ class FileOutcome:
         """The exit code of this file alone."""
         return ExitCode.NO_EQUILIBRIUM if self.failure else ExitCode.DONE
 
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """Warnings of the result."""
-        return self.result.warnings if self.result else ()
-
     def document(self) -> dict[str, Any]:
         """The JSON object of the result, or of the failure."""
         if self.failure:

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from calm.cli.outputs import TerminalPart
     from calm.report.tabulation import Tabulation
 
+SUFFIXES = (".json", ".csv", ".svg", ".png", ".pdf")
+"""Suffixes of the outputs of a tow at many speeds."""
+
 MOST_SPEEDS = 10_000
 """Maximum number of speeds in one table."""
 
@@ -36,11 +39,6 @@ class TabulatedTow:
         """The exit code of this file alone."""
         failed = any(row.result is None for row in self.tabulation.rows)
         return ExitCode.NO_EQUILIBRIUM if failed else ExitCode.DONE
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """The warnings that all speeds share."""
-        return self.tabulation.warnings
 
     def document(self) -> dict[str, Any]:
         """The JSON object."""
@@ -84,9 +82,9 @@ def tabulate(tows: Sequence[Design], outputs: Outputs, speeds: Sequence[float]) 
 def _swept(file: Path, tow: Design, speeds: Sequence[float]) -> TabulatedTow:
     from calm.case.tow import SOLVES, sweep
     from calm.report.tabulation import by_speed
-    from calm.solve import Solver, expect_many
+    from calm.solve import CompiledPart, expect_many
 
-    expect_many(SOLVES * len(speeds), Solver.LEGS)
+    expect_many(SOLVES * len(speeds), CompiledPart.LEGS)
     outcomes = sweep(tow, progress(speeds, f"speeds of {file}"))
     failed = [
         (speed, outcome)

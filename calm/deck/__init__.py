@@ -27,8 +27,6 @@ from calm.files.components import FLEXIBLE_KINDS
 from calm.files.mooring_file import leg_numbers
 from calm.solve import Status
 
-HANDLED = ("float", "instrument", "release", "line")
-"""Roles of pieces that need handling time on deck; connectors need no extra time."""
 FAINT = 0.1
 """Current in which a line is drawn that still water leaves slack [m/s]."""
 
@@ -157,7 +155,6 @@ def deck_of(
     ship_speed: float = SHIP_SPEED,
     streamed: float | None = None,
     course: float | None = None,
-    deck_time: float | None = None,
 ) -> Deck:
     """Create the deck sheets of a mooring, or of a net (without drop and rise).
 
@@ -166,8 +163,6 @@ def deck_of(
     moorings : the mooring in each environment, that of the sheets first, with equal cut lengths
     ship_speed, streamed, course : inputs of the anchor drop, see `calm.drop.drop_plan` [m/s], [m],
         [degrees]
-    deck_time : handling time of a piece on deck, except connectors [s]; by role in the file's
-        `document` where not given
 
     Raises
     ------
@@ -206,7 +201,7 @@ def deck_of(
     if order is Order.ANCHOR_LAST and not first.several:
         try:
             stands = result if result.design is first else None
-            times = _deck_times(first.file, deck_time)
+            times = _deck_times(first.file)
             plan = drop_plan(first, ship_speed, streamed, course, result=stands, deck_time=times)
         except NoEquilibrium as failure:
             plan = failure
@@ -231,10 +226,8 @@ def deck_of(
     )
 
 
-def _deck_times(file: MooringFile, each: float | None) -> Mapping[str, float] | None:
+def _deck_times(file: MooringFile) -> Mapping[str, float] | None:
     """Handling time of a piece by role [s]; None if not specified."""
-    if each is not None:
-        return dict.fromkeys(HANDLED, each)
     given = None if file.document is None else file.document.deck_time
     return None if given is None else {str(role): time for role, time in given.items()}
 

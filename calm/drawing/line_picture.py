@@ -206,8 +206,8 @@ def plane_of(result: AnyResult) -> Floats:
 
 def plane_of_legs(legs: Sequence[LegResult]) -> Floats:
     """The same of one leg, or of those of a net."""
-    depth = max(leg.water.depth for leg in legs)
     if len(legs) > 1:
+        depth = max(leg.water.depth for leg in legs)
         x, y = (np.concatenate([getattr(leg.shape, name) for leg in legs]) for name in "xy")
         width, ways = np.linalg.eigh(np.cov(x, y))
         wide = ways[:, 1] if width[1] > 1e-12 * depth**2 else (1.0, 0.0)
@@ -220,7 +220,7 @@ def plane_of_legs(legs: Sequence[LegResult]) -> Floats:
     excursion = np.array([top.x, top.y])
     distance = np.linalg.norm(excursion)
     east = np.array([1.0, 0.0])
-    return excursion / distance if distance > 1e-6 * depth else east
+    return excursion / distance if distance > 1e-6 * legs[0].water.depth else east
 
 
 def levels_of(result: AnyResult) -> tuple[float, float]:

@@ -264,7 +264,7 @@ class AcceptKeys(definition.Model):
     date: Day | None = definition.optional("day, e.g. 2026-11-20", "2026-11-22")
     until: Day | None = definition.optional("last day on which it counts", "2027-12-31")
     load: Annotated[float | None, definition.QuantityField("force", above=0)] = definition.optional(
-        "greatest tension that is accepted, such as a proof load", "25 kN"
+        "maximum tension accepted, such as a proof load", "25 kN"
     )
 
     @model_validator(mode="after")

@@ -290,7 +290,7 @@ class Node(NamedTuple):
 
 
 class Composition(NamedTuple):
-    """The nodes of a text, and what is not allowed in it; `root` is None for an empty or invalid
+    """The nodes of a text, and its refused parts; `root` is None for an empty or invalid
     text.
     """
 

@@ -127,7 +127,7 @@ def quantity_of(field: FieldInfo) -> QuantityField | None:
 
 
 def in_si(name: str, value: float | str, dimension: str) -> float:
-    """Return an argument in SI (degrees, degC): a number as it is, a text with its unit converted.
+    """Return an argument in SI (degrees, degC): a number unchanged, a text with its unit converted.
 
     UsageError, with the name of the argument: the text is no quantity of this dimension.
     """
@@ -311,8 +311,8 @@ class Definition(Model):
         "force at which its clamp slips along the line, e.g. 1 kN", "1 kN"
     )
     insulated: bool | None = optional(
-        "whether plastic or rubber keeps its metal from what it touches: jaws of its clamp, bushes "
-        "in its eyes; taken as true of what is clamped, and else as false",
+        "whether plastic or rubber separates its metal from others: jaws of its clamp, bushes "
+        "in its eyes; by default true for clamps and false for pieces",
         True,
     )
     max_tilt: Annotated[float | None, TILT] = optional(

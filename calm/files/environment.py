@@ -318,14 +318,14 @@ def read_environment(
 
 
 GREATEST_TIDE = 20.0
-"""Range of the greatest tides, 17 m in Ungava Bay and the Bay of Fundy, and a surge [m]."""
+"""Range of the largest tides, 17 m in Ungava Bay and the Bay of Fundy, and a surge [m]."""
 
 STRONGEST_WIND = 75.0
 """Strongest wind measured over 1 min at sea, in round figures [m/s]."""
 
 
 def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
-    """Return remarks on a current that a person wrote, none on one from a record."""
+    """Return remarks about a current given in the file; none for a current from a record."""
     if current.record is not None:
         return []
     levels, u, v = (np.array(each) for each in (current.depth, current.u, current.v))
@@ -346,7 +346,7 @@ def _tide_doubts(levels: tuple[float, float]) -> list[str]:
     if (between := levels[1] - levels[0]) <= GREATEST_TIDE:
         return []
     return [
-        f"`depth_range` spans {between:g} m, and the greatest tides 17 m: was it cm, or are these "
+        f"`depth_range` spans {between:g} m, and the largest tides 17 m: was it cm, or are these "
         "not low and high water?"
     ]
 

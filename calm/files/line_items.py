@@ -74,7 +74,7 @@ class LineReader:
         return tuple(pieces)
 
     def _items(self, section: SourceMapping, key: str) -> list[SourceMapping]:
-        """Return the items of a list, all of which are mappings."""
+        """Return the items of a list, which are all mappings."""
         found = section.data[key]
         if not isinstance(found, (list, tuple)):
             section.refuse((key,), f"`{key}` must be a list of items")
@@ -283,7 +283,7 @@ class LineReader:
         entry: CatalogueEntry,
         item: SourceMapping,
     ) -> tuple[Piece, ...]:
-        """Return the pieces of an assembly with its figures where they lack them."""
+        """Return the pieces of an assembly, which take its figures if they lack them."""
         for key in ASSEMBLY_FIGURES:
             value = getattr(assembly, key)
             if value is None:
@@ -452,7 +452,7 @@ def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Pi
 
 
 def _lacks(component: Component, key: str, *, clamped: bool) -> bool:
-    """Whether a component that needs a figure in its place does not specify it."""
+    """Whether a component lacks a figure that it needs in its place."""
     if key in ("working_load", "breaking_load"):
         return not clamped and component.working_load is component.breaking_load is None
     if key == "grip":

@@ -57,14 +57,14 @@ RULES = {
         "Constant coefficients hold up to 2e5; beyond it, the drag of smooth shapes falls",
         "the profiles of a record are solved with one law of drag"),
     "environment": RuleText("Environment", "",
-        "what is possible in an environment, and mostly is a mistake: directions that are radians, "
-        "a level opposite to both its neighbours, a current that grows down to the seabed or is "
-        "stronger than any in deep water, the density of no sea, tides of more than 20 m, wind of "
-        "more than 75 m/s; levels of a storm weaker than half of the ordinary current; no `wind` "
-        "on a float at the surface that has a `wind_area`",
+        "values of an environment that are possible but probably mistakes: directions in radians, "
+        "a level opposite to both its neighbours, a current that increases down to the seabed or "
+        "exceeds any in deep water, an implausible density, tides of more than 20 m, wind of more "
+        "than 75 m/s; levels of a storm below half of the ordinary current; no `wind` although a "
+        "float at the surface has a `wind_area`",
         "a warning",
-        "Defaults of this program: what the sea has, and people type",
-        "environments are judged beside each other, by `calm check`"),
+        "Defaults of this program: ranges of the sea, and common input errors",
+        "environments are compared with each other, by `calm check`"),
     "missing": RuleText("Missing figures", "",
         "figures that rules need and a component lacks: one finding for each component id "
         "and figure, with these rules and the pieces that they cannot check",
@@ -110,7 +110,7 @@ RULES = {
         "20°, release 45°, sediment trap 10°",
         figures=("max_tilt",)),
     "depth-rating": RuleText("Depth rating", "depth",
-        "depth in the current; of a surface float only where it gives its rating",
+        "depth in the current; for a surface float only if it has a rating",
         "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
         "Rating given by the manufacturer, less a margin for a stronger current than expected",
         figures=("depth_rating",)),
@@ -235,10 +235,10 @@ RULES = {
         "A default of this program: connectors have weight, drag and a strength",
         _ONCE),
     "joints": RuleText("Joints", "",
-        "whether a piece with `role: connector` joins every two unlike pieces, of wire, chain and "
-        "what is rigid; ropes are spliced, and a wire with a `termination` says how it ends",
-        "a warning, one for all joints of the line; not of a line without any hardware",
-        "A default of this program: a shackle that is not listed is not bought, nor judged",
+        "whether a piece with `role: connector` joins every two different pieces (wire, chain, "
+        "rigid pieces), except spliced ropes and wires with a `termination`",
+        "one warning for all joints of the line; none for a line without any hardware",
+        "A default of this program: a shackle that is not listed is neither bought nor checked",
         _ONCE),
     "clamp-place": RuleText("Places of the clamps", "",
         "clamps on a cable or chain that overlap, or extend beyond its end",
@@ -251,7 +251,7 @@ RULES = {
         "before the deployment or the calibration, calibrations after the deployment; a document "
         "that is not its latest revision, revisions out of order",
         "a warning",
-        "A default of this program: what sheets and labels print must not contradict itself",
+        "A default of this program: sheets and labels must be consistent",
         _ONCE),
     "swivel": RuleText("Swivel", "",
         "steel wire that ends at a float with no chain or rope between",

@@ -128,10 +128,12 @@ def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> Qua
 
 
 _LIGHTEST = 990.0
-"""Density of fresh water at 45 °C; no mooring stands in lighter water [kg/m³]."""
+"""Density of fresh water at 45 °C, the lowest density of any mooring's water [kg/m³]."""
 _HEAVIEST = 1040.0, 0.0047
-"""Density of the heaviest sea water at the surface, Red Sea in winter 1030 kg/m³ and a margin, and
-what the pressure adds for each metre [kg/m³], [kg/m⁴]: 1050 kg/m³ at 5000 m. Brines are heavier."""
+"""Highest density of sea water at the surface [kg/m³] (Red Sea in winter, 1030 kg/m³, plus a
+margin), and its increase by pressure for each metre [kg/m⁴]: 1050 kg/m³ at 5000 m. Brines are
+heavier.
+"""
 
 
 def density_doubts(

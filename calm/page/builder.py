@@ -53,7 +53,7 @@ NEW = "mooring.yaml"
 class PageBuilder(BuildApp):
     """The line builder, which hands every file that it saves to the page."""
 
-    def __init__(self, session: Session, kept: KeptWork | None, page: Page) -> None:
+    def __init__(self, session: Session, kept: KeptWork | None, page: WebPage) -> None:
         super().__init__(session, kept=kept)
         self.workspace.papers_elsewhere = (
             "The buttons above the line make its report, diagram and bill"
@@ -65,7 +65,7 @@ class PageBuilder(BuildApp):
         return driver.PageDriver
 
 
-class Page:
+class WebPage:
     """One page: a folder of files in its memory, and the builder of one of them.
 
     Parameters

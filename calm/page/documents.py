@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Document:
+class Download:
     """A kind of file to download.
 
     Attributes
@@ -61,10 +61,10 @@ def _deck(moorings: list[Design]) -> bytes:
 
 
 DOCUMENTS = (
-    Document("report", "Report", "-report.html", _report),
-    Document("diagram", "Diagram", "-diagram.svg", _diagram),
-    Document("bill", "Bill of material", "-bill.csv", _bill),
-    Document("deck", "Deck lists", "-deck.xlsx", _deck),
+    Download("report", "Report", "-report.html", _report),
+    Download("diagram", "Diagram", "-diagram.svg", _diagram),
+    Download("bill", "Bill of material", "-bill.csv", _bill),
+    Download("deck", "Deck lists", "-deck.xlsx", _deck),
 )
 """In the order of the buttons."""
 

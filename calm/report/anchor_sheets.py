@@ -61,8 +61,8 @@ def _instructions(plan: DropPlan) -> Prose:
     ]
     if plan.start is None:
         said.append(
-            "The start of the run follows from the time that a piece takes on deck: give "
-            "--deck-time."
+            "The start of the run follows from the time that a piece takes on deck: add "
+            "`deck_time` to `document` in the file."
         )
     else:
         behind = "before" if plan.start.distance >= 0.0 else "beyond"

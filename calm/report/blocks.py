@@ -159,7 +159,7 @@ class Heading:
 class Listing:
     """Text of a file; in print it is attached under `name`, if set.
 
-    A text of more than `most` lines appears in the attachment only.
+    A text that takes more than `most` lines there appears in the attachment only.
     """
 
     title: str

@@ -42,7 +42,7 @@ from calm.report.open_items import (
     plain,
     where_text,
 )
-from calm.report.page_one import SignedMooring, item_tags
+from calm.report.page_one import MOST_REVISIONS, TEXT_HEIGHT, SignedMooring, item_tags
 
 
 def checks_page(signed: SignedMooring) -> Iterator[Block]:
@@ -309,7 +309,7 @@ def _inventory(signed: SignedMooring) -> Table:
     )
 
 
-def basis_page(signed: SignedMooring) -> Iterator[Block]:
+def basis_page(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
     """Yield the limits, environment, exclusions, mooring file, and hash of all inputs."""
     assessment = signed.assessment
     waters = {one.leg.file.environment.name or "own": one.leg.water for one in assessment.stands}
@@ -318,18 +318,25 @@ def basis_page(signed: SignedMooring) -> Iterator[Block]:
     unseen = f"{plain('; '.join(unjudged))}.", "No use on these pages includes them."
     text = provenance.source_text(assessment.file)
     name = provenance.file_name(assessment.file)
-    yield Beside(
-        (_limits([*_limits_that_count(signed)]),),
-        (_environment(waters), blocks.Heading("Not judged"), Prose(unseen)),
-        0.62,
-    )
-    yield from _history(assessment.file)
+    limits, environment = _limits([*_limits_that_count(signed)]), _environment(waters)
+    beside = environment, blocks.Heading("Not judged"), Prose(unseen)
+    yield Beside((limits,), beside, 0.62)
+    yield from (history := [*_history(assessment.file)])
     said_of = "The file could not be read again." if text is None else text.rstrip()
-    yield Listing("Mooring file", said_of, name, 110)
+    above = max(len(limits.rows), len(environment.rows) + _UNJUDGED)
+    above += sum(len(table.rows) + 3 for table in history)
+    room = TEXT_HEIGHT[paper] - _AROUND - _ROW * above
+    yield Listing("Mooring file", said_of, name, 2 * int(room / _LISTED))
     yield Prose((
         "SHA-256 of the inputs, the mooring file with every figure of the catalogue used:",
         signed.sha256,
     ))  # fmt: skip
+
+
+_AROUND, _ROW, _LISTED = 95.0, 12.6, 6.5
+"""Height of the headings, of a row of a table, and of a line of the file on the last page [pt]."""
+_UNJUDGED = 11
+"""Rows of the environment that are as high as what is not judged."""
 
 
 def _limits(limits: Iterable[LimitKey]) -> Table:
@@ -430,8 +437,9 @@ def _water_note(water: Water) -> str:
 
 
 def _history(file: MooringFile) -> Iterator[Table]:
+    """All revisions, where page one has not room for them."""
     given = file.document
-    if given is not None and given.history:
+    if given is not None and len(given.history) > MOST_REVISIONS:
         first = words("Revision", "revision", 0.0), words("Date", "date", 0.0)
         fields = (*first, words("By", "by"), words("Change", "change", 3.0))
         yield table_of("History", given.history, *fields, ruled=False)

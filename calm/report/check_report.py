@@ -45,7 +45,7 @@ def mooring_section(
     signed = signed_mooring(assessment)
     pages = (
         page_one(signed, paper), drawing_pages(signed, paper), line_page(signed),
-        checks_page(signed), handling_page(signed), basis_page(signed),
+        checks_page(signed), handling_page(signed), basis_page(signed, paper),
     )  # fmt: skip
     parts = [*_pages(pages)]
     if against is not None:

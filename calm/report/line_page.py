@@ -14,7 +14,7 @@ from calm.report.drawing_page import run_of
 from calm.report.load_cases import (
     LOAD,
     LoadCase,
-    PieceLoads,
+    PieceEnvelope,
     capacity_text,
     load_text,
     piece_loads,
@@ -58,9 +58,9 @@ def _known(value: float | None) -> float | None:
     return None if value is None else value * LOAD.scale
 
 
-def _loads_table(loads: Sequence[PieceLoads]) -> Table:
+def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
     """Tabulate each cable, instrument, float, release and anchor; equal floats share a row."""
-    groups: list[list[PieceLoads]] = []
+    groups: list[list[PieceEnvelope]] = []
     for one in loads:
         last = groups[-1][-1] if groups else None
         same = (
@@ -75,10 +75,10 @@ def _loads_table(loads: Sequence[PieceLoads]) -> Table:
     rows = [(max(group, key=_most_used), group) for group in groups]
     unit = LOAD.display_unit
 
-    def of(show: Callable[[PieceLoads], object]) -> Callable[[object], object]:
+    def of(show: Callable[[PieceEnvelope], object]) -> Callable[[object], object]:
         return lambda row: show(row[0])  # type: ignore[index]
 
-    def case(one: PieceLoads) -> Cell:
+    def case(one: PieceEnvelope) -> Cell:
         return Cell(load_text(one.tension), one.case, goes_on=True)
 
     passes = ("float", "anchor")
@@ -107,7 +107,7 @@ def _loads_table(loads: Sequence[PieceLoads]) -> Table:
     )  # fmt: skip
 
 
-def _most_used(one: PieceLoads) -> tuple[float, float]:
+def _most_used(one: PieceEnvelope) -> tuple[float, float]:
     used = None if one.standing is None else one.standing.utilisation
     return used or 0.0, one.tension
 
@@ -132,13 +132,13 @@ def _use(finding: Finding | None) -> Cell | None:
     return Cell("\u00a0".join(filter(None, (sign, used))), strong=True)
 
 
-def _hardware_table(loads: Sequence[PieceLoads]) -> Table:
+def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
     """A row of each type, with the piece that is used most."""
     groups = grouped(loads, lambda one: one.row.use)
     rows = [(max(group, key=_most_used), group) for group in groups]
     unit = LOAD.display_unit
 
-    def worst_launch(row: tuple[PieceLoads, list[PieceLoads]]) -> PieceLoads:
+    def worst_launch(row: tuple[PieceEnvelope, list[PieceEnvelope]]) -> PieceEnvelope:
         return max(row[1], key=lambda one: one.launch_tension or 0.0)
 
     return table_of(

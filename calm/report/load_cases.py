@@ -176,7 +176,7 @@ def worst_of_each_environment(cases: Sequence[LoadCase]) -> list[LoadCase]:
 
 
 @dataclass(frozen=True)
-class PieceLoads:
+class PieceEnvelope:
     """Loads on a piece in all cases, and its capacity.
 
     Attributes
@@ -201,7 +201,7 @@ class PieceLoads:
     rise_tension: float | None
 
 
-def piece_loads(assessment: Assessment, cases: Sequence[LoadCase]) -> list[PieceLoads]:
+def piece_loads(assessment: Assessment, cases: Sequence[LoadCase]) -> list[PieceEnvelope]:
     """The envelope of every piece, from the top to the anchor, leg by leg."""
     strong, falling = (found_on(assessment, name) for name in ("strength", "launch-strength"))
     launch, recovery = assessment.launch, assessment.recovery
@@ -218,7 +218,7 @@ def piece_loads(assessment: Assessment, cases: Sequence[LoadCase]) -> list[Piece
             both = recovery.tension_top, recovery.tension_bottom
             known = [one for each in both if (one := _at(each, row.index)) is not None]
             rises = max(known, default=None)
-        found.append(PieceLoads(
+        found.append(PieceEnvelope(
             number, row, tension, case, min(each.least_tension for each, _ in rows),
             max(each.tilt for each, _ in rows), strong.get(row.label), falling.get(row.label),
             falls, rises,

@@ -56,6 +56,8 @@ MARKS = {
 _HALF = 0.4999  # of the capacity: what is used more is shown on page one
 _LONGEST = 30  # letters of a name in a table of page one
 
+MOST_REVISIONS = 3
+
 TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
 """Height of a page between its head and its foot [pt]."""
 _FIXED, _ROW = 250.0, 12.6
@@ -306,7 +308,7 @@ def sign_off(signed: SignedMooring) -> SignOff:
     roles = (("Drawn", field("author")), ("Checked", field("checked")),
              ("Approved", field("approved")))  # fmt: skip
     said = "Signatures. The last page says what no check judges: waves, snap loads, fatigue."
-    return SignOff(tuple(history[:-4:-1]), roles, said)
+    return SignOff(tuple(history[: -MOST_REVISIONS - 1 : -1]), roles, said)
 
 
 def page_one(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:

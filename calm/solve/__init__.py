@@ -13,5 +13,5 @@ from calm.solve.solution import Solution as Solution
 from calm.solve.solution import Status as Status
 from calm.solve.tow import Towing as Towing
 from calm.solve.tow import solve_tow as solve_tow
-from calm.solve.two_speeds import Solver as Solver
+from calm.solve.two_speeds import CompiledPart as CompiledPart
 from calm.solve.two_speeds import expect_many as expect_many

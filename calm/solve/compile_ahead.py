@@ -13,7 +13,7 @@ from calm.solve.free import solve_rise
 from calm.solve.mooring import Nearby, solve_mooring
 from calm.solve.solution import Settings
 from calm.solve.tow import Towing, solve_tow
-from calm.solve.two_speeds import Solver
+from calm.solve.two_speeds import CompiledPart
 
 COMPILED = Settings(compiled=True)
 
@@ -39,15 +39,15 @@ def small_line(buoyancy: float) -> Line:
     )
 
 
-def compile_part(solver: Solver) -> None:
+def compile_part(solver: CompiledPart) -> None:
     """Compile a part of the solver into the cache."""
     speed, rest, density = np.array([0.2]), np.zeros(1), np.array([1025.0])
     water = Water(100.0, rest, speed, rest, rest, density)
-    if solver is Solver.LEGS:
+    if solver is CompiledPart.LEGS:
         solve_tow(small_line(-500.0).reversed(), water, Towing(1.0, 0.0), COMPILED)
         return
     line = small_line(500.0)
-    if solver is Solver.LINE:
+    if solver is CompiledPart.LINE:
         solve_mooring(line, water, COMPILED)
         solve_rise(line, water, 10.0, COMPILED)
     else:
@@ -56,4 +56,4 @@ def compile_part(solver: Solver) -> None:
 
 
 if __name__ == "__main__":
-    compile_part(Solver[sys.argv[1]])
+    compile_part(CompiledPart[sys.argv[1]])

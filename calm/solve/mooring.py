@@ -45,7 +45,7 @@ from calm.solve.solution import (
     standing_lift,
 )
 from calm.solve.starts import fill_starts
-from calm.solve.two_speeds import Solver, runs_compiled
+from calm.solve.two_speeds import CompiledPart, runs_compiled
 
 MOST_DEPTHS = 500
 """Largest length of a line, in water depths: segments are at most a hundredth of the depth."""
@@ -239,7 +239,7 @@ class Nearby:
         self.solution = solve_mooring(line, water, settings)
         self._water, self._settings = water, settings
         self._room = 2 * len(self.solution.cut) + 64
-        self._compiled = compiled = runs_compiled(settings, line, Solver.NEARBY)
+        self._compiled = compiled = runs_compiled(settings, line, CompiledPart.NEARBY)
         problem = problem_of(line, water, settings, compiled=compiled, room=self._room)
         search = search_of(problem, compiled)
         closed: Closed = outcome(close_coarsely, compiled, search, self.solution.landed)

@@ -31,7 +31,7 @@ from calm.solve.solution import (
     Solution,
     Status,
 )
-from calm.solve.two_speeds import Solver, count_lines, runs_compiled
+from calm.solve.two_speeds import CompiledPart, count_lines, runs_compiled
 
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
@@ -81,7 +81,7 @@ class NetSearch:
         self, legs: Sequence[NetLeg], nodes: int, water: Water, settings: Settings,
         room: int = ROOM, rough: bool = False,
     ) -> None:  # fmt: skip
-        self.compiled, self.settings = runs_compiled(settings, solver=Solver.LEGS), settings
+        self.compiled, self.settings = runs_compiled(settings, solver=CompiledPart.LEGS), settings
         self.laid = [LaidLeg.of(leg, water, settings, rough) for leg in legs]
         self.nodes, self.room = nodes, room
         self.net = lay_net(self.laid, nodes, self.compiled, room)
@@ -229,7 +229,7 @@ def solve_net(
         No equilibrium was found, or the one found fails a check.
     """
     settings = settings or Settings()
-    count_lines(4.0 * len(legs), Solver.LEGS)
+    count_lines(4.0 * len(legs), CompiledPart.LEGS)
 
     def solved(net: NetSearch) -> NetSolution:
         found = net.solution(settled_from(net, near))

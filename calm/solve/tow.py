@@ -29,7 +29,7 @@ from calm.solve.solution import (
     Solution,
     Status,
 )
-from calm.solve.two_speeds import Solver, count_lines
+from calm.solve.two_speeds import CompiledPart, count_lines
 
 SURFACE_BAND = 1e-7
 """Thickness of the band from water to air, as a share of the line out."""
@@ -101,7 +101,7 @@ def solve_tow(
     if not line.length.any():
         raise Status.NO_EQUILIBRIUM.because("The towed line has no length.", advice=PAY_OUT)
     _refuse_limp(line)
-    count_lines(1.0, Solver.LEGS)
+    count_lines(1.0, CompiledPart.LEGS)
     water = _relative(line, water, towing)
     u, v, w = map(float, water.current_at(np.zeros(())))
     ship = LegEnd(place=(0.0, 0.0, towing.height), past=(u, v, w))

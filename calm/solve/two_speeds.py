@@ -29,7 +29,7 @@ AS_MANY = 8
 """Number of pieces and clamps of an ordinary line. The work of a line is in proportion to it."""
 
 
-class Solver(Enum):
+class CompiledPart(Enum):
     """A part of the solver that is compiled by itself. Its value is the law compiled last."""
 
     LINE = "find_now"
@@ -43,7 +43,7 @@ class _Pace:
     `announced` and `solved` are numbers of lines, `work` is that of ordinary lines.
     """
 
-    def __init__(self, solver: Solver) -> None:
+    def __init__(self, solver: CompiledPart) -> None:
         self.solver = solver
         self.announced = self.solved = self.work = self.asked_at = 0.0
         self.compiled = False
@@ -66,10 +66,10 @@ class _Pace:
             self.child = _compile_ahead(self.solver)
 
 
-_paces = {solver: _Pace(solver) for solver in Solver}
+_paces = {solver: _Pace(solver) for solver in CompiledPart}
 
 
-def expect_many(lines: float, solver: Solver = Solver.LINE) -> None:
+def expect_many(lines: float, solver: CompiledPart = CompiledPart.LINE) -> None:
     """Announce that so many lines are about to be solved."""
     pace = _paces[solver]
     pace.announced = pace.solved + lines
@@ -78,7 +78,7 @@ def expect_many(lines: float, solver: Solver = Solver.LINE) -> None:
 
 
 def runs_compiled(
-    settings: Settings, line: Line | None = None, solver: Solver = Solver.LINE
+    settings: Settings, line: Line | None = None, solver: CompiledPart = CompiledPart.LINE
 ) -> bool:
     """Whether to run compiled code for the line that is solved next; it is counted."""
     if settings.compiled is not None:
@@ -91,7 +91,7 @@ def runs_compiled(
     return _paces[solver].compiled
 
 
-def count_lines(lines: float, solver: Solver, work: float | None = None) -> None:
+def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -> None:
     """Count lines that are solved next; their work is in ordinary lines."""
     pace = _paces[solver]
     pace.solved += lines
@@ -109,7 +109,7 @@ def _has_numba() -> bool:
     return find_spec("numba") is not None
 
 
-def _compile_ahead(solver: Solver) -> "Popen[bytes] | None":
+def _compile_ahead(solver: CompiledPart) -> "Popen[bytes] | None":
     """Start a child process that compiles a part of the solver into the cache.
 
     The child may outlive this process, so it shares no stream with it.

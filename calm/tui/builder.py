@@ -59,7 +59,7 @@ class BuilderScreen(ComparingScreen):
         place = places.get(type(self.focused), "line")
         if self.focused is not None and self.catalogue in self.focused.ancestors_with_self:
             place = "catalogue"
-        self.query_one(KeyBar).show_keys(hints(place))
+        self.query_one(KeyBar).show_keys(hints(place), beside=place == "catalogue")
 
     def action_suspend(self) -> None:
         """Back to the shell; undo where there is none, or a value is typed."""

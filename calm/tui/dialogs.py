@@ -80,10 +80,13 @@ def numbered(answers: Iterable[tuple[str, Then]]) -> list[Answer]:
 
 
 class Question(ModalScreen[Then | None]):
-    """One of several answers, by its key or with the mouse; Esc is `back` unless one `must` be."""
+    """One of several answers, by its key, with arrows and Enter, or with the mouse.
+
+    Esc is `back` unless one `must` be given.
+    """
 
     BINDINGS = key_table.bindings("question")
-    DEFAULT_CSS = "Question {" + _FRAME + "}"
+    DEFAULT_CSS = "Question {" + _FRAME + " .answer.-marked { background: $primary-muted; } }"
 
     def __init__(
         self,
@@ -97,6 +100,7 @@ class Question(ModalScreen[Then | None]):
         super().__init__()
         self._title, self._text, self._answers = title, text, answers
         self._back, self._must = back, must
+        self._marked: int | None = None
 
     def compose(self) -> ComposeResult:
         """Return what is asked, and the answers below each other."""
@@ -106,7 +110,8 @@ class Question(ModalScreen[Then | None]):
             for number, answer in enumerate(self._answers):
                 yield Static(
                     f"[@click=screen.answer_number({number})][b]{answer.key}[/b]  "
-                    f"{escape(answer.title)}[/]"
+                    f"{escape(answer.title)}[/]",
+                    classes="answer",
                 )
             if not self._must:
                 yield Static("[@click=screen.leave][b]Esc[/b]  go back[/]")
@@ -118,6 +123,25 @@ class Question(ModalScreen[Then | None]):
                 event.stop()
                 self.dismiss(answer.then)
                 return
+
+    def on_mount(self) -> None:
+        """In a numbered list the first answer is marked; elsewhere none is until an arrow."""
+        if self._answers[0].key == "1":
+            self.action_move(1)
+
+    def action_move(self, by: int) -> None:
+        """Mark the answer above or below."""
+        if self._marked is None:
+            self._marked = 0 if by > 0 else len(self._answers) - 1
+        else:
+            self._marked = (self._marked + by) % len(self._answers)
+        for number, shown in enumerate(self.query(".answer")):
+            shown.set_class(number == self._marked, "-marked")
+
+    def action_give(self) -> None:
+        """Give the answer that is marked."""
+        if self._marked is not None:
+            self.action_answer_number(self._marked)
 
     def action_answer_number(self, number: int) -> None:
         """Give an answer by its number."""

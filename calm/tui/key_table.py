@@ -68,10 +68,10 @@ equipment | N | serial number |  | Serial number, calibration, sampling, battery
 find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
 find_next(1) | greater_than_sign,f3 | find next |  | To the next row that has them.
 find_next(-1) | less_than_sign | find last |  | To the one before.
-weakest | W | weakest |  | To the piece whose strength is used most.
+weakest | percent_sign | weakest |  | To the piece whose strength is used most.
 column | number_sign | fill column |  | Serial numbers, lengths, labels or codes of the marked rows,
   or of all of the component under the cursor, one below the other or pasted.
-repeat | R | repeat |  | Repeat the piece, or those marked, as often as you say.
+repeat | plus | repeat |  | Repeat the piece, or those marked, as often as you say.
 next_finding | f8,g | next finding |  | To the next row with the most serious finding; the last
   line of the screen shows it.
 why | y | why |  | All findings of this row, with remedies.
@@ -94,12 +94,12 @@ water | w | water | 4 | Depth, density, current, wind; environments.
 next_environment | e | environment |  | Show the line in the next environment.
 advise | p | advice | 10 | Changes that correct a finding or meet a target; shown before you
   accept them.
-compare | D | compare |  | What has changed since the file was saved.
+compare | ctrl+d | compare |  | What has changed since the file was saved.
 figures | f | missing figures |  | Fill in the figures that are not known, piece by piece, with
   their source.
-verdict | G | verdict |  | The verdict line by line: Enter goes to the row that a line is about,
+verdict | f6 | verdict |  | The verdict line by line: Enter goes to the row that a line is about,
   Esc back.
-search('below') | B | catalogue |  | Browse the catalogue.
+search('below') | f7 | catalogue |  | Browse the catalogue.
 define | o | own component |  | Define a component of your own.
 picture('elevation') | 1 | elevation |  | The line seen from the side.
 picture('plan') | 2 | plan |  | The line seen from above.
@@ -109,13 +109,13 @@ zoom | z | zoom |  | Give the picture the whole screen, or take it back.
 sheet('mooring') | m | name, place |  | Name, description and position.
 sheet('document') | M | document |  | Number, revision and what it changed, author, ship and cruise,
   for the title block.
-sheet('deployed') | L | as deployed |  | Date, position and depth of the deployment; of the row its
+sheet('deployed') | at | as deployed |  | Date, position and depth of the deployment; of the row its
   number, length, remark, codes.
 sheet('tow') | T | tow |  | Speed and course of a tow; makes the line one, which hangs from a ship.
 settings | comma | settings |  | Solver, limits of the check, uncertainty and units of output.
 begin | b | begin |  | Begin an empty line with a mooring: deep, shelf, ADCP, taut or slack
   surface; a tow.
-papers | P | papers |  | Bill and totals; write the report of the check, or the sheets for the
+papers | f9 | papers |  | Bill and totals; write the report of the check, or the sheets for the
   deck.
 history | h | history |  | History of changes, and back to before any of them.
 text | t | text |  | The file as text, with its mistakes.
@@ -199,6 +199,9 @@ leave | escape | leave |  | Leave everything as it was.
 app.focus_next | down | next |  | To the next value.
 app.focus_previous | up | last |  | To the one before.
 [question] A question, answered by the letter in front of each answer
+move(-1) | up | up |  | To the answer above.
+move(1) | down | down |  | To the answer below.
+give | enter | give |  | Give the answer that is marked, if one is.
 leave | escape | go back |  | Go back, where possible.
 [help] This help
 dismiss | escape,q,enter,question_mark,f1 | close |  | Close it.

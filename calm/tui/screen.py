@@ -151,11 +151,14 @@ class KeyBar(Static):
         super().__init__()
         self._actions: list[Action] = []
         self._told = ""
+        self._beside = False
 
-    def show_keys(self, actions: Iterable[Action]) -> None:
-        """Show other keys."""
-        if (chosen := list(actions)) != self._actions:
-            self._actions = chosen
+    def show_keys(self, actions: Iterable[Action], *, beside: bool = False) -> None:
+        """Show other keys; `beside` a message, which gets the rest of the line, unless it is of a
+        mistake.
+        """
+        if ((chosen := list(actions)), beside) != (self._actions, self._beside):
+            self._actions, self._beside = chosen, beside
             self._show()
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
@@ -173,11 +176,17 @@ class KeyBar(Static):
 
     def _show(self) -> None:
         width = self.content_size.width or 78
+        keys = Content(_GAP).join(self._keys(width))
         if self._told:
+            beside = self._beside and not self.has_class("-wrong")
+            room = max(width - keys.cell_length - len(_GAP), 0) if beside else width
             text = Text(self._told)
-            text.truncate(width, overflow="ellipsis")
-            self.update(text, layout=False)
-            return
+            text.truncate(room, overflow="ellipsis")
+            keys = Content.assemble(keys, _GAP, text.plain) if beside else Content(text.plain)
+        self.update(keys, layout=False)
+
+    def _keys(self, width: int) -> list[Content]:
+        """The keys for which there is room."""
         parts, used = [], 0
         for action in self._actions:
             pressed = action.keys.split(",")[0]
@@ -186,4 +195,4 @@ class KeyBar(Static):
             if used + cell_len(key + title) <= width:
                 used += cell_len(key + title) + len(_GAP)
                 parts.append(Content.assemble((key, press + Style(bold=True)), (title, press)))
-        self.update(Content(_GAP).join(parts), layout=False)
+        return parts

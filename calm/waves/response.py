@@ -5,6 +5,7 @@ dissipation.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from importlib.util import find_spec
 from math import erf, exp, pi, radians, sqrt
 from typing import NamedTuple
 
@@ -12,6 +13,7 @@ import numpy as np
 
 from calm.physics.line import Floats
 from calm.records.sea_states import SeaState
+from calm.solve.block_tridiagonal import solve_blocks
 from calm.waves.buoy import SIDEWAYS_ADDED, Buoy
 from calm.waves.lumped_line import Complexes, LumpedLine
 
@@ -320,18 +322,14 @@ def _inertia_force(line: LumpedLine, waves: Waves, water: Complexes) -> Complexe
     return np.asarray(1j * waves.omega[:, None, None] * accelerated)
 
 
-_BAND = 5
-"""Number of diagonals on each side of the main diagonal: a node has three directions and two
-neighbours.
-"""
+TOGETHER = 16
+"""Number of frequencies solved at once: their matrices fit into the processor's cache."""
 
 
-_ENTRIES = [(row, column) for row in range(3) for column in range(3)]
-"""Rows and columns of a block of the matrix."""
-
-
-def _undamped(line: LumpedLine) -> tuple[Floats, Floats]:
-    """Banded matrices (3n-3, 16) of the springs and of the masses."""
+def _undamped(line: LumpedLine) -> tuple[Floats, Floats, Floats]:
+    """Blocks (n-1, 3, 3) of springs and of masses at the nodes, and blocks (n-2, 3, 3) of the
+    springs between neighbours.
+    """
     eye, t, s = np.eye(3), line.tangent, line.spring
     outer = t[:, :, None] * t[:, None, :]
     mass = line.mass[:, None, None] * eye + line.added_across[:, None, None] * (eye - outer)
@@ -341,58 +339,104 @@ def _undamped(line: LumpedLine) -> tuple[Floats, Floats]:
     springs = line.stiffness[:, None, None] * axial + sideways[:, None, None] * (eye - axial)
     held = springs.copy()
     held[1:] += springs[:-1]
-    return _banded(held, springs), _banded(mass[:-1], None)
+    return held, mass[:-1], -springs[:-1]
 
 
 def _solved(
-    undamped: tuple[Floats, Floats],
+    undamped: tuple[Floats, Floats, Floats],
     top: tuple[Complexes, Complexes] | None,
     omega: Floats,
     water: Complexes,
     forced: Complexes,
     damping: Floats,
 ) -> Complexes:
-    """Solve for the motion (f, n, 3) of the nodes, with one banded matrix per frequency.
+    """Solve for the motion (f, n, 3) of the nodes, by a block-tridiagonal matrix per frequency.
 
-    The matrices share one array that fits into the processor's cache.
+    SciPy solves it faster, but is not available in a web page.
+
     `top` holds the stiffness (f, 3, 3) and the force (f, 3) of the float at the first node.
     """
-    from scipy.linalg.lapack import zgbsv
-
-    springs, masses = undamped
-    damped = _banded(damping[:-1], None)
-    matrix = np.empty(springs.shape, complex)
     push = forced + _times(damping, water)
     if top is not None:
         push[:, 0] += top[1]
     motion = np.zeros(push.shape, complex)
+    by = _by_blocks if find_spec("scipy") is None else _by_bands
+    motion[:, :-1] = by(undamped, top, omega, damping[:-1], push[:, :-1])
+    return motion
+
+
+def _by_blocks(
+    undamped: tuple[Floats, Floats, Floats],
+    top: tuple[Complexes, Complexes] | None,
+    omega: Floats,
+    damping: Floats,
+    push: Complexes,
+) -> Complexes:
+    """Solve by NumPy alone, which takes twice as long as `_by_bands`."""
+    held, masses, between = undamped
+    beside, motion = between.astype(complex), np.empty_like(push)
+    for first in range(0, len(omega), TOGETHER):
+        part = slice(first, first + TOGETHER)
+        rate = omega[part, None, None, None]
+        diagonal = held - rate**2 * masses + 1j * rate * damping
+        if top is not None:
+            diagonal[:, 0] += top[0][part]
+        others = np.broadcast_to(beside, (len(diagonal), *beside.shape))
+        motion[part] = solve_blocks(diagonal, others, others, push[part, ..., None])[..., 0]
+    return motion
+
+
+_BAND = 5
+"""Number of diagonals on each side of the main diagonal: a node has three directions and two
+neighbours.
+"""
+
+_ENTRIES = [(row, column) for row in range(3) for column in range(3)]
+"""Rows and columns of a block of the matrix."""
+
+
+def _by_bands(
+    undamped: tuple[Floats, Floats, Floats],
+    top: tuple[Complexes, Complexes] | None,
+    omega: Floats,
+    damping: Floats,
+    push: Complexes,
+) -> Complexes:
+    """Solve by LAPACK's banded solver. All frequencies share one matrix, which fits into the cache
+    of the processor.
+    """
+    from scipy.linalg.lapack import zgbsv
+
+    held, masses, between = undamped
+    springs, inertia, damped = _banded(held, between), _banded(masses), _banded(damping)
+    matrix, motion = np.empty(springs.shape, complex), np.empty_like(push)
     for one, rate in enumerate(omega):
-        np.subtract(springs, rate**2 * masses, out=matrix.real)
+        np.subtract(springs, rate**2 * inertia, out=matrix.real)
         np.multiply(rate, damped, out=matrix.imag)
         if top is not None:
             for row, column in _ENTRIES:
                 matrix[column, 2 * _BAND + row - column] += top[0][one, row, column]
-        pushed = push[one, :-1].ravel()
+        pushed = push[one].ravel()
         *_, found, singular = zgbsv(_BAND, _BAND, matrix.T, pushed, overwrite_ab=True)
-        motion[one, :-1] = np.nan if singular else found.reshape(-1, 3)
+        motion[one] = np.nan if singular else found.reshape(-1, 3)
     return motion
+
+
+def _banded(blocks: Floats, between: Floats | None = None) -> Floats:
+    """Columns (3n, 16) of the banded matrix of blocks (n, 3, 3), and of those between nodes."""
+    columns = np.zeros((len(blocks), 3, 3 * _BAND + 1))
+    for row, column in _ENTRIES:
+        at = 2 * _BAND + row - column
+        columns[:, column, at] = blocks[:, row, column]
+        if between is not None:
+            columns[1:, column, at - 3] = between[:, row, column]
+            columns[:-1, column, at + 3] = between[:, row, column]
+    return columns.reshape(-1, 3 * _BAND + 1)
 
 
 def _times(matrices: Floats, vectors: Complexes) -> Complexes:
     """Products (f, n, 3) of real matrices (n, 3, 3) with vectors (f, n, 3)."""
     return np.asarray(sum(matrices[:, :, i] * vectors[:, :, i, None] for i in range(3)))
-
-
-def _banded(blocks: Floats, springs: Floats | None) -> Floats:
-    """Columns of the banded matrix of (n, 3, 3) blocks, with springs between neighbours."""
-    columns = np.zeros((len(blocks), 3, 3 * _BAND + 1))
-    for row, column in _ENTRIES:
-        at = 2 * _BAND + row - column
-        columns[:, column, at] = blocks[:, row, column]
-        if springs is not None:
-            columns[1:, column, at - 3] = -springs[:-1, row, column]
-            columns[:-1, column, at + 3] = -springs[:-1, row, column]
-    return columns.reshape(-1, 3 * _BAND + 1)
 
 
 def _pull(line: LumpedLine, motion: Complexes) -> Complexes:

@@ -148,7 +148,7 @@ TRIES = {
     ),
     "veering-current": Try(
         "Draw it; the plan is the picture in which the current is seen:",
-        ("calm run {file} --plot veering.png",),
+        ("calm run {file} -o veering.png",),
         start="Top ",
         picture=pictures.veering_plan,
         seen="The line from above, coloured by depth, beside the current in the same colours: "

@@ -64,7 +64,7 @@ def test_every_command_is_explained_in_the_readme_or_the_manual() -> None:
 
 
 def test_the_readme_is_read_in_a_minute() -> None:
-    assert len(README.read_text(encoding="utf-8").splitlines()) < 150
+    assert len(README.read_text(encoding="utf-8").splitlines()) <= 120
 
 
 def test_the_citation_names_this_version_and_licence() -> None:
@@ -137,7 +137,7 @@ def test_python_examples_run(page: Path, tmp_path: Path) -> None:
 def test_moorings_shown_are_solved(page: Path, tmp_path: Path) -> None:
     file = tmp_path / "mooring.yaml"
     file.write_text(blocks(page, "yaml")[0], encoding="utf-8")
-    assert re.search("^(Anchor|Tow point) pulled by", calm_prints("run", str(file)), re.MULTILINE)
+    assert re.search("^(Anchor|Tow point) +", calm_prints("run", str(file)), re.MULTILINE)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -2,6 +2,7 @@
 import stays deferred."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -28,9 +29,11 @@ print(json.dumps(sorted(sys.modules)))
 
 def loaded(program: str) -> set[str]:
     """Names of the modules in memory after `program`, which prints them as JSON."""
+    environment = {name: value for name, value in os.environ.items() if name != "CALM_COMPILED"}
     finished = subprocess.run(
-        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False
-    )
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False,
+        env=environment,
+    )  # fmt: skip
     assert finished.returncode == 0, finished.stderr
     return set(json.loads(finished.stdout.splitlines()[-1]))
 
@@ -90,7 +93,7 @@ RANGES = """latitude[deg],longitude[deg],range[m]
     "arguments",
     [
         ["check", "lines/s1000.yaml", "--allow-unknown", "--report", "{to}/check"],
-        ["run", "lines/s1000.yaml", "--plot", "{to}/line.png", "--pdf", "{to}/line.pdf"],
+        ["run", "lines/s1000.yaml", "-o", "{to}/line.png", "-o", "{to}/line.pdf"],
         ["deck", "lines/fit-top-depth.yaml", "-o", "{to}/deck"],
         ["locate", "{to}/ranges.csv", "--depth", "2000 m", "--plot", "{to}/ranges.pdf"],
     ],

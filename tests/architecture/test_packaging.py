@@ -124,7 +124,7 @@ def test_an_index_shows_the_pictures_of_the_readme_at_the_tag_of_the_version() -
         view: re.findall(rf"https://forge\.example/calm/{view}/v1\.2\.3/([^)#\"\s]+)", page)
         for view in ("raw", "blob")
     }
-    assert len(places["raw"]) == readme.count("![") + readme.count("<img ") >= 6
+    assert len(places["raw"]) == readme.count("![") + readme.count("<img ") >= 3
     assert all((ROOT / place).is_file() for found in places.values() for place in found)
     assert not re.search(r'(\]\(|src=")(?!https?:)', page)
     # nothing else is changed
@@ -188,7 +188,8 @@ def test_constraints_name_every_direct_dependency() -> None:
         for line in (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
         if not line.startswith("#")
     }
-    missing = [name for name in wanted if re.split(r"[^\w.-]", name.lower())[0] not in pinned]
+    others = [name for name in wanted if not name.startswith("calm-mooring[")]
+    missing = [name for name in others if re.split(r"[^\w.-]", name.lower())[0] not in pinned]
     assert not missing
 
 

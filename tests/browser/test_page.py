@@ -104,7 +104,7 @@ class Visit:
         return waiting.value.suggested_filename, Path(waiting.value.path()).read_bytes()
 
     def answer_ms(self, press):
-        """Time until the terminal is written to after something is done, and then for 300 ms not."""
+        """Time from some keys to the last change of the terminal that follows them."""
         return self.page.evaluate(
             """async (keys) => {
                 const { terminal, send } = globalThis.calm;

@@ -127,6 +127,28 @@ def test_outlines_are_found_after_complete_entries_and_say_what_they_lack(calm):
     assert ids[:2] == ["sbe37-smp-frame", "sbe37-smp-plastic"]
 
 
+def test_list_with_words_searches_within_a_kind(calm):
+    listed = json.loads(calm("catalog", "list", "wire", "--json").out)
+    assert listed == json.loads(calm("catalog", "search", "wire", "--json").out)
+    cables = json.loads(calm("catalog", "list", "wire", "--kind", "cable", "--json").out)
+    assert cables == [each for each in listed if each["kind"] == "cable"]
+    assert 0 < len(cables) < len(listed)
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("chain-g30-16", "chain-short-g30-16"),
+        ("chain-g30-16mm", "chain-short-g30-16"),
+        ("chain-g30-15", "chain-short-g30-16"),
+        ("chain-g80-18", "chain-g80-19"),
+        ("glass17in", "glass-17in"),
+    ],
+)
+def test_an_unknown_id_suggests_its_grade_and_size(calm, written, meant):
+    assert f"did you mean `{meant}`?" in calm("catalog", "show", written).err
+
+
 def test_search_takes_a_bare_fraction_for_inches_and_drops_a_word_that_nothing_has(calm):
     ids = [
         each["id"] for each in json.loads(calm("catalog", "search", "3/4", "shackle", "--json").out)

@@ -1,6 +1,7 @@
 import json
 import re
 
+import pypdfium2
 import pytest
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -286,6 +287,20 @@ def test_a_report_is_a_folder_of_five_files_the_same_every_time(calm, write_moor
     assert (folder / "first/report.pdf").read_bytes().startswith(b"%PDF")
 
 
+def test_full_writes_the_pages_of_each_mooring_too(calm, write_mooring, folder):
+    text = (folder / write_mooring("north.yaml")).read_text(encoding="utf-8")
+    (folder / "north.yaml").write_text(text.replace("name: Test", "name: North"), encoding="utf-8")
+    files = ("north.yaml", write_mooring("south.yaml"))
+    done = calm("check", *files, "--report", "r", "--full", "--page", "letter")
+    assert "the report is in r" in done.err
+    for name, pages in (("report", 3), ("North", 6), ("Test", 6)):
+        with pypdfium2.PdfDocument(folder / "r" / f"{name}.pdf") as pdf:
+            assert len(pdf) == pages
+            assert pdf[0].get_size() == pytest.approx((612.0, 792.0), abs=0.1)
+    refused = calm("check", *files, "--full")
+    assert refused.code == 2 and "beside the --report" in refused.err
+
+
 def test_a_report_that_cannot_be_written_loses_nothing_else(
     calm, write_mooring, folder, monkeypatch
 ):
@@ -328,13 +343,13 @@ def test_a_failure_of_calm_itself_does_not_stop_the_rest(calm, write_mooring, mo
 
 
 def test_one_line_as_a_page_and_as_pages(calm, write_mooring, folder):
-    done = calm("run", write_mooring(), "--html", "m.html", "--pdf", "m.pdf")
+    done = calm("run", write_mooring(), "-o", "m.html", "-o", "m.pdf")
     assert done.code == 0
     assert "<svg" in (folder / "m.html").read_text()
     assert (folder / "m.pdf").read_bytes().startswith(b"%PDF")
-    refused = calm("run", "m.yaml", "--html", "m.htm")
+    refused = calm("run", "m.yaml", "-o", "m.htm")
     assert refused.code == 2
-    assert "the name of this report must end in .html" in refused.err
+    assert "cannot write m.htm: its name must end in" in refused.err
 
 
 def test_a_report_does_not_take_the_place_of_what_is_read(calm, write_mooring, folder):
@@ -374,10 +389,10 @@ def test_what_is_cut_to_fit_is_cut_once_for_all_environments(calm, write_mooring
 def test_names_move_no_cursor_and_are_no_formula(calm, write_mooring, folder):
     file = folder / write_mooring()
     file.write_text(file.read_text().replace("label: top float", r'label: "=cmd|\e[31m\u202e"'))
-    for words in (("check", "m.yaml"), ("run", "m.yaml"), ("run", "m.yaml", "--csv", "-")):
+    for words in (("check", "m.yaml"), ("run", "m.yaml"), ("run", "m.yaml", "-o", "m.csv")):
         out = calm(*words).out
         assert "\x1b" not in out and "\u202e" not in out
-    assert ",'=cmd|\ufffd[31m\ufffd," in out
+    assert ",'=cmd|\x1b[31m\u202e," in (folder / "m.csv").read_text(encoding="utf-8")
 
 
 def limits(document):

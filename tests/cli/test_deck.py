@@ -166,8 +166,10 @@ def test_the_anchor_drop_is_planned_for_the_ship(deck):
     plans = []
     text = text.replace("line:", "position: {latitude: 48 deg, longitude: -5 deg}\nline:", 1)
     given = ("--ship-speed", "1.5 m/s", "--streamed", "50 m", "--course", "90 deg")
-    for words in ((), (*given, "--deck-time", "3 min")):
-        out, _ = deck(text, *words)
+    roles = ", ".join(f"{role}: 3 min" for role in ("float", "instrument", "release", "line"))
+    timed = text.replace("author: A. Nobody", f"author: A. Nobody, deck_time: {{{roles}}}")
+    for written, words in ((text, ()), (timed, given)):
+        out, _ = deck(written, *words)
         plans.append(json.loads((out / "plan.json").read_text()))
         assert packed("Anchor drop plan") in "".join(pages_of((out / "deck.pdf").read_bytes())[0])
     assert [plan["ship_speed"] for plan in plans] == [1.0, 1.5]

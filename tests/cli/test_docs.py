@@ -67,6 +67,19 @@ def test_a_page_that_does_not_exist(calm, page, told):
     assert told in done.err
 
 
+def test_a_word_lists_the_pages_that_contain_it_those_with_it_in_a_heading_first(calm, manual):
+    (manual / "how-to/first.md").write_text("# Chains\n\nA swivel, a Swivel, one more swivel.\n")
+    (manual / "tutorial/first.md").write_text("# Wires\n\n## The swivel\n")
+    done = calm("docs", "swivel")
+    wires, chains = (
+        f"{manual / 'tutorial/first.md'}  Wires",
+        f"{manual / 'how-to/first.md'}  Chains",
+    )
+    assert (done.code, done.out) == (0, f"{wires}\n{chains}\n")
+    assert "no page is called `swivel`" in done.err
+    assert calm("docs", "swivel more").out == f"{chains}\n"
+
+
 def test_a_name_that_two_books_have(calm, manual):
     done = calm("docs", "first")
     assert (done.code, done.out) == (2, "")

@@ -45,10 +45,10 @@ LIST = [
 ]
 
 DESIGN = """
-new | new -o new.yaml | run m.yaml | run m.yaml --explain --json r.json --csv r.csv
-run m.yaml --plot p.png --html r.html --pdf r.pdf --schematic
+new | new -o new.yaml | run m.yaml | run m.yaml --explain -o r.json -o r.csv
+run m.yaml -o p.png -o r.html -o r.pdf --schematic
 run m.yaml --uncertainty --samples 64
-run t.yaml --speeds 1knot:3knot:1knot --plot s.svg
+run t.yaml --speeds 1knot:3knot:1knot -o s.svg
 check m.yaml --report check --json c.json | check m.yaml --missing | deck m.yaml -o deck
 size m.yaml --target knockdown(top)<=5m --change rope.length | diff m.yaml new.yaml
 waves w.yaml --hs 2m --tp 8s | export m.yaml --to mdd -o m.mat | export m.yaml --to csv -o m.csv
@@ -62,7 +62,7 @@ chart solve --k 2.4 --weight 5N/m --phi-b 75deg --tension-b 350N --height 20m
 RECORDS = {
     "new --record -o record.nc": "records",
     "batch m.yaml --currents record.nc -o out.nc": "records",
-    "run m.yaml --netcdf out.nc": "records",
+    "run m.yaml -o out.nc": "records",
     "run n.yaml": "records",
     "check n.yaml": "records",
     "motion m.yaml --currents record.nc --pressures record.nc -o motion.nc": "records",
@@ -106,6 +106,7 @@ def designs(folder, write_mooring):
             sheet.write_row(number, 0, row)
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("designs")
 def test_every_design_command_runs_without_the_extras():
     commands = [each.strip() for each in DESIGN.replace("\n", "|").split("|") if each.strip()]
@@ -127,6 +128,7 @@ def test_a_command_that_needs_an_extra_says_so_in_one_line():
         assert last.endswith(f": pip install 'calm-mooring[{extra}]'"), (command, told)
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("designs")
 def test_check_and_deck_run_without_scipy():
     """With a launch, a streamed line and a surface float in waves."""

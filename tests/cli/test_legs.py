@@ -217,8 +217,8 @@ def test_options_for_single_lines_are_refused(
 def test_files_of_a_net_have_the_leg_of_each_part(
     net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run("run", net, "--csv", "-", "--netcdf", tmp_path / "net.nc") == 0
-    rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
+    assert run("run", net, "-o", tmp_path / "net.csv", "-o", tmp_path / "net.nc") == 0
+    rows = list(csv.DictReader((tmp_path / "net.csv").read_text(encoding="utf-8").splitlines()))
     assert [row["leg"] for row in rows if row["part"] == "clamp"] == ["main", "pennant"]
     with xarray.open_dataset(tmp_path / "net.nc", engine="h5netcdf") as found:
         names = found["leg_label"].values
@@ -322,7 +322,7 @@ def test_the_seabed_is_drawn_where_it_slopes(
         assert line.x.min() <= anchor + 1e-6
         assert line.x.max() >= anchor - 1e-6
         assert line.y == pytest.approx(100.0 + steep * line.x, abs=1e-3)
-    assert run("run", file, "--plot", tmp_path / "slope.svg") == 0
+    assert run("run", file, "-o", tmp_path / "slope.svg") == 0
     assert run("check", file, "--report", tmp_path / "report", "--workers", 1) == 1
     capsys.readouterr()
 
@@ -331,7 +331,7 @@ def test_a_net_has_its_page_and_its_schematics(
     net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     page = tmp_path / "net.html"
-    assert run("run", net, "--schematic", "--html", page) == 0
+    assert run("run", net, "--schematic", "-o", page) == 0
     said, html = capsys.readouterr().out, page.read_text()
     assert html.count("<svg") == 5  # of four legs, and the picture of all
     for leg in ("main: free end to node A", "stem: node A to anchor"):

@@ -259,11 +259,11 @@ def test_what_scatters_more_than_ranging_does_is_not_written(calm, ranges, write
 def test_a_file_that_cannot_take_it_is_refused_before_anything_is_written(
     calm, ranges, broken, folder
 ):
-    done = calm("locate", ranges(), "-o", "broken.yaml", "--plot", "circles.svg")
+    done = calm("locate", ranges(), "--update", "broken.yaml", "--plot", "circles.svg")
     assert done.code == 2
     assert done.out == ""
     assert not (folder / "circles.svg").exists()
-    assert calm("locate", ranges(), "-o", "none.yaml").code == 2
+    assert calm("locate", ranges(), "--update", "none.yaml").code == 2
 
 
 def test_the_plot(calm, ranges, folder):

@@ -50,7 +50,6 @@ def test_no_words_show_the_help(calm):
         "catalog",
         "catalog list",
         "catalog show",
-        "catalog search",
         "catalog add",
         "catalog check",
     ],
@@ -151,7 +150,7 @@ def test_full_disk_behind_a_file(calm, write_mooring, monkeypatch):
         raise UsageError("cannot write x.json: No space left on device")
 
     monkeypatch.setattr("calm.report.folder.write_file", full)
-    done = calm("run", write_mooring(), "--json", "x.json")
+    done = calm("run", write_mooring(), "-o", "x.json")
     assert done.code == 2
     assert done.err == "calm: cannot write x.json: No space left on device\n"
 

@@ -119,7 +119,7 @@ def test_the_commands_of_a_page_run(page, files, calm):
 @pytest.mark.parametrize("page", pages("python"), ids=lambda page: page.stem)
 def test_the_programs_of_a_page_run(page, files, calm):
     for words in (
-        "run mooring.yaml --netcdf result.nc --json result.json",
+        "run mooring.yaml -o result.nc -o result.json",
         "batch mooring.yaml --currents record.nc -o moved.nc",
         "batch mooring.yaml --currents record.nc -o hindcast.nc",
         "batch mooring.yaml --currents record.nc --time 2026-03-01/2026-03-02 -o 1993.nc",

@@ -1,4 +1,4 @@
-"""`calm run --netcdf`: the figures of the JSON, under the names of a batch's result."""
+"""`calm run -o FILE.nc`: the figures of the JSON, under the names of a batch's result."""
 
 import json
 
@@ -41,7 +41,7 @@ def figures(dataset, name):
 @pytest.mark.parametrize(("text", "clamped"), [(CLAMPED, True), (TOW, False)], ids=["line", "tow"])
 def test_it_holds_what_the_json_holds(calm, folder, text, clamped):
     (folder / "m.yaml").write_text(text, encoding="utf-8")
-    done = calm("run", "m.yaml", "--netcdf", "r.nc", "--json", "-")
+    done = calm("run", "m.yaml", "-o", "r.nc", "--json", "-")
     assert done.code == 0, done.err
     told = json.loads(done.out)
     with xarray.open_dataset(folder / "r.nc", engine="h5netcdf") as result:
@@ -78,13 +78,13 @@ def test_it_holds_what_the_json_holds(calm, folder, text, clamped):
 def test_the_same_input_gives_the_same_bytes_and_several_a_file_each(calm, folder, write_mooring):
     names = (write_mooring("a.yaml"), write_mooring("b.yaml"))
     for output in ("one.nc", "two.nc"):
-        assert calm("run", *names, "--netcdf", output).code == 0
+        assert calm("run", *names, "-o", output).code == 0
     assert (folder / "one-a.nc").read_bytes() == (folder / "two-a.nc").read_bytes()
     assert (folder / "one-b.nc").exists()
 
 
 def test_another_ending_and_no_equilibrium(calm, folder, heavy, write_mooring):
-    refused = calm("run", write_mooring("a.yaml"), "--netcdf", "r.txt")
-    assert (refused.code, "must end in .nc" in refused.err) == (2, True)
-    assert calm("run", heavy, "--netcdf", "r.nc").code == 3
+    refused = calm("run", write_mooring("a.yaml"), "-o", "r.txt")
+    assert (refused.code, "must end in .json" in refused.err) == (2, True)
+    assert calm("run", heavy, "-o", "r.nc").code == 3
     assert not (folder / "r.nc").exists()

@@ -24,7 +24,6 @@ def test_it_stands_above_the_table(calm, write_mooring):
 def test_output_asked_for_elsewhere_stays_alone(calm, write_mooring):
     document = json.loads(calm("run", write_mooring(), "--schematic", "--json", "-").out)
     assert document["name"] == "Test"
-    assert calm("run", "m.yaml", "--schematic", "--csv", "-").out.startswith("mooring,")
 
 
 def test_each_of_several_files_has_its_own(calm, write_mooring):

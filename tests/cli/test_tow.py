@@ -57,7 +57,7 @@ def test_tows_beside_moorings_are_as_alone(calm, write_tow, write_mooring):
 
 
 def test_every_output_of_run_takes_a_tow(calm, write_tow, write_mooring, folder):
-    outputs = ("--csv", "c.csv", "--plot", "p.svg")
+    outputs = ("-o", "c.csv", "-o", "p.svg")
     assert calm("run", write_mooring(), write_tow(), *outputs).code == 0
     rows = list(csv.DictReader(io.StringIO((folder / "c.csv").read_text(encoding="utf-8"))))
     assert [row["label"] for row in rows if row["mooring"] == "Test tow"] == ["wire", "fish"]
@@ -72,13 +72,16 @@ def test_moorings_have_no_speeds(calm, write_tow, write_mooring):
 
 @pytest.mark.parametrize(
     "options",
-    [["--schematic"], ["--explain", "--uncertainty"], ["--html", "x.html"], ["--netcdf", "x.nc"]],
+    [["--schematic"], ["--explain", "--uncertainty"], ["-o", "x.html"], ["-o", "x.nc"]],
 )
 def test_options_that_show_one_speed_are_rejected(calm, write_tow, folder, options):
     done = calm("run", write_tow(), "--speeds", "1 m/s:2 m/s:1 m/s", *options)
     assert (done.code, done.out) == (2, "")
-    names = ", ".join(word for word in options if word.startswith("--"))
-    assert done.err == f"calm: {names} cannot be combined with --speeds\n"
+    if options[0] == "-o":
+        allowed = "its name must end in .json, .csv, .svg, .png or .pdf"
+        assert done.err == f"calm: cannot write {options[1]}: {allowed}\n"
+    else:
+        assert done.err == f"calm: {', '.join(options)} cannot be combined with --speeds\n"
     assert [path.name for path in folder.iterdir()] == ["t.yaml"]
 
 
@@ -118,10 +121,11 @@ def test_speeds_have_both_ends_and_what_a_tow_at_that_speed_has(calm, write_tow)
     assert last["body_tension"] == alone["body"]["tension"]
 
 
-def test_csv_has_the_same_rows(calm, write_tow):
+def test_csv_has_the_same_rows(calm, write_tow, folder):
     words = ("run", write_tow(strumming="bourget-marichal"), "--speeds", "1 m/s:2 m/s:1 m/s")
     document = json.loads(calm(*words, "--json", "-").out)
-    rows = list(csv.DictReader(io.StringIO(calm(*words, "--csv", "-").out)))
+    assert calm(*words, "-o", "c.csv").code == 0
+    rows = list(csv.DictReader(io.StringIO((folder / "c.csv").read_text(encoding="utf-8"))))
     assert [row["tow"] for row in rows] == ["Test tow"] * 2
     for row, same in zip(rows, document["speeds"], strict=True):
         assert float(row["speed[m/s]"]) == same["speed"]
@@ -148,7 +152,7 @@ def test_a_speed_without_equilibrium_is_a_row_and_the_sweep_goes_on(calm, write_
 
 
 def test_a_sweep_is_drawn(calm, write_tow, folder):
-    words = ("--speeds", "1 m/s:2 m/s:0.5 m/s", "--plot")
+    words = ("--speeds", "1 m/s:2 m/s:0.5 m/s", "-o")
     assert calm("run", write_tow(), *words, "s.png").code == 0
     assert (folder / "s.png").read_bytes().startswith(b"\x89PNG")
     assert calm("run", "t.yaml", *words, "s.svg").code == 0
@@ -172,7 +176,7 @@ def test_a_sweep_is_drawn(calm, write_tow, folder):
     ],
 )
 def test_wrong_speeds_are_refused_before_anything_is_read(calm, speeds, told, folder):
-    done = calm("run", "missing.yaml", "--speeds", speeds, "--json", "x.json")
+    done = calm("run", "missing.yaml", "--speeds", speeds, "-o", "x.json")
     assert (done.code, done.out) == (2, "")
     assert len(done.err.splitlines()) == 1
     assert told in done.err
@@ -186,7 +190,7 @@ def test_ten_thousand_speeds_are_not_too_many():
     assert speed_range("3 m/s:3 m/s:1 knot") == [3.0]
 
 
-def test_where_no_length_reaches_the_depth_there_is_nothing_to_tabulate(calm, write_tow):
+def test_where_no_length_reaches_the_depth_there_is_nothing_to_tabulate(calm, write_tow, folder):
     file = write_tow(speed="5 m/s", length="weight: -2.5 N/m, length: fit, body_depth: 5 km")
     words = ("run", write_tow("good.yaml"), file, "--speeds", "1 m/s:2 m/s:1 m/s")
     done = calm(*words, "--json", "-")
@@ -195,7 +199,8 @@ def test_where_no_length_reaches_the_depth_there_is_nothing_to_tabulate(calm, wr
     assert len(good["speeds"]) == 2
     assert set(none) == {"name", "status", "message", "advice"}
     assert done.err.startswith("t.yaml: ")
-    assert len(calm(*words, "--csv", "-").out.splitlines()) == 1 + 2
+    calm(*words, "-o", "c.csv")
+    assert len((folder / "c.csv").read_text(encoding="utf-8").splitlines()) == 1 + 2
 
 
 def test_progress_is_told_to_a_terminal_only_when_it_takes_long(capsys, monkeypatch):

@@ -28,7 +28,7 @@ def complaints(path):
 def test_results_pass(tmp_path, monkeypatch, command):
     monkeypatch.chdir(tmp_path)
     if command == "run":
-        main(["run", str(MOORING), "--netcdf", "out.nc"])
+        main(["run", str(MOORING), "-o", "out.nc"])
     else:
         main(["new", "--record", "-o", "record.nc"])
         main(["batch", str(MOORING), "--currents", "record.nc", "-o", "out.nc"])

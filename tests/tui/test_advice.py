@@ -134,13 +134,13 @@ def test_what_changed_since_the_file_was_saved(drive, folder, painted):
     path.write_text(LIGHT, encoding="utf-8")
 
     async def story(driver):
-        await driver.press("D")
+        await driver.press("ctrl+d")
         assert "Nothing has changed" in driver.screen
         await driver.press("down", "l")
         await driver.type("50")
         await driver.press("enter")
         await driver.settle()
-        await driver.press("D")
+        await driver.press("ctrl+d")
         await driver.settle()
         assert "Beside what was saved" in driver.screen
         assert "-    length: 60 m" in driver.screen and "+    length: 50 m" in driver.screen

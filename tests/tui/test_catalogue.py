@@ -148,3 +148,14 @@ def test_the_catalogue_knows_where_it_is_opened_and_begins_without_words(drive, 
         assert "chain" in listing.chosen.searched
 
     drive(story, small)
+
+
+def test_the_keys_stay_beside_what_was_added(drive, small):
+    async def story(driver):
+        await driver.press("a", *"sbe37", "enter")
+        last = driver.screen.splitlines()[-1]
+        assert last.split("  ")[-1].strip() == "sbe37 added"
+        for words in ("Enter insert", "F4 sort", "F3 favourite", "Esc close"):
+            assert words in last
+
+    drive(story, small)

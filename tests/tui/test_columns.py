@@ -92,9 +92,9 @@ BELOW = ["releaser", "weight"]
 @pytest.mark.parametrize(
     "keys, wanted",
     [
-        (["R", *"12", "enter"], ["ball"] * 13 + ["rope", "  logger", "  logger", *BELOW]),
-        (["down"] * 3 + ["R", "3", "enter"], ["ball", "rope", *["  logger"] * 5, *BELOW]),
-        (["end", "shift+up", "R", "2", "enter"], ["ball", "rope", "  logger", "  logger"]
+        (["plus", *"12", "enter"], ["ball"] * 13 + ["rope", "  logger", "  logger", *BELOW]),
+        (["down"] * 3 + ["plus", "3", "enter"], ["ball", "rope", *["  logger"] * 5, *BELOW]),
+        (["end", "shift+up", "plus", "2", "enter"], ["ball", "rope", "  logger", "  logger"]
          + BELOW * 3),
     ],
 )  # fmt: skip
@@ -137,7 +137,7 @@ def test_the_weakest_piece_is_found(drive):
     async def story(driver):
         driver.app.judging.ask_fully()
         await driver.settle()
-        await driver.press("W")
+        await driver.press("percent_sign")
         strengths = [
             (each.utilisation, each.place.row)
             for each in (*driver.view.findings, *driver.view.tighter)
@@ -151,7 +151,7 @@ def test_the_weakest_piece_is_found(drive):
 
 def test_the_catalogue_has_a_key_of_its_own(drive, small):
     async def story(driver):
-        await driver.press("B")
+        await driver.press("f7")
         assert driver.builder.has_class("-searching")
 
     drive(story, small)

@@ -12,7 +12,7 @@ from calm.tui.theme import contrast
 LEAST = 4.5
 """Of text, by WCAG 2.2, success criterion 1.4.3."""
 SCREENS = (
-    [], ["2"], ["3"], ["4"], ["1", "G"], ["escape", "l"], ["escape", "space", "down"], ["a"],
+    [], ["2"], ["3"], ["4"], ["1", "f6"], ["escape", "l"], ["escape", "space", "down"], ["a"],
     ["escape", "w"], ["escape", "o"], ["escape", "t"], ["escape", "question_mark"],
     ["escape", "m"], ["escape", "p"], ["escape", "ctrl+p"],
 )  # fmt: skip

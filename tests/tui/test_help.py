@@ -128,3 +128,10 @@ def test_keys_typed_ahead_of_a_command_of_the_palette_go_where_it_leads(drive, s
         assert "serial: 5101" in driver.text
 
     drive(story, small)
+
+
+def test_few_keys_of_the_first_screen_differ_only_by_case():
+    single = {key for place in ("line", "anywhere") for action in ACTIONS[place]
+              for key in action.keys.split(",") if len(key) == 1}  # fmt: skip
+    pairs = {key for key in single if key.isupper() and key.lower() in single}
+    assert pairs == {"A", "M", "N", "O", "S", "T", "U", "V"}

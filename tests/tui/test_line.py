@@ -78,7 +78,7 @@ def test_add_above_and_go_on_below(drive, small):
 
 def test_the_search_holds_every_word_wherever_it_stands(drive, small):
     async def story(driver):
-        await driver.press("B")
+        await driver.press("f7")
         await driver.type("teledyne adcp")
         found = driver.builder.catalogue.listing.rows
         assert found
@@ -94,7 +94,7 @@ def test_the_search_holds_every_word_wherever_it_stands(drive, small):
 
 def test_the_files_own_components_come_first_with_a_card(drive, small):
     async def story(driver):
-        await driver.press("B")
+        await driver.press("f7")
         assert driver.builder.catalogue.listing.rows[0].own
         await driver.type("releaser")
         assert driver.builder.catalogue.listing.rows[0].id == "releaser"

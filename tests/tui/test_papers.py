@@ -9,7 +9,7 @@ from calm.tui import comparing
 
 def test_the_bill_has_totals(drive, small):
     async def story(driver):
-        await driver.press("P", "b")
+        await driver.press("f9", "b")
         screen = " ".join(driver.screen.split())
         assert "wire and rope 60.00 m" in screen
         assert "logger logger 2" in screen
@@ -34,11 +34,11 @@ def test_papers_are_written_of_the_saved_file(drive, small, monkeypatch, key, co
     async def story(driver):
         await driver.press("n", "x", "enter")
         await driver.settle()
-        await driver.press("P", key)
+        await driver.press("f9", key)
         assert "Save the file first" in driver.screen and not asked
         await driver.press("u")
         await driver.settle()
-        await driver.press("P", key)
+        await driver.press("f9", key)
         await driver.press("enter")
         await driver.settle()
         assert "the report is in there" in driver.screen

@@ -327,7 +327,7 @@ def test_the_document_and_the_equipment_of_a_row(drive, small):
 
 def test_where_it_was_deployed(drive, small):
     async def story(driver):
-        await driver.press("L")
+        await driver.press("at")
         await driver.type("2027-06-30 14:05")
         await driver.press("enter")
         await driver.type("-5 m")
@@ -345,7 +345,7 @@ def test_where_it_was_deployed(drive, small):
             "depth": "1187 m",
         }
         assert driver.session.draft.problems == ()
-        await driver.press("L")
+        await driver.press("at")
         await driver.type("soon")
         await driver.press("enter")
         assert "is not a time" in driver.screen
@@ -357,20 +357,20 @@ def test_where_it_was_deployed(drive, small):
 def test_what_was_deployed_at_a_row(drive, small):
     async def story(driver):
         await driver.settle()
-        await driver.press("down", "L", *["enter"] * 4)
+        await driver.press("down", "at", *["enter"] * 4)
         for text in ("R7", "58.2 m", "cut on deck"):
             await driver.type(text)
             await driver.press("enter")
         await driver.settle()
         rope = {"label": "rope", "serial": "R7", "length": "58.2 m", "remark": "cut on deck"}
         assert driver.session.draft.value(("deployed", "items")) == [rope]
-        await driver.press("down", "down", "L", *["enter"] * 5)
+        await driver.press("down", "down", "at", *["enter"] * 5)
         await driver.type("frayed")
         await driver.press("enter")
         await driver.settle()
         deep = {"label": "deep logger", "remark": "frayed"}
         assert driver.session.draft.value(("deployed", "items")) == [rope, deep]
-        await driver.press("down", "L", *["enter"] * 4)
+        await driver.press("down", "at", *["enter"] * 4)
         await driver.type("AR 7")
         driver.app.screen.query_one(GridCells).focus()
         await driver.press("a")
@@ -382,7 +382,7 @@ def test_what_was_deployed_at_a_row(drive, small):
         codes = {"serial": "AR 7", "codes": {"arm": "0A1B", "release": "0A55"}}
         assert driver.session.draft.value(("releases",)) == [codes]
         assert driver.session.draft.problems == ()
-        await driver.press("up", "L", *["enter"] * 5, "ctrl+u", "enter")
+        await driver.press("up", "at", *["enter"] * 5, "ctrl+u", "enter")
         await driver.settle()
         labels = [one["label"] for one in driver.session.draft.value(("deployed", "items"))]
         assert labels == ["rope", "releaser"]

@@ -213,6 +213,20 @@ def test_a_preset_current(drive, small):
     drive(story, small)
 
 
+def test_arrows_and_enter_choose_a_preset_current(drive, small):
+    async def story(driver):
+        await driver.press("w", "ctrl+t", "up", "up", "enter")
+        await driver.settle()
+        rows = driver.session.draft.value((*CURRENT, "rows"))
+        assert (rows[0], rows[-1]) == (["0", "0.8", "90"], ["100", "0", "90"])
+        await driver.press("ctrl+t", "enter")
+        await driver.settle()
+        rows = driver.session.draft.value((*CURRENT, "rows"))
+        assert {row[1] for row in rows} == {"0.5"}
+
+    drive(story, small)
+
+
 @pytest.mark.parametrize("how", ["refer", pytest.param("copy", marks=pytest.mark.thorough)])
 def test_a_current_of_a_csv_file(drive, small, how):
     table = "depth[m],speed[m/s],toward[deg]\n0,0.6,90\n100,0.2,80\n"

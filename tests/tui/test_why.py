@@ -56,7 +56,7 @@ def test_a_line_of_the_verdict_leads_to_its_row_and_back(drive, folder):
     async def story(driver):
         driver.app.judging.ask_fully()
         await driver.settle()
-        await driver.press("G")
+        await driver.press("f6")
         pane = driver.app.focused
         assert isinstance(pane, VerdictPane)
         while "breaking load" not in said_here(pane):
@@ -92,7 +92,7 @@ def test_unknown_figures_lead_to_one_row_after_the_other(drive, small):
             if State.UNKNOWN in (each.state for each in why(driver.view, row.spot))
         ]
         assert len(places) > 1
-        await driver.press("G")
+        await driver.press("f6")
         lines = len(list(sayings(driver.view)))
         for _ in range(lines):  # the first such line is of one row alone
             if "depth_rating of logger, deep logger" in said_here(driver.app.focused):

@@ -50,7 +50,7 @@ def test_tensions_of_a_heaved_line():
     damping = _linearised(line, None, np.full((len(line.mass), 3), 1e-3))
     waves = Waves(omega, 90.0, 80.0, 1025.0, 9.80665)
     for _ in range(20):
-        motion = _solved(_undamped(line, waves.omega), held, waves.omega, water, push, damping)
+        motion = _solved(_undamped(line), held, waves.omega, water, push, damping)
         flow = _deviations(_axes(line), water - 2j * motion, np.array([0.5]))
         damping = 0.5 * (damping + _linearised(line, None, flow))
     found = np.abs(_pull(line, motion)[0])

@@ -5,8 +5,8 @@ const BEGIN = `
 import asyncio.tasks
 if not hasattr(asyncio.tasks, "_set_task_name"):
     asyncio.tasks._set_task_name = lambda task, name: task.set_name(name) if name else None
-from calm.page.builder import Page
-Page
+from calm.page.builder import WebPage
+WebPage
 `;
 const early = [];
 let builder = null;

@@ -1,9 +1,12 @@
 """Many profiles: order, company and workers change nothing; gaps, shapes, statuses."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
+import pandas
 import pytest
+import xarray
 
 import calm
 from calm.batch import profiles
@@ -196,3 +199,33 @@ def test_a_dataset_has_labels_and_units(subsurface: Design) -> None:
     assert square.tilt.dims == ("profile_0", "profile_1", "component")
     one = calm.load(shipped_folder("lines") / "s1000.yaml").solve()
     assert float(one.to_xarray().top_depth) == one.top.depth
+
+
+def test_a_record_is_solved_from_its_file_a_dataset_or_a_table(
+    subsurface: Design, tmp_path: Path
+) -> None:
+    time = np.arange("2026-03-01", "2026-03-03", 6, dtype="datetime64[h]").astype("datetime64[ns]")
+    depth = np.array([0.0, 50.0, 150.0])
+    u, v = np.random.default_rng(8).uniform(-0.3, 0.3, (2, len(time), len(depth))).round(3)
+    named = {"u": ("eastward_sea_water_velocity", u), "v": ("northward_sea_water_velocity", v)}
+    record = xarray.Dataset(
+        {
+            name: (("time", "depth"), values, {"standard_name": meaning, "units": "m s-1"})
+            for name, (meaning, values) in named.items()
+        },
+        {"time": time, "depth": ("depth", depth, {"units": "m", "positive": "down"})},
+    )
+    columns = {"depth[m]": np.tile(depth, len(time)), "u[m/s]": u.ravel(), "v[m/s]": v.ravel()}
+    table = pandas.DataFrame(columns, index=pandas.DatetimeIndex(np.repeat(time, len(depth))))
+    record.to_netcdf(tmp_path / "r.nc", engine="h5netcdf")
+    arrays = solve_profiles(subsurface, u, v, depth)
+    assert not arrays.status.any()
+    for given in (tmp_path / "r.nc", str(tmp_path / "r.nc"), record, table):
+        assert_same(arrays, solve_profiles(subsurface, given))
+
+
+def test_a_record_and_arrays_are_not_mixed(subsurface: Design) -> None:
+    with pytest.raises(TypeError, match="u needs v and depth"):
+        solve_profiles(subsurface, np.zeros((2, 3)))
+    with pytest.raises(TypeError, match="holds the whole current"):
+        solve_profiles(subsurface, "record.nc", np.zeros((2, 3)), np.zeros(3))

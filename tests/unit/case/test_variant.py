@@ -1,8 +1,10 @@
 """A mooring with some values of its file changed is that of the file so written."""
 
+import numpy as np
 import pytest
 
 import calm
+from calm import InputError
 
 FILE = """\
 environment: {depth: 300 m, current: {speed: 0.3 m/s, toward: 90 deg}}
@@ -112,3 +114,22 @@ def test_what_is_printed_of_it_is_short(mooring):
     for each in (mooring, result, result.components, result.components[0], result.shape):
         assert len(repr(each)) < 1000 and repr(each).count("\n") < 10
     assert repr(result.clamps) == "Clamps(1 rows: probe)"
+
+
+@pytest.mark.parametrize("speed", [0.3, np.float32(0.3), np.float64(0.3)])
+def test_a_number_without_a_unit_is_reported_wherever_it_stands(mooring, speed):
+    with pytest.raises(InputError, match=r"`speed: 0\.3\d*` needs a unit; did you mean `speed: 0"):
+        mooring.with_(environment={"current": {"speed": speed, "toward": "90 deg"}})
+    rows = [[0, speed, 90], [100, 0.1, 90]]
+    table = {"columns": ["depth m", "speed m/s", "toward deg"], "rows": rows}
+    sheared = mooring.with_(environment={"current": table})
+    assert float(sheared.water.u[0]) == pytest.approx(float(speed), rel=1e-6)
+
+
+def test_a_label_without_its_number_means_the_item_with_a_count(tmp_path):
+    path = tmp_path / "m.yaml"
+    path.write_text(FILE.replace("{use: ball, label: top}", "{use: ball, label: top, count: 2}"))
+    mooring = calm.load(path)
+    changed = mooring.with_("top", count=3)
+    assert len(changed.file.pieces) == len(mooring.file.pieces) + 1
+    assert changed.file == mooring.with_("top 1", count=3).file

@@ -10,7 +10,7 @@ import pytest
 
 from calm.files.editing.working_file import Keeper
 from calm.page import driver
-from calm.page.builder import BAR, FIRST, Page
+from calm.page.builder import BAR, FIRST, WebPage
 from calm.page.documents import DOCUMENTS
 from calm.shipped import shipped_folder
 from calm.tui.key_table import ACTIONS
@@ -53,7 +53,7 @@ def visit(tmp_path, monkeypatch):
         sent = Sent()
 
         async def told():
-            page = Page(sent, tmp_path / "moorings", 130, 40)
+            page = WebPage(sent, tmp_path / "moorings", 130, 40)
             building = asyncio.ensure_future(page.run())
             try:
                 await until(lambda: page.app is not None and page.app.is_running)

@@ -1,9 +1,11 @@
 """What a record says of itself, or shows by its values, is said with a count or refused."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 import xarray as xr
@@ -11,6 +13,7 @@ import xarray as xr
 from calm.errors import InputError
 from calm.records.current_file import open_record, read_current_file
 from calm.records.current_terms import Terms
+from calm.records.instrument_series import read_series
 from calm.records.record import RULES, made_record
 
 SEABED = 300.0
@@ -244,3 +247,36 @@ def test_directions_in_radians_are_said(tmp_path, turn, told) -> None:
         note.endswith("is the direction in radians, or in tens of degrees?")
         for note in notes_of(tmp_path / "r.csv")
     ] == [True] * told
+
+
+def test_more_values_than_are_read_at_once_are_refused_before_reading(record, tmp_path) -> None:
+    record.to_netcdf(tmp_path / "r.nc", engine="h5netcdf")
+    with h5py.File(tmp_path / "r.nc", "a") as file:
+        file.create_dataset("burst", (2_000_000_000,), "f8", chunks=(1_000_000,))
+    assert (tmp_path / "r.nc").stat().st_size < 1_000_000
+    assert "`burst` has 2,000,000,000 values to be read at once" in refusal(tmp_path / "r.nc")
+    with h5py.File(tmp_path / "r.nc", "a") as file:
+        del file["burst"]
+        file.create_dataset("wide", (10**5, 10**5), "f4", chunks=(10**5, 10**3))
+    assert "`wide` has 100,000,000 values" in refusal(tmp_path / "r.nc")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes with a name")
+def test_a_pipe_is_no_regular_file(tmp_path) -> None:
+    os.mkfifo(tmp_path / "p.nc")
+    assert "is not a regular file" in refusal(tmp_path / "p.nc")
+    with pytest.raises(InputError, match="is not a regular file"):
+        read_series([str(tmp_path / "p.nc")], ["temperature"], frozenset({1}), SEABED)
+    with pytest.raises(InputError, match="is not a regular file"):
+        read_current_file(tmp_path / "p.nc", None, Terms())
+
+
+def test_a_nominal_depth_that_fills_a_gap_is_none(tmp_path) -> None:
+    rows = "\n".join(f"2026 3 {1 + i // 24} {i % 24}.0 {20 + i} {i}" for i in range(48))
+    text = f"InstrDepth = -999\nColumns = YY:MM:DD:HH:U:V\n{rows}\n"
+    (tmp_path / "m.use").write_text(text)
+    told = "the depths of its levels, `INSTRUMENT_DEPTH`, have no value"
+    assert told in refusal(tmp_path / "m.use")
+    (tmp_path / "m.use").write_text(text.replace("-999", "120"))
+    with open_record(tmp_path / "m.use", Terms(SEABED)) as read:
+        assert np.ravel(read.profiles(0, 1)[0]).tolist() == [120.0]

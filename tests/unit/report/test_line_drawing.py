@@ -201,5 +201,5 @@ def test_a_solved_mooring_plots_itself():
 
 def test_without_matplotlib_a_plot_says_what_to_type(result, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(UsageError, match=r"plot needs matplotlib: pip install 'calm-moor"):
-        plot.plot_elevation(elevation_of(result))
+    with pytest.raises(UsageError, match=r"needs matplotlib: pip install 'calm-moor"):
+        calm.load("lines/s1000.yaml").solve().plot()

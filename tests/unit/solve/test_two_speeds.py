@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from calm.solve import Settings, Solver, two_speeds
+from calm.solve import CompiledPart, Settings, two_speeds
 from calm.solve.two_speeds import COLD, UNANNOUNCED, WARM, count_lines, expect_many, runs_compiled
 
 LEFT_OPEN = Settings()
@@ -27,12 +27,13 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[Child]:
     """The compiling processes that were started, of a solver that has solved nothing so far."""
     children: list[Child] = []
 
-    def start(_: Solver) -> Child:
+    def start(_: CompiledPart) -> Child:
         children.append(Child())
         return children[-1]
 
     monkeypatch.delenv("CALM_COMPILED", raising=False)
-    monkeypatch.setattr(two_speeds, "_paces", {each: two_speeds._Pace(each) for each in Solver})
+    paces = {each: two_speeds._Pace(each) for each in CompiledPart}
+    monkeypatch.setattr(two_speeds, "_paces", paces)
     monkeypatch.setattr(two_speeds, "_compile_ahead", start)
     monkeypatch.setattr(two_speeds, "is_cached", lambda law: False)
     return children
@@ -43,14 +44,14 @@ def test_cached_code_is_loaded_for_many_lines(started, monkeypatch, lines, compi
     monkeypatch.setattr(two_speeds, "is_cached", lambda law: law == "find_now")
     expect_many(lines)
     assert runs_compiled(LEFT_OPEN) is compiled
-    assert not runs_compiled(LEFT_OPEN, solver=Solver.LEGS)
+    assert not runs_compiled(LEFT_OPEN, solver=CompiledPart.LEGS)
     assert not started
 
 
 def test_a_check_of_two_hundred_cases_does_not_compile(started) -> None:
     expect_many(600)
     for _ in range(600):
-        count_lines(1.0, Solver.LINE, 7.0)
+        count_lines(1.0, CompiledPart.LINE, 7.0)
     assert not started
     assert not runs_compiled(LEFT_OPEN)
 
@@ -61,11 +62,11 @@ def test_a_child_compiles_while_the_solver_goes_on(started, announced) -> None:
         expect_many(announced)
     else:
         for _ in range(UNANNOUNCED):
-            count_lines(1.0, Solver.LINE)
+            count_lines(1.0, CompiledPart.LINE)
     [child] = started
     assert not runs_compiled(LEFT_OPEN)
     child.code = 0
-    count_lines(1.0, Solver.LINE)
+    count_lines(1.0, CompiledPart.LINE)
     assert runs_compiled(LEFT_OPEN)
     assert len(started) == 1
 
@@ -74,7 +75,7 @@ def test_a_child_that_fails_leaves_the_solver_as_it_is(started) -> None:
     expect_many(COLD)
     started[0].code = 1
     for _ in range(2 * COLD):
-        count_lines(1.0, Solver.LINE)
+        count_lines(1.0, CompiledPart.LINE)
     assert not runs_compiled(LEFT_OPEN)
     assert len(started) == 1
 
@@ -107,7 +108,7 @@ def test_without_numba_nothing_is_compiled(started, monkeypatch) -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("solver", Solver, ids=lambda each: each.name.lower())
+@pytest.mark.parametrize("solver", CompiledPart, ids=lambda each: each.name.lower())
 def test_the_child_leaves_in_the_cache_what_the_solver_loads(monkeypatch, tmp_path, solver) -> None:
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "CALM_COMPILED": "always"}
     command = [sys.executable, "-m", "calm.solve.compile_ahead", solver.name]

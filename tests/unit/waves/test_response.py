@@ -5,7 +5,7 @@ from math import cos, pi, sin, sqrt
 
 import numpy as np
 import pytest
-from scipy.special import j1
+from scipy.special import j1, jv
 
 from calm.case import load
 from calm.errors import InputError
@@ -13,7 +13,7 @@ from calm.files import Cable
 from calm.records import sea_states
 from calm.shipped import shipped_folder
 from calm.waves.analysis import analyse
-from calm.waves.buoy import END_LOSS, Buoy, buoy_of
+from calm.waves.buoy import END_LOSS, Buoy, bessel, buoy_of
 from calm.waves.fatigue import greatest_of, passing_probability
 from calm.waves.lumped_line import SHORTEST, LumpedLine, _axial, lumped_line
 from calm.waves.response import (
@@ -89,7 +89,7 @@ def test_a_taut_string_pushed_at_its_free_end():
     nothing = np.zeros((3, 401, 3), complex)
     push = nothing.copy()
     push[:, 0, 0] = 1.0
-    motion = _solved(_undamped(line, omega), None, omega, nothing, push, np.zeros((401, 3, 3)))
+    motion = _solved(_undamped(line), None, omega, nothing, push, np.zeros((401, 3, 3)))
     k = omega * sqrt(2.0 / 3000.0)
     assert motion[:, 0, 0].real == pytest.approx(np.tan(k * 100.0) / (3000.0 * k), rel=1e-4)
     assert np.abs(motion[:, :, 1:]).max() < 1e-12
@@ -105,7 +105,7 @@ def test_an_undamped_string_swings_at_its_natural_frequencies():
         push = np.zeros((81, 201, 3), complex)
         push[:, 0, 0] = 1.0
         zero = np.zeros((81, 201, 3), complex)
-        motion = _solved(_undamped(line, omega), None, omega, zero, push, np.zeros((201, 3, 3)))
+        motion = _solved(_undamped(line), None, omega, zero, push, np.zeros((201, 3, 3)))
         found = omega[np.abs(motion[:, 0, 0]).argmax()]
         assert found == pytest.approx(natural, rel=4e-4)
 
@@ -135,7 +135,7 @@ def test_the_swing_of_a_shipped_mooring_by_hand():
     nothing = np.zeros((len(omega), n, 3), complex)
     push = nothing.copy()
     push[:, 0, 0] = 1.0
-    motion = _solved(_undamped(line, omega), None, omega, nothing, push, np.zeros((n, 3, 3)))
+    motion = _solved(_undamped(line), None, omega, nothing, push, np.zeros((n, 3, 3)))
     assert omega[np.abs(motion[:, 0, 0]).argmax()] == pytest.approx(expected, rel=0.02)
 
 
@@ -624,3 +624,9 @@ def test_drag_goes_with_the_density_and_a_rope_that_floats_is_slackest_on_top(tm
     assert rope.least == rope.tension_min < rope.tension_mean
     # its lower end is pulled by 5 N/m over 60 m more, and by what the waves move below the middle
     assert 300.0 < rope.greatest - rope.tension_max < 400.0
+
+
+@pytest.mark.parametrize("order", [0, 1, 2])
+def test_bessel_functions_are_those_of_scipy(order):
+    x = np.concatenate([[0.0], np.geomspace(1e-9, 1.0, 40), np.linspace(0.0, 200.0, 2001)])
+    assert bessel(order, x) == pytest.approx(jv(order, x), rel=1e-12, abs=1e-14)

@@ -1,0 +1,63 @@
+"""Records given in Python: paths, datasets of xarray, tables of pandas."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from xarray import Dataset
+
+    Given: TypeAlias = str | Path | Dataset | DataFrame
+
+
+def is_record(given: Any) -> bool:
+    """Whether a value is a path, a dataset or a table, not an array of numbers."""
+    return isinstance(given, str | Path) or type(given).__name__ in ("Dataset", "DataFrame")
+
+
+@contextmanager
+def as_file(given: Given) -> Iterator[Path]:
+    """The file of a record; a dataset or a table is in a temporary file while it is read."""
+    with TemporaryDirectory() as folder:
+        yield Path(as_files(given, Path(folder), "record")[0])
+
+
+def as_files(given: Any, folder: Path, name: str) -> list[str]:
+    """Files of datasets and tables, which are written to a folder; paths stay as they are.
+
+    Datasets hold what NetCDF files hold that CALM reads. A table has the columns of a CSV file,
+    and may have times as its index.
+
+    Parameters
+    ----------
+    given : one record or several
+    folder, name : where to write, and how the names of the files begin
+
+    Raises
+    ------
+    TypeError
+        A record is neither a path nor of xarray or pandas.
+    """
+    if isinstance(given, str | Path) or not isinstance(given, Sequence):
+        given = [given]
+    found: list[str] = []
+    for number, one in enumerate(given, start=1):
+        if isinstance(one, str | Path):
+            found.append(str(one))
+        elif hasattr(one, "to_netcdf"):
+            found.append(str(folder / f"{name}-{number}.nc"))
+            one.to_netcdf(found[-1], engine="h5netcdf")
+        elif hasattr(one, "to_csv"):
+            found.append(str(folder / f"{name}-{number}.csv"))
+            timed = type(one.index).__name__ == "DatetimeIndex"
+            one.to_csv(
+                found[-1], index=timed, index_label="time", date_format="%Y-%m-%dT%H:%M:%S.%f"
+            )
+        else:
+            raise TypeError(f"{name}: {type(one).__name__} is no path, xarray or pandas object")
+    return found
