@@ -54,8 +54,8 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     release, pieces = leg.file.release, leg.file.pieces
     for clamp in clamps_in(pieces):
         if clamp.component.role == "release":
-            message = f"{clamp.label} has the role of a release, but is clamped: it frees nothing."
-            yield unknown(clamp, message, "Put it in line, or give it another role.")
+            message = f"{clamp.label} has `role: release`, but a clamped release frees nothing."
+            yield unknown(clamp, message, "Insert it in the line, or change its role.")
     if release is None:
         if not reaches_the_surface(leg):
             yield unknown(
@@ -67,7 +67,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         return
     piece = pieces[release]
     if _NO_RELEASE.search(_words(piece.use, piece.component.name)):
-        message = f"{piece.label} has the role of a release, but its name is not a release's."
+        message = f"{piece.label} has `role: release`, but its name suggests another component."
         yield unknown(piece, message, "Give `role: release` to the release alone.")
         return
     above = [part.component for part in every_part(pieces[: release + 1])]
@@ -83,7 +83,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
             f"{piece.label} stands {say('depth', length)} above the anchor; "
             f"{LEAST_BELOW_RELEASE:g} m would keep it out of the mud and clear of falling gear."
         )
-        doubts.append((piece, message, "Hang it higher, on a rope or chain."))
+        doubts.append((piece, message, "Insert rope or chain between release and anchor."))
     said = _words(piece.use, piece.component.name, piece.label)
     alone = sum(component.role == "release" for component in above) == 1
     if alone and leg.water.depth > GRAPPLED and not _TWICE.search(said):
@@ -92,7 +92,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     for index, one in enumerate(pieces[:release]):
         if one.component.role == "release" and not _floats(pieces[: index + 1]):
             message = f"Nothing above release {one.label} floats: once released, nothing comes up."
-            doubts.append((one, message, "Put it below what floats, or give it another role."))
+            doubts.append((one, message, "Move it below the buoyancy, or change its role."))
     for one in below:
         floats = net_buoyancy(one.component, leg.water.gravity) > 0.0
         if floats and not isinstance(one.component, Flexible):
@@ -180,7 +180,7 @@ def clamp_place(handling: Handling) -> Iterator[Verdict]:
     """Clamps on a cable or chain that overlap, or stick out over its end into the next piece."""
     leg = handling.leg
     lengths = leg.line.length.tolist()
-    remedy = "Move it to where it has room, or check its `at` and its length."
+    remedy = "Move it to a free position, or check its `at` and its length."
     for piece in leg.file.pieces:
         if not isinstance(piece.component, Flexible):
             continue
@@ -253,7 +253,7 @@ def _words(*texts: str | None) -> str:
     return " ".join(text for text in texts if text).casefold()
 
 
-_HOLDS = "Take a clamp that holds more, two of them, or a stopper below it."
+_HOLDS = "Use a stronger clamp, a second clamp, or a stopper below it."
 
 
 @rule("clamp-grip")
@@ -357,8 +357,8 @@ def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
     upper, lower = part.travel or (0.0, 0.0)
     for other in wire.clamps:
         if upper < other.at < lower and other is not part:
-            message = f"{other.label} stands in the way of {part.label}, {other.at:.0f} m down."
-            yield verdict_on(part, State.FAIL, message, "Move it beyond one of the stops.")
+            message = f"{other.label} obstructs {part.label}, {other.at:.0f} m along the wire."
+            yield verdict_on(part, State.FAIL, message, "Move it outside the stops.")
     thin, thick = PROFILER_WIRE
     diameter = getattr(wire.component, "diameter", 0.0)
     if not thin <= round(diameter, 5) <= thick:
@@ -366,7 +366,7 @@ def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
             f"{wire.label} is {1000.0 * diameter:.1f} mm thick; profilers travel on jacketed wire "
             f"of {1000.0 * thin:.2f} to {1000.0 * thick:.2f} mm."
         )
-        yield verdict_on(part, State.WARN, message, "Ask its maker.", diameter)
+        yield verdict_on(part, State.WARN, message, "Ask the manufacturer.", diameter)
 
 
 def _clamps(leg: Leg) -> list[JudgedPart]:

@@ -113,11 +113,13 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
             source = cited(file, "launch_safety_factor")
         message = f"{bears}; its {load} is {say('tension', limit)}."
         if tension > limit and not launch.anchor_drag_known:
-            message += " This assumes an anchor without drag; its own is not known."
+            message += " The drag of the anchor is unknown and was neglected."
             remedy, anchor = "Give the anchor's `kt`.", file.pieces[-1]
             yield unknown(piece, message, remedy, tension, lacks="kt", of=anchor)
             continue
-        remedy = "Take a stronger one, or lower the anchor on a parachute or a wire."
+        remedy = (
+            "Use a stronger component, or slow the anchor with a parachute or lower it on a wire."
+        )
         yield at_most(piece, tension, limit, message, remedy, source=source)
 
 
@@ -170,7 +172,7 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
         message = f"Released below {lowest.label}, it does not rise"
     message += f"; {say('speed', limit)} is required."
     if rise.in_still_water:
-        message += " That is in still water: in the current no steady rise was found."
+        message += " This is the speed in still water; no steady rise was found in the current."
     remedy = "Add buoyancy above the release, or remove weight."
     source = cited(handling.leg.file, "minimum_rise_speed")
     verdict = at_least(lowest, rise.rise_speed, limit, message, remedy, source=source)

@@ -187,5 +187,5 @@ class LegGraph:
             number, at = min(self.opened)
             one = self.chains[number][at]
             assert isinstance(one, int)
-            told = "The releases free all that floats from its anchors."
+            told = "The releases free every buoyant part from its anchors."
             yield verdict_on(self.pieces[one], State.PASS, told)

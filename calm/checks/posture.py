@@ -74,7 +74,7 @@ def tilt(leg: Leg) -> Iterator[Criterion]:
             yield Criterion(part, "tilt", warned, words, beyond=State.WARN)
 
 
-_STRAIGHTER = "Add buoyancy above it, or move it where the line stands straighter."
+_STRAIGHTER = "Add buoyancy above it, or move it to a more upright part of the line."
 THE_DESIGNS = "The design's own `maximum_tilt`"
 
 
@@ -123,7 +123,7 @@ def _rating_words(
     return (
         f"{stands}; it is rated to {say('depth_rating', rating)}, less a margin of "
         f"{say('depth_rating', rating - limit)}.",
-        "Take one with a greater depth rating, or add buoyancy against the knockdown.",
+        "Use a component with a greater depth rating, or add buoyancy against the knockdown.",
     )
 
 
@@ -184,9 +184,9 @@ def top_depth(leg: Leg) -> Iterator[Criterion]:
 
     def words(depth: float, _: LegResult) -> tuple[str, str]:
         return (
-            f"{label} is {say('depth', depth)} below the surface; {say('depth', limit)} would "
-            "keep it clear of waves, hulls and nets.",
-            "Shorten the line, or mark it at the surface.",
+            f"{label} is {say('depth', depth)} below the surface; {say('depth', limit)} is "
+            "needed to stay clear of waves, hulls and nets.",
+            "Shorten the line, or add a surface marker.",
         )
 
     top = pieces_of(leg)[0]
@@ -215,7 +215,7 @@ def fish_bite(result: LegResult) -> Iterator[Verdict]:
                 f"{piece.label} reaches up to {say('depth', highest)}; fish bite through rope "
                 f"down to {say('depth', limit)}."
             )
-            remedy = "Use jacketed wire there; `fishbite_depth` sets how deep they bite."
+            remedy = "Use jacketed wire there, or set `fishbite_depth`."
             source = cited(result.file, "fishbite_depth")
             yield at_least(piece, highest, limit, message, remedy, State.WARN, source)
 
@@ -227,7 +227,7 @@ def knockdown(leg: Leg) -> Iterator[Criterion]:
     def words(sunk: float, allowed: str) -> tuple[str, str]:
         if isnan(sunk):
             return (
-                "The line has no unique shape in still water to measure a knockdown from.",
+                "The line is slack in still water, so there is no reference shape for a knockdown.",
                 "Judge a slack line by its excursion: `maximum_excursion`.",
             )
         return (
@@ -281,7 +281,7 @@ def reserve(leg: Leg) -> Iterator[Criterion]:
             message = f"The float is {say('depth', result.top.depth)} under water: 0 % is left"
         return (
             f"{message}; {100 * limit:.0f} % should be.",
-            "Take a larger float, a lighter line, or more length.",
+            "Use a larger float, a lighter line, or more length.",
         )
 
     source = cited(leg.file, "minimum_reserve")
@@ -311,7 +311,7 @@ def freeboard(result: LegResult) -> Iterator[Verdict]:
         f"The float stands {say('freeboard', height)} out of the water."
         if height >= 0.0
         else f"The float is {say('depth', -height)} under water.",
-        "Take a larger float.",
+        "Use a larger float.",
     )
 
 
@@ -347,5 +347,5 @@ def scope(result: LegResult) -> Iterator[Verdict]:
         return
     depth = result.leg.water.depth
     ratio = float(result.components.cut_length.sum()) / depth
-    message = f"The line is {ratio:.3f} times as long as the water is deep."
+    message = f"Scope (cut length over water depth) is {ratio:.3f}."
     yield verdict_on(None, State.NOT_JUDGED, message, value=ratio)

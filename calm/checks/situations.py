@@ -252,7 +252,7 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
         f"{say('depth', designed)}: {what} is {say('depth', abs(moved))} {way}; "
         f"{say('depth', limit)} is within the error of a sounding."
     )
-    remedy = "`calm diff` with this file alone shows what that does."
+    remedy = "`calm diff` with this file shows the effect."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
 
 
@@ -273,10 +273,10 @@ def _far_away(leg: Leg) -> Verdict | None:
     if away <= _ANOTHER_SITE:
         return None
     message = (
-        f"Deployed {away:.0f} km from the planned position: the water and the currents of "
-        "this design are those of another place."
+        f"Deployed {away:.0f} km from the planned position: water depth "
+        "and currents of this design may not apply."
     )
-    remedy = "Check both positions, or give the environment of the site."
+    remedy = "Check both positions, or use the environment of the site."
     return verdict_on(None, State.UNKNOWN, message, remedy)
 
 

@@ -124,7 +124,7 @@ def _strength_words(
     wanted = f"a breaking load of {say('tension', factor * tension)} or more"
     if not is_synthetic(component):
         wanted = f"a working load of {say('tension', tension)} and {wanted}"
-    return f"{bears}; {allowed}.", f"Take one with {wanted}."
+    return f"{bears}; {allowed}.", f"Use a component with {wanted}."
 
 
 @criteria("release-load")
@@ -164,7 +164,8 @@ def _release_words(
         allowed = f"its opening load is {say('tension', limit)}"
     return (
         f"{bears}; {allowed}.",
-        f"Take a release made for {say('tension', tension)}, or two side by side.",
+        f"Use a release rated for {say('tension', tension)}, or share the load between two in "
+        "parallel.",
     )
 
 
@@ -195,9 +196,9 @@ def strength_steps(result: LegResult) -> Iterator[Verdict]:
             piece,
             load,
             WEAK_LINK * cables,
-            f"{piece.label} is good for {say('tension', load)}, the cables above and below it "
+            f"{piece.label} is rated for {say('tension', load)}, the cables above and below it "
             f"for {say('tension', cables)} or more.",
-            "Match its strength to that of the cables next to it.",
+            "Match its strength to the adjoining cables.",
             State.WARN,
         )
 
@@ -258,7 +259,7 @@ def _words(
     part: JudgedPart, limit: float, name: str, least: float, _: LegResult
 ) -> tuple[str, str]:
     return (
-        f"{part.label} has a least tension of {say('tension', least)}; "
+        f"Minimum tension in {part.label} is {say('tension', least)}; "
         f"{say('tension', limit)} keeps a {name} taut.",
         "Add buoyancy above it, or remove weight; `slack: allowed` exempts a piece.",
     )

@@ -72,7 +72,7 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
                 yield unknown(piece, message, remedy, tension, lacks=lacks)
             continue
         message = f"{bears}; its loads allow {say('tension', limit)}.{_measured(row, 'greatest')}"
-        remedy = "Take a stronger one, or let the line stretch more."
+        remedy = "Use a stronger component, or add stretch to the line."
         yield _sure(waves, at_most(piece, tension, limit, message, remedy, source=source))
 
 
@@ -119,7 +119,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
                 f"The fatigue life of {one.label} is {_years(one.life)} ({_years(one.life_low)} "
                 f"to {_years(one.life_high)}), by {one.curve}; {_years(limit / YEAR)} is required."
             )
-            remedy = "Take a thicker one, let the line stretch more, or renew it sooner."
+            remedy = "Use a thicker component, add stretch to the line, or renew it sooner."
             life = one.life * YEAR
             yield _sure(waves, at_least(piece, life, limit, message, remedy, source=source))
 
