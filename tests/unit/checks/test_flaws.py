@@ -634,7 +634,7 @@ FLAWS = (
         "recovery",
         None,
         "warn",
-        "Beyond 3 m/s floats leap and the line below them loops.",
+        "Beyond 3 m/s floats may breach and the line may loop.",
     ),
     Flaw(
         "a clamp that slips",
