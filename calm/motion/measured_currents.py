@@ -165,7 +165,7 @@ class Columns:
 
 
 @dataclass(frozen=True)
-class Scales:
+class ErrorScales:
     """How large the errors are, as far as the record has said.
 
     Attributes
@@ -206,7 +206,7 @@ class CurrentSmoother:
         spread = np.sqrt(0.5 * np.nanvar(flow, axis=1).sum(axis=0))
         self.spread = np.maximum(self._along(place, spread), LEAST_SPREAD)
         flags = np.unique(one.flag[np.isfinite(one.u)])
-        self.scales = Scales({f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()})
+        self.scales = ErrorScales({f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()})
         self.levels = np.where(np.isfinite(one.level_depth), one.level_depth, place)
         self.knot_depth = self.knots.at(self.levels)
         self.state = np.zeros((len(one.time), self.columns.count))

@@ -182,7 +182,7 @@ def test_texts_of_options_are_set_to_the_width_of_the_terminal(calm, monkeypatch
     assert len(texts) > 8
     for text in texts:
         cells = [line.strip("│ ") for line in text.split("╰")[0].splitlines()]
-        room = 78 - len("│ --environment NAME  ")
+        room = 78 - len("│ --output -o PATH...  ")
         for above, below in itertools.pairwise(cells[1:]):
             assert len(above) + 1 + len(below.split()[0]) > room
 

@@ -125,9 +125,10 @@ def test_csv_and_json_agree_to_twelve_digits(calm, write_mooring, folder):
 
 def test_warnings_are_in_the_table_and_in_json(calm, write_mooring):
     file = write_mooring(speed="2 m/s", buoyancy="4000 N")
-    assert "! The anchor weighs" in calm("run", file).out
+    assert "! Anchor weight in water is" in calm("run", file).out
     done = calm("run", file, "--json", "-")
-    assert any(text.startswith("The anchor weighs") for text in json.loads(done.out)["warnings"])
+    warnings = json.loads(done.out)["warnings"]
+    assert any(text.startswith("Anchor weight in water is") for text in warnings)
     assert done.err == ""
 
 

@@ -70,7 +70,7 @@ def test_what_cannot_be_drawn_is_refused(calm, write_mooring, heavy):
     done = calm("run", file, "--uncertainty", "--samples", "1000")
     assert (done.code, done.out) == (2, "")
     assert "1000 is not a power of two" in done.err
-    assert "take 1024" in done.err
+    assert "use 1024" in done.err
     assert calm("run", heavy, *DRAWS).code == 3
 
 

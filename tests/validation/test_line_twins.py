@@ -83,7 +83,8 @@ def test_currents_that_read_low_are_named_before_missing_floats(mooring, monkeyp
     """Knockdown is proportional to drag and the square of the current, so these two are one."""
     (low,) = found(mooring, monkeypatch, change=misread(0.7))
     assert (low.label, low.kind) in {(CURRENTS, "currents"), (LINE, "drag")}
-    assert low.value < 0.7 or low.kind == "drag"  # linear in its size, so too far: 0.58 for 0.7
+    # the depths are linear in its size, which is so too far: 0.58
+    assert low.value < 0.7 or low.kind == "drag"
 
 
 def test_missing_floats_are_the_likeliest_where_they_are_missing(mooring, monkeypatch):
