@@ -95,7 +95,7 @@ def test_it_is_compared_with_the_plan(calm, ranges, write_mooring, folder):
     assert done.code == 1
     assert "deployed" not in (folder / "m.yaml").read_text()
     assert "m.yaml was not changed: the depth, 1997 m, is far from the planned 1500 m; " in done.err
-    assert "; the place is 11.1 km from the planned position. --accept" in done.err
+    assert "; the place is 11.1 km from the planned position. Use --accept" in done.err
     assert "that is far from the planned position" in done.err
     done = located("latitude: -5.2 deg, longitude: 48.3 deg")
     assert done.code == 2
@@ -252,7 +252,7 @@ def test_what_scatters_more_than_ranging_does_is_not_written(calm, ranges, write
     write_mooring("m.yaml")
     done = calm("locate", ranges("\n".join(made) + "\n"), "--update", "m.yaml")
     assert done.code == 1
-    assert re.search(r"not written: the ranges scatter by \d+ m, more than ranging does", done.err)
+    assert re.search(r"was not changed: the ranges scatter by \d+ m, more than ranging does", done.err)
     assert "deployed" not in (folder / "m.yaml").read_text()
 
 
