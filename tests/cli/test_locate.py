@@ -252,7 +252,8 @@ def test_what_scatters_more_than_ranging_does_is_not_written(calm, ranges, write
     write_mooring("m.yaml")
     done = calm("locate", ranges("\n".join(made) + "\n"), "--update", "m.yaml")
     assert done.code == 1
-    assert re.search(r"was not changed: the ranges scatter by \d+ m, more than ranging does", done.err)
+    scattered = r"was not changed: the ranges scatter by \d+ m, more than ranging does"
+    assert re.search(scattered, done.err)
     assert "deployed" not in (folder / "m.yaml").read_text()
 
 
