@@ -28,7 +28,7 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import duration, say
 
 GREATEST_DIFFERENCE = 0.2
-"""Beyond it two metals that touch corrode each other in sea water [V]."""
+"""Potential difference above which two metals in contact corrode in sea water [V]."""
 
 _BALANCED = re.compile(r"\b(torque[- ]balanced|rotation[- ]res\w*|non[- ]rotating)\b")
 _UNBALANCED = re.compile(
@@ -44,18 +44,18 @@ GRAPPLED = 100.0
 """Depth of water down to which a line is dived or grappled for if its release fails [m]."""
 
 LEAST_BELOW_RELEASE = 1.0
-"""How far above its anchor a release should stand [m]."""
+"""Recommended minimum height of a release above its anchor [m]."""
 
 
 @rule("release-present", once=True)
 def release_present(handling: Handling) -> Iterator[Verdict]:
-    """Return whether a line says what lets go of its anchor, and whether that frees it."""
+    """Check that the line has a release in its load path, and that opening it frees the mooring."""
     leg = handling.leg
     release, pieces = leg.file.release, leg.file.pieces
     for clamp in clamps_in(pieces):
         if clamp.component.role == "release":
-            message = f"{clamp.label} has the role of a release, but is clamped: it frees nothing."
-            yield unknown(clamp, message, "Put it in line, or give it another role.")
+            message = f"{clamp.label} has `role: release`, but a clamped release frees nothing."
+            yield unknown(clamp, message, "Insert it in the line, or change its role.")
     if release is None:
         if not reaches_the_surface(leg):
             yield unknown(
@@ -67,7 +67,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         return
     piece = pieces[release]
     if _NO_RELEASE.search(_words(piece.use, piece.component.name)):
-        message = f"{piece.label} has the role of a release, but its name is not a release's."
+        message = f"{piece.label} has `role: release`, but its name suggests another component."
         yield unknown(piece, message, "Give `role: release` to the release alone.")
         return
     above = [part.component for part in every_part(pieces[: release + 1])]
@@ -83,7 +83,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
             f"{piece.label} stands {say('depth', length)} above the anchor; "
             f"{LEAST_BELOW_RELEASE:g} m would keep it out of the mud and clear of falling gear."
         )
-        doubts.append((piece, message, "Hang it higher, on a rope or chain."))
+        doubts.append((piece, message, "Insert rope or chain between release and anchor."))
     said = _words(piece.use, piece.component.name, piece.label)
     alone = sum(component.role == "release" for component in above) == 1
     if alone and leg.water.depth > GRAPPLED and not _TWICE.search(said):
@@ -92,7 +92,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     for index, one in enumerate(pieces[:release]):
         if one.component.role == "release" and not _floats(pieces[: index + 1]):
             message = f"Nothing above release {one.label} floats: once released, nothing comes up."
-            doubts.append((one, message, "Put it below what floats, or give it another role."))
+            doubts.append((one, message, "Move it below the buoyancy, or change its role."))
     for one in below:
         floats = net_buoyancy(one.component, leg.water.gravity) > 0.0
         if floats and not isinstance(one.component, Flexible):
@@ -120,11 +120,11 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
 
 @rule("swivel", once=True)
 def swivel(handling: Handling) -> Iterator[Verdict]:
-    """A swivel at an end of every wire that bears torque, if a float that leans holds that end.
+    """Check that each wire that is not torque-balanced has a swivel between it and a tilting float.
 
-    A wire rope that is not torque-balanced turns under load and back as the load goes, and a float
-    in the current holds it: it kinks. A swivel at either end lets it turn, as do chain and
-    synthetic rope, which bear no torque.
+    Wire rope that is not torque-balanced twists as its load changes. A float in the current resists
+    that rotation, and the wire kinks. A swivel at either end lets the wire turn; so do chain and
+    synthetic rope, which transmit no torque.
     """
     pieces = handling.leg.file.pieces
     for index, piece in enumerate(pieces):
@@ -157,7 +157,9 @@ def _bears_torque(component: Component) -> bool:
 
 
 def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
-    """The float at which a wire ends that way, and whether a swivel is between; None for none."""
+    """Find the float at this end of a wire, and whether a swivel lies between; None without a
+    float.
+    """
     has_swivel = False
     for piece in way:
         if isinstance(piece.component, Flexible):
@@ -170,7 +172,7 @@ def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
 
 
 _TOUCH = 0.05
-"""What clamps may overlap by, since what they hold stands beside the line [m]."""
+"""Overlap allowed between neighbouring clamps [m]; a clamped instrument sits off the line."""
 
 
 @rule("clamp-place", once=True)
@@ -178,7 +180,7 @@ def clamp_place(handling: Handling) -> Iterator[Verdict]:
     """Clamps on a cable or chain that overlap, or stick out over its end into the next piece."""
     leg = handling.leg
     lengths = leg.line.length.tolist()
-    remedy = "Move it to where it has room, or check its `at` and its length."
+    remedy = "Move it to a free position, or check its `at` and its length."
     for piece in leg.file.pieces:
         if not isinstance(piece.component, Flexible):
             continue
@@ -230,9 +232,9 @@ def _is_insulated(part: Piece | Clamp) -> bool:
 
 
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
-    """Return neighbours far apart in the galvanic series: base, noble, and how far [V].
+    """Yield adjoining dissimilar metals: the less noble, the more noble, their potential [V].
 
-    Those of them that are `insulated` are among them: what insulates them is to be fitted.
+    Pairs with an `insulated` part are included, because the insulation still has to be fitted.
     """
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
@@ -251,12 +253,12 @@ def _words(*texts: str | None) -> str:
     return " ".join(text for text in texts if text).casefold()
 
 
-_HOLDS = "Take a clamp that holds more, two of them, or a stopper below it."
+_HOLDS = "Use a stronger clamp, a second clamp, or a stopper below it."
 
 
 @rule("clamp-grip")
 def clamp_grip(result: LegResult) -> Iterator[Verdict]:
-    """Pull of what is clamped on the line: its weight in water and the drag of the current."""
+    """Check the force on each clamp [N], from its weight in water and the drag of the current."""
     water, depth = result.leg.water, np.asarray(result.clamps.depth)
     flows, densities = water.current_at(depth), water.density_at(depth).tolist()
     for part in _clamps(result.leg):
@@ -270,10 +272,10 @@ def clamp_grip(result: LegResult) -> Iterator[Verdict]:
 
 @rule("clamp-grip", situation="launch and recovery", once=True)
 def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
-    """Judge the greater pull along the line, of the fall, which drags up, or the rise, down.
+    """Check the larger axial force on each clamp [N] during anchor descent or ascent.
 
-    The fall is that at touchdown and the rise at terminal speed, with the drag of what is clamped
-    in the flow along its axis.
+    The descent speed is the maximum of the launch, the ascent speed the terminal rise speed. Drag
+    coefficients are those for flow along the axis of the clamped item.
     """
     launch, rise = handling.launch, handling.recovery
     deep = np.array(handling.leg.water.depth)
@@ -298,10 +300,11 @@ McLane Moored Profiler, user manual."""
 
 @rule("profiler")
 def profiler(result: LegResult) -> Iterator[Verdict]:
-    """Tension, wire, way and drive of a profiler where it is; it is judged at its stops, too.
+    """Check the tension, wire, path and drive force of each profiler at its present position.
 
-    Along the wire it meets its own speed and, at most, the current times the sine of the tilt.
-    What its wheels rub with, and what it weighs by its compressibility, is not known.
+    The situations with the profiler at its stops are checked in the same way. Along the wire, the
+    flow past the profiler is its own speed plus at most the current times the sine of the tilt.
+    Wheel friction and the effect of compressibility on its weight are unknown and neglected.
     """
     for row in result.clamps:
         if isinstance(row.part.component, Profiler):
@@ -336,7 +339,9 @@ def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
 
 
 LONGEST_PROFILE = 8.0 * 3600.0 / 1.25
-"""What a profile may take: a McLane profiler gives up after 1.25 times that, or 8 hours [s]."""
+"""Longest duration of a profile [s]. A McLane profiler stops after 1.25 times the expected time, or
+8 hours.
+"""
 
 
 def _lasting(travels: Sequence[ProfilerTravel], part: Clamp) -> Iterator[Verdict]:
@@ -348,12 +353,12 @@ def _lasting(travels: Sequence[ProfilerTravel], part: Clamp) -> Iterator[Verdict
 
 
 def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
-    """Yield what stands in the way of a profiler, and the wire that it does not fit."""
+    """Yield clamps that obstruct a profiler, and a wire of unsuitable diameter."""
     upper, lower = part.travel or (0.0, 0.0)
     for other in wire.clamps:
         if upper < other.at < lower and other is not part:
-            message = f"{other.label} stands in the way of {part.label}, {other.at:.0f} m down."
-            yield verdict_on(part, State.FAIL, message, "Move it beyond one of the stops.")
+            message = f"{other.label} obstructs {part.label}, {other.at:.0f} m along the wire."
+            yield verdict_on(part, State.FAIL, message, "Move it outside the stops.")
     thin, thick = PROFILER_WIRE
     diameter = getattr(wire.component, "diameter", 0.0)
     if not thin <= round(diameter, 5) <= thick:
@@ -361,7 +366,7 @@ def _way_of(part: Clamp, wire: Piece) -> Iterator[Verdict]:
             f"{wire.label} is {1000.0 * diameter:.1f} mm thick; profilers travel on jacketed wire "
             f"of {1000.0 * thin:.2f} to {1000.0 * thick:.2f} mm."
         )
-        yield verdict_on(part, State.WARN, message, "Ask its maker.", diameter)
+        yield verdict_on(part, State.WARN, message, "Ask the manufacturer.", diameter)
 
 
 def _clamps(leg: Leg) -> list[JudgedPart]:

@@ -1,11 +1,12 @@
-"""The rules, and judging moorings by them.
+"""Apply the design rules to moorings.
 
-Each is judged in each of its environments, then its launch, recovery and breaks.
+Each mooring is checked in each of its environments, then for launch, recovery and breaks.
 
-Given how uncertain the inputs of the design are, each limit has the probability that it is broken.
-The limits of a line that stands are counted in every sample, in the situation of the finding. A
-launch or a rise takes as long to solve as many equilibria: these, and the breaks, are counted in
-the first `HANDLED` samples. A sample without equilibrium breaks every limit.
+If the inputs of the design have an `uncertainty`, each finding with a limit gets the probability of
+exceeding it. The limits of a mooring in equilibrium are counted in every sample, in the situation
+of the finding. A launch or an ascent takes as long to solve as many equilibria, so launch, recovery
+and breaks are counted in the first `HANDLED` samples only. A sample without equilibrium counts as
+exceeding every limit.
 """
 
 from collections import Counter
@@ -68,16 +69,16 @@ def judged_stand(
     environment: str,
     day: date | None = None,
 ) -> MooringInEnvironment:
-    """Judge a leg in all its situations.
+    """Apply the rules to a leg in all its situations.
 
-    The stand lists all findings as given, and findings of other situations with a worse state; as
-    tighter, those of other situations with a greater utilisation. A failure only of strumming
-    cables is a warning, since the cables may not strum; of what fails without that, it is none.
+    `findings` lists all findings as given, and those of other situations that have a worse state.
+    `tighter` lists findings of other situations with a larger utilisation. A failure that occurs
+    only with strumming cables is reduced to a warning, because the cables may not strum.
 
     Parameters
     ----------
-    name : of the mooring in its findings
-    day : on which accepts count or have ended; today unless given
+    name : name of the mooring in its findings
+    day : date for the validity of accepts; today by default
     """
     given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
     if not leg.of_several:
@@ -103,7 +104,9 @@ def judged_stand(
 
 
 def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[Finding]:
-    """Of each rule and part, the other finding with a greater utilisation than those listed."""
+    """Yield, per rule and part, the governing finding of `others` if its utilisation is larger than
+    listed.
+    """
     known: dict[tuple[str, Place | None], float] = {}
     for one in listed:
         used = one.utilisation
@@ -120,11 +123,13 @@ def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[F
 def assessment_of(
     name: str, stands: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
-    """Judge a mooring's launch, recovery and breaks too, in the first environment it stands in.
+    """Assess a mooring in all its environments, and its handling in one of them.
+
+    Launch, recovery and breaks are checked in the first environment that has an equilibrium.
 
     Parameters
     ----------
-    day : on which accepts count or have ended; today unless given
+    day : date for the validity of accepts; today by default
     """
     stands = with_cases(stands)
     first = next((stand for stand in stands if stand.result is not None), stands[0])
@@ -187,7 +192,7 @@ def with_cases(stands: Sequence[MooringInEnvironment]) -> tuple[MooringInEnviron
 
 
 def cased(findings: Iterable[Finding], stands: Sequence[MooringInEnvironment]) -> list[Finding]:
-    """What is judged once of a mooring, that on the currents with the code of its environment."""
+    """Add the load case of their environment to findings on currents and drag coefficients."""
     numbers = _numbers(stands)
     return [
         replace(one, case=situations.case_of(numbers[one.environment], AS_GIVEN))
@@ -198,7 +203,7 @@ def cased(findings: Iterable[Finding], stands: Sequence[MooringInEnvironment]) -
 
 
 def _numbers(stands: Sequence[MooringInEnvironment]) -> dict[str, int]:
-    """The numbers of environments in their order, by their names and those of their stands."""
+    """Number the environments in order, by their own names and by the names in `stands`."""
     numbers: dict[str, int] = {}
     for stand in stands:
         number = numbers.setdefault(
@@ -211,27 +216,27 @@ def _numbers(stands: Sequence[MooringInEnvironment]) -> dict[str, int]:
 def findings_of_currents(
     legs: Sequence[Leg], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
-    """What the rules of the environments find in those of a mooring of a name."""
+    """Yield the findings of the rules that consider all environments of a mooring together."""
     for each in OF_ENVIRONMENTS:
         for leg, verdict in each.judge(legs):
             yield acceptance.of(each.find(verdict, name, leg.file.environment.name or OWN))
 
 
 OF_ENVIRONMENTS = (currents, environment)
-"""What is judged of all environments of a mooring together."""
+"""Rules that consider all environments of a mooring together."""
 
 
 def findings_of_drag(
     results: Sequence[LegResult], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
-    """Return what is found of drag coefficients in the environments of a mooring of a name."""
+    """Yield the findings on drag coefficients, over all environments of a mooring."""
     for result, verdict in drag_coefficient.judge(results):
         environment = result.file.environment.name or OWN
         yield acceptance.of(drag_coefficient.find(verdict, name, environment))
 
 
 def moving(legs: Iterable[Leg]) -> bool:
-    """Return whether current or wind moves any of them."""
+    """Whether current or wind acts on any of the legs."""
     return any(
         np.hypot(each.water.u, each.water.v).max() >= situations.LEAST_CURRENT
         or each.file.environment.wind is not None
@@ -242,15 +247,14 @@ def moving(legs: Iterable[Leg]) -> bool:
 def findings_of(
     situation: Situation, mooring: str, environment: str, *, day: date | None = None
 ) -> Iterator[Finding]:
-    """Return what the rules of a standing line find in one situation.
+    """Yield the findings of the per-situation rules for one situation.
 
-    Of an anchor that is only a stand-in nothing is found, nor of the top of a leg that is held
-    there.
+    Findings on a stand-in anchor and on the held top of a leg are omitted.
 
     Parameters
     ----------
-    mooring, environment : their names in the findings
-    day : on which accepts count or have ended; today unless given
+    mooring, environment : names used in the findings
+    day : date for the validity of accepts; today by default
     """
     if situation.failure is not None:
         for verdict in equilibrium.judge(situation.failure):
@@ -263,7 +267,7 @@ def findings_of(
 
 @lru_cache(maxsize=16)
 def _verdicts_of(situation: Situation) -> list[tuple[Rule, list[Any]]]:
-    """Return what each rule says of a situation, which several environments may have."""
+    """Evaluate each rule in a situation; cached because environments may share situations."""
     assert situation.result is not None
     file, result = situation.result.file, estimated_result(situation.result)
     end, anchored = file.pieces[-1].place, file.pieces[-1].use != STAND_IN
@@ -297,14 +301,16 @@ def _of(finding: Finding) -> tuple[str, Place | None]:
 
 
 def handled(leg: Leg, result: LegResult) -> Handling:
-    """Launch, recovery and breaks of a mooring that stands, or why one of them is not known."""
+    """Solve launch, recovery and breaks of a mooring in equilibrium; failures are kept with their
+    reason.
+    """
     launch = or_why_not(launch_of, leg)
     recovery = or_why_not(recovery_of, leg, result)
     return Handling(leg, launch, recovery, breaks_of(leg), losses_of(leg), result)
 
 
 def _handled(stand: MooringInEnvironment) -> Handling:
-    """Return the same of a stand; of one that has no equilibrium, why not."""
+    """Solve launch, recovery and breaks of a mooring, or record why it has no equilibrium."""
     leg, result = stand.leg, stand.result
     if result is not None:
         return replace(handled(leg, result), leg=estimated(leg))
@@ -330,9 +336,10 @@ _ORDER = list(TEXTS)
 
 
 def _judging(*, once: bool) -> tuple[Rule, ...]:
-    """Rules of the modules in the order of their texts; those of one situation come last.
+    """Collect the rules of the modules in the order of their texts; rules of a fixed situation come
+    last.
 
-    The one of the currents judges all environments together.
+    The rule `currents` is excluded because it considers all environments together.
     """
     found = chain.from_iterable(vars(module).values() for module in _MODULES)
     rules = [each for each in found if isinstance(each, Rule) and each.once == once]
@@ -342,10 +349,10 @@ def _judging(*, once: bool) -> tuple[Rule, ...]:
 
 
 STANDING = _judging(once=False)
-"""What is judged of a `LegResult`, in every environment and situation."""
+"""Rules evaluated for a `LegResult`, in every environment and situation."""
 
 ONCE = _judging(once=True)
-"""What is judged once of a mooring: its breaks, its launch and its recovery."""
+"""Rules evaluated once per mooring: breaks, launch and recovery."""
 
 _WAVE_RULES = {each.name for each in IN_WAVES}
 
@@ -391,7 +398,7 @@ def with_probabilities(
 def _stand(
     stand: MooringInEnvironment, draws: Sequence[Draw], mapped: Mapped
 ) -> MooringInEnvironment:
-    """With the probabilities of every situation that something is listed of."""
+    """Add probabilities for every situation that has a listed finding."""
     found = [stand.findings, stand.tighter, stand.accepted]
     wanted = {finding.situation for each in found for finding in each}
     for situation in stand.situations:
@@ -404,7 +411,7 @@ def _stand(
 def _probable(
     findings: tuple[Finding, ...], broken: Counter[Key], samples: int, situation: str | None = None
 ) -> tuple[Finding, ...]:
-    """The findings, those of a situation that have a limit with how often it was broken."""
+    """Add the probability of exceeding the limit to findings of a situation with a limit."""
     return tuple(
         replace(one, probability=(broken[one.rule, one.place] + broken[_ALL]) / samples)
         if one.limit is not None and situation in (None, one.situation)
@@ -420,7 +427,7 @@ _ALL: Key = ("", None)
 def _broken(
     leg: Leg, draws: Sequence[Draw], mapped: Mapped, *, standing: bool = True
 ) -> Counter[Key]:
-    """Return how many samples break each limit, of a line that stands or of its handling."""
+    """Count samples that exceed each limit, in equilibrium or (if not `standing`) in handling."""
     block = BLOCK if standing else BLOCK // 16
     blocks = [draws[first : first + block] for first in range(0, len(draws), block)]
     broken: Counter[Key] = Counter()
@@ -445,7 +452,7 @@ def _counted(standing: bool, leg: Leg, draws: Sequence[Draw]) -> Counter[Key]:
 
 
 def _beyond(rules: Sequence[Rule], evidence: object) -> set[Key]:
-    """Return what is beyond its limit, each once."""
+    """Return the rule and place of every exceeded limit."""
     return {
         (rule.name, verdict.place)
         for rule in rules

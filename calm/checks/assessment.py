@@ -37,10 +37,10 @@ from calm.quantities import say
 _Part = TypeVar("_Part", Piece, Clamp)
 
 MISSING = "missing"
-"""The rule of figures that components do not give."""
+"""Rule for values that components lack."""
 
 EXAMPLE = "EXAMPLE"
-"""By whom an example accepts: a report that rests on it is a draft."""
+"""Placeholder in `accept.by` of the examples; a report that relies on it is a draft."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,17 +57,17 @@ class Situation:
 
 @dataclass(frozen=True)
 class MooringInEnvironment:
-    """Hold what was solved and found of a mooring in one environment.
+    """Solutions and findings of a mooring in one environment.
 
     Attributes
     ----------
-    environment : its name
-    leg : of the design in it, which has as many of these as legs
-    situations : what was solved, the first as given
-    findings : all as given, and of the other situations those whose state is worse
-    tighter : of each rule and part the finding of another situation with a greater utilisation
-    accepted : of every situation, whether it is listed or not
-    lacking : of every situation, what rules cannot judge for want of a figure; not in `findings`
+    environment : name of the environment
+    leg : leg of the design; a net has one `MooringInEnvironment` per leg and environment
+    situations : solved situations, starting with the one as given
+    findings : all findings as given, and those of other situations with a worse state
+    tighter : per rule and part, the finding of another situation with a larger utilisation
+    accepted : accepted findings of every situation, including unlisted ones
+    lacking : findings of every situation that lack a value; not in `findings`
     """
 
     environment: str
@@ -80,26 +80,26 @@ class MooringInEnvironment:
 
     @property
     def result(self) -> LegResult | None:
-        """As given; None where that has no equilibrium."""
+        """Result of the situation as given; None without equilibrium."""
         return self.situations[0].result
 
 
 @dataclass(frozen=True, repr=False)
 class Assessment:
-    """All that the design check says of one mooring.
+    """Result of the design check of one mooring.
 
     Attributes
     ----------
-    name : of the mooring, unlike that of any other that is judged with it
-    stands : one for each environment, at least one
-    launch, recovery : in the first environment; None where they could not be solved
+    name : name of the mooring, unique among the moorings checked together
+    stands : one entry per environment, at least one
+    launch, recovery : in the first environment; None if they could not be solved
     backup : a break at each connection above the release, from the top
-    inventory : the pieces and clamps as they come to the deck
-    findings : those of the launch, the recovery and the breaks
-    losses : of each buoyant element above the release, from the top
-    limits : all that it is judged by
-    notices : what there is to say of accepts that have ended, or that no finding needs
-    draws : samples and seed of the probabilities of the findings; None where there are none
+    inventory : pieces and clamps as handled on deck
+    findings : findings on launch, recovery and breaks
+    losses : loss of each buoyant element above the release, from the top
+    limits : limits applied to the mooring
+    notices : notices on accepts that have expired or are unused
+    draws : number of samples and seed of the probabilities; None without probabilities
     """
 
     name: str
@@ -122,40 +122,40 @@ class Assessment:
 
     @property
     def file(self) -> MooringFile:
-        """The file, of several legs that of the first, in its first environment."""
+        """Mooring file in the first environment (of the first leg, if there are several)."""
         return self.stands[0].leg.file
 
     def all_findings(self) -> Iterator[Finding]:
-        """Return those of every environment, then those of launch, recovery and breaks."""
+        """Yield all findings: per environment first, then launch, recovery and breaks."""
         for stand in self.stands:
             yield from stand.findings
         yield from self.findings
 
     @property
     def state(self) -> State:
-        """The worst of all findings; pass where that is accepted or not judged."""
+        """Worst state of all findings; pass if that is accepted or not judged."""
         worst = worst_state(finding.state for finding in self.all_findings())
         return State.PASS if worst in (State.ACCEPTED, State.NOT_JUDGED) else worst
 
     @property
     def verdict(self) -> Conclusion:
-        """What all findings come to."""
+        """Conclusion from all findings."""
         return conclusion_of(self.every_finding())
 
     @property
     def draft(self) -> bool:
-        """Whether it rests on an acceptance of an example, which nobody has signed."""
+        """Whether the assessment relies on an acceptance of an example, which nobody has signed."""
         return any(
             one.accept is not None and one.accept.by == EXAMPLE for one in self.accepted_findings()
         )
 
     def every_finding(self) -> Iterator[Finding]:
-        """Return all findings, with those of other situations that have a greater utilisation."""
+        """Yield all findings, then findings of other situations with a larger utilisation."""
         yield from self.all_findings()
         yield from self.tighter_findings()
 
     def accepted_findings(self) -> list[Finding]:
-        """Return what is accepted, the governing finding of each rule and component."""
+        """Return the governing accepted finding of each rule and component."""
         every = (*(one for stand in self.stands for one in stand.accepted), *self.findings)
         found: dict[tuple[str, str | None], list[Finding]] = {}
         for finding in every:
@@ -164,15 +164,16 @@ class Assessment:
         return [governing(each) for each in found.values()]
 
     def tighter_findings(self) -> Iterator[Finding]:
-        """Of every environment, where another situation has a greater utilisation."""
+        """Yield, for every environment, findings of other situations with a larger utilisation."""
         for stand in self.stands:
             yield from stand.tighter
 
 
 @dataclass(frozen=True)
 class Handling:
-    """Hold what is judged once of a mooring: its launch, recovery and breaks, or why they could not
-    be solved, and how it stands in its first environment; `result` is None without equilibrium.
+    """Evidence for the rules that are evaluated once per mooring: launch, recovery and breaks, or
+    the reasons why they have no solution, and the result in the first environment. `result` is None
+    without equilibrium.
     """
 
     leg: Leg
@@ -185,9 +186,9 @@ class Handling:
 
 @dataclass(frozen=True)
 class Acceptance:
-    """The accepts of a mooring file on a day; only failures and what is unknown are accepted.
+    """Accepts of a mooring file on a given day, which apply only to failures and unknowns.
 
-    `parts` are the pieces and clamps of the line by their labels.
+    `parts` maps labels to the pieces and clamps of the line.
     """
 
     accepts: tuple[Accept, ...]
@@ -196,14 +197,15 @@ class Acceptance:
 
     @classmethod
     def of_file(cls, file: MooringFile, day: date | None) -> Acceptance:
-        """Those of a mooring file on a day, today where none is given."""
+        """Create the accepts of a mooring file on a day (default: today)."""
         parts = {part.label: part for part in parts_of(file.pieces)}
         return cls(file.accepts, day or date.today(), parts)
 
     def of(self, finding: Finding) -> Finding:
-        """The finding, estimated where it rests on an estimate, accepted where the file does.
+        """Mark a finding as estimated if it relies on an estimate, and as accepted if the file
+        accepts it.
 
-        An accept of the rule `missing` covers every rule that lacks a figure of a component.
+        An accept of the rule `missing` covers every rule that lacks a value of that component.
         """
         finding = self._estimated(finding)
         if finding.state not in (State.FAIL, State.UNKNOWN):
@@ -223,11 +225,11 @@ class Acceptance:
         environment: str,
         situation: str = AS_GIVEN,
     ) -> Iterator[Finding]:
-        """Return what a rule says of a mooring in an environment, accepted where it is."""
+        """Yield the findings of a rule for a mooring in an environment, with accepts applied."""
         return (self.of(rule.find(one, mooring, environment, situation)) for one in verdicts)
 
     def _estimated(self, finding: Finding) -> Finding:
-        """What passes by the least that a figure can be is estimated; what fails is unknown."""
+        """Mark a pass that relies on a lower bound as estimated, and a failure as unknown."""
         part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
         own = {} if part is None else part.component.estimates
         used = [one for name, one in own.items() if name in figures]
@@ -243,7 +245,7 @@ class Acceptance:
         )
 
     def notices(self, accepted: Iterable[Finding]) -> Iterator[str]:
-        """Notices of accepts that do not count, or that none of the accepted findings needs."""
+        """Yield notices on accepts that do not apply or are unused."""
         used = {finding.accept for finding in accepted}
         bare = [one for one in self.accepts if None in (one.by, one.until) and one in used]
         if bare:
@@ -262,9 +264,9 @@ class Acceptance:
 
 
 def _accepted(finding: Finding, accept: Accept) -> Finding:
-    """The finding as accepted, unless its tension is greater than the load that is accepted.
+    """Mark a finding as accepted, unless its tension exceeds the accepted load.
 
-    That load is the limit of what has none of its own.
+    If the finding has no limit of its own, the accepted load becomes its limit.
     """
     accepted = replace(finding, state=State.ACCEPTED, accept=accept, unaccepted=finding.state)
     load, tension = accept.load, finding.value

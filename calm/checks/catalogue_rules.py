@@ -41,38 +41,44 @@ ROPE_ROUNDING = 1.12
 """The same for ropes, whose nominal diameter may be the next size below the true one."""
 
 NOMINAL = 1.25
-"""How much more a jacketed wire displaces than its nominal diameter, at most, by what is printed of
-its mass and its weight in water."""
+"""Maximum ratio of the volume displaced by a jacketed wire to that of its nominal diameter, as
+implied by published masses and weights in water.
+"""
 
 LOOSEST = 0.1
-"""Share of its section that a rope displaces at least; the loosest braids displace half."""
+"""Minimum share of its cross-section that a rope displaces; the loosest braids displace half."""
 
 LIGHTEST_FLOAT = 0.01
 """Share of its lift that a float weighs at least: foam 0.02, inflated buoys 0.03."""
 
 STEEL_MODULUS = 210e9
-"""Young's modulus of steel [Pa]; no cable is stiffer than a solid bar of it."""
+"""Young's modulus of steel [Pa]; no cable is stiffer than a solid steel bar of its diameter."""
 
 SOFTEST_WIRE = 0.05
-"""Share of a steel bar's stiffness that a wire has at least; those of the catalogue have 0.17."""
+"""Minimum stiffness of a wire as a share of that of a steel bar; catalogue wires have at least
+0.17.
+"""
 
 STRONGEST_METAL = 350e3
-"""Greatest strength of a metal over its density, that of titanium alloys [Pa/(kg/m³)]. Links and
-shackles of the catalogue bear 45e3 by their mass and length at most."""
+"""Maximum strength-to-density ratio of a metal, from titanium alloys [Pa/(kg/m³)]. Links and
+shackles of the catalogue reach 45e3, computed from their mass and length.
+"""
 
 HOLLOW = 0.5
-"""Least density of what joins pieces, as a share of its material's; those known have 0.85."""
+"""Minimum density of connecting hardware as a share of its material's; known hardware has 0.85."""
 
 ANCHOR_SPEEDS = 0.3, 15.0
-"""Least and greatest speed at which an anchor alone falls, by its weight and `kt` [m/s]; those
-known 1.2 to 5.6, a block of 5 t of steel 12."""
+"""Minimum and maximum terminal speed of a falling anchor from its weight and `kt` [m/s]; known
+anchors fall at 1.2 to 5.6, a block of 5 t of steel at 12.
+"""
 
 LEAST_LIFT = 0.1
-"""Least buoyancy of a float, as a share of the water that a sphere of its diameter displaces; those
-of the catalogue have 0.23, glass in a wide hard hat, or more."""
+"""Minimum buoyancy of a float as a share of the weight of water in a sphere of its diameter;
+catalogue floats have at least 0.23 (glass in a wide hard hat).
+"""
 
 DEEPEST_WATER = 11000.0
-"""Greatest depth of the ocean, in round figures [m]."""
+"""Maximum depth of the ocean, rounded [m]."""
 
 _NO_SOURCE = "does not say where its figures come from (`source`)"
 
@@ -118,8 +124,8 @@ def check_catalogue(
 
 
 def _sources(component: Component | Outline) -> Iterator[str]:
-    """Yield what is wrong with the sources: none, one of a figure that is missing, or of a figure
-    that is given though it was searched for in vain.
+    """Yield faults of the sources: no source, a source of an absent value, or a value that is
+    present although `searched` lists it as unpublished.
     """
     known = KINDS[component.kind].model_fields
     given = {name for name in known if getattr(component, name, None) is not None}
@@ -135,7 +141,7 @@ def _sources(component: Component | Outline) -> Iterator[str]:
 
 
 def impossible(component: Component) -> Iterator[str]:
-    """Yield what no component of its kind, size and material can be, bear or weigh."""
+    """Yield values that are impossible for a component of its kind, size and material."""
     mass, volume, rating = component.mass, component.displaced_volume, component.depth_rating
     heavy = [*wet_weight_out_of_bounds(component)]
     yield from heavy
@@ -190,7 +196,7 @@ def impossible(component: Component) -> Iterator[str]:
 
 
 def _of_a_load(component: Component) -> Iterator[str]:
-    """Yield a load that no piece of its kind, size and mass has."""
+    """Yield a load that is impossible for a component of its kind, size and mass."""
     most, size = inf, ""
     if not isinstance(component, Flexible) and not materials.fibre_of(component.material):
         mass, length = component.mass, component.length
@@ -205,10 +211,11 @@ def _displaced(component: Component, mass: float) -> float:
 
 
 def _of_a_rope(rope: Cable) -> Iterator[str]:
-    """Yield what makes a rope heavier, stiffer, stronger or more buoyant than its section allows.
+    """Yield values that make a rope heavier, stiffer, stronger or more buoyant than its section
+    allows.
 
-    Its weight is held against a solid bar: of its `density`, else of that of its `material` where
-    that is known, else of steel.
+    Its weight is compared with a solid bar of its `density`, else of its `material` if known, else
+    of steel.
     """
     section = rope_section(rope)
     density = rope.density or materials.density_of(rope.material) or STEEL_DENSITY
@@ -249,11 +256,13 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
 
 
 LEAST_BODY_DRAG = 0.02
-"""Least drag area of a body over its volume to the power 2/3: that of streamlined bodies along the
-flow (Hoerner 1965, Fluid-Dynamic Drag, chapter VI). Bodies of the catalogue have 0.6 to 10."""
+"""Minimum ratio of the drag area of a body to its volume^(2/3), from streamlined bodies aligned
+with the flow (Hoerner 1965, Fluid-Dynamic Drag, chapter VI). Bodies of the catalogue have 0.6 to
+10.
+"""
 
 SMALL_BODY = 1e-3
-"""Volume up to which a body's drag may be left out, as that of shackles often is [m³]."""
+"""Volume up to which the drag of a body may be neglected, as is common for shackles [m³]."""
 
 
 def _drags_out_of_range(component: Component) -> Iterator[str]:
@@ -299,9 +308,9 @@ def _envelope(component: Component) -> float | None:
 
 @rule("figures", once=True)
 def figures(handling: Handling) -> Iterator[Verdict]:
-    """Return what no component of its size and material has, as a load in N that was in kN.
+    """Report values that are impossible or doubtful, such as a load in N that was meant in kN.
 
-    What hangs several times on the line is named once.
+    A component that occurs several times is reported once.
     """
     named: set[tuple[str, str]] = set()
     for key in handling.leg.file.looser:
@@ -340,12 +349,12 @@ LOADS = ("working_load", "breaking_load")
 """Either of them lets the strength be judged."""
 
 TILTED_ROLES = ("instrument", "release")
-"""What stands upright to do its work."""
+"""Roles that need to be upright to work."""
 
 
 @dataclass(frozen=True)
 class MissingFigures:
-    """Hold what a component does not give: `searched` was looked for and is printed nowhere."""
+    """Missing values of a component; `searched` lists values that are known to be unpublished."""
 
     id: str
     figures: tuple[str, ...]
@@ -353,9 +362,9 @@ class MissingFigures:
 
 
 def missing_figures(definitions: Mapping[str, Defined]) -> list[MissingFigures]:
-    """The components of a catalogue that lack a figure, and which.
+    """List the components of a catalogue that lack values, with those values.
 
-    Assemblies give no figures of their own.
+    Assemblies are skipped because they have no values of their own.
     """
     found = []
     for identifier, definition in definitions.items():

@@ -23,16 +23,16 @@ Number = float | None
 
 @dataclass(frozen=True)
 class Compared:
-    """A figure of two designs.
+    """Value of a quantity in two designs.
 
     Attributes
     ----------
-    name : dotted, of what and which figure: ``top.depth``
-    title : for people
-    quantity : of `calm.quantities`; "" of a word
-    before, after : [SI, degrees], or a word; None where it is not known
-    states : of a margin, how its rule judges
-    of_a_part : whether it is of a piece or a clamp
+    name : dotted name, such as ``top.depth``
+    title : title for display
+    quantity : name in `calm.quantities`; "" for a text
+    before, after : values in SI units or degrees, or texts; None if unknown
+    states : for a margin, the states of its rule in both designs
+    of_a_part : whether the value belongs to a piece or a clamp
     """
 
     name: str
@@ -46,14 +46,14 @@ class Compared:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two designs, or a design and what was deployed of it.
+    """Comparison of two designs, or of a design with its deployment.
 
     Attributes
     ----------
     names : what each is called
-    differences : between what was read
-    figures : side by side
-    notes : why figures are missing
+    differences : differences between the two files
+    figures : values side by side
+    notes : reasons for missing values
     """
 
     names: tuple[str, str]
@@ -62,7 +62,7 @@ class Comparison:
     notes: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON object; None stands where a figure is unknown."""
+        """Return the JSON object; unknown values are None."""
         found = self.differences
         return {
             "names": list(self.names),
@@ -79,13 +79,13 @@ class Comparison:
 
 
 _Solved = tuple[Result | NoEquilibrium, Assessment | None]
-"""The result of a design or why it has none, and the judgement on what is no tow."""
+"""Result of a design, or the reason for having none, and its assessment (None for a tow)."""
 _Figures = dict[str, tuple[str, str, Number | str]]
 """Title, quantity and value by name."""
 
 
 def comparison_of(names: tuple[str, str], before: Design, after: Design) -> Comparison:
-    """Solve and judge two moorings or nets, or two tows; one that does not stand is compared too.
+    """Solve, assess and compare two moorings, nets or tows, even if one has no equilibrium.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def _figures_of(design: _Solved) -> _Figures:
 
 
 def _figures_of_leg(result: LegResult) -> _Figures:
-    """Return where the ends of a single line are, and what they bear."""
+    """Collect the end positions and end tensions of a single line."""
     point, body = result.tow_point, result.body
     if point is not None and body is not None:
         return {
@@ -166,7 +166,7 @@ def _figures_of_leg(result: LegResult) -> _Figures:
 
 
 def _figures_of_legs(result: Result) -> _Figures:
-    """Return where its nodes and free ends are, and what its anchors bear."""
+    """Collect the positions of nodes and free ends, and the anchor loads of a net."""
     found: _Figures = {}
     for node in result.nodes:
         found[f"{node.name}.depth"] = (f"depth of node {node.name}", "depth", node.depth)
@@ -184,7 +184,7 @@ def _figures_of_legs(result: Result) -> _Figures:
 
 
 def _parts(found: Differences, designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
-    """Of what measures or is cut: where it is, and how long it was cut."""
+    """Compare depth and tilt of instruments, and cut lengths of cables and chains."""
     first, second = (
         {} if isinstance(each, NoEquilibrium) else rows_by_place(each) for each, _ in designs
     )
@@ -205,7 +205,7 @@ def _parts(found: Differences, designs: tuple[_Solved, _Solved]) -> Iterator[Com
 
 
 def _margins(designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
-    """What governs each rule in each design: its utilisation, or its margin where it has none."""
+    """Compare the governing utilisation of each rule, or its margin if it has no utilisation."""
     judged = [assessment for _, assessment in designs if assessment is not None]
     if len(judged) < 2:
         return
@@ -227,7 +227,7 @@ def _margins(designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
 
 
 def _finite(value: Number | str) -> Number | str:
-    """A figure as JSON has it: None for a utilisation without any capacity."""
+    """Convert an infinite value to None, for JSON."""
     return None if isinstance(value, float) and not isfinite(value) else value
 
 

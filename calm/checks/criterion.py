@@ -1,7 +1,6 @@
-"""A criterion: what a part of the line may not pass, or fall short of; each stands once.
+"""Criteria: upper or lower limits on a quantity of a part of the line.
 
-The design check puts it into words for one result, the statistics of a batch count it in every
-profile.
+The design check phrases a criterion for one result; batch statistics count it in every profile.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -29,10 +28,10 @@ class JudgedPart:
 
     Attributes
     ----------
-    label, place : unlike any other of the line
-    component : its definition
-    index : of the piece from the top, of a clamp that of the piece it is on
-    clamp : place among all clamps down the line, as in results; None of a piece
+    label, place : unique within the line
+    component : definition of the part
+    index : index from the top of the piece, or of the piece that carries the clamp
+    clamp : index among all clamps of the line, as in results; None for a piece
     """
 
     label: str
@@ -62,21 +61,21 @@ def parts_of(leg: Leg) -> list[JudgedPart]:
 
 @dataclass(frozen=True)
 class Criterion:
-    """Hold what a rule allows a part of the line, or the line as a whole.
+    """Limit on a quantity of a single part, or of the whole line.
 
     Attributes
     ----------
-    part : that is judged; the top or the anchor for the line as a whole
-    quantity : a name of `READINGS`
-    limit : SI units and degrees; None where a figure that it takes is missing
-    words : message and remedy for a value, NaN where it is not known
-    least : whether values may not fall short of the limit, rather than not pass it
-    beyond : state of a value that does: fail or warn
-    silent : whether a value that is NaN is nothing to judge, rather than unknown
-    source : of the limit; "" for that of the rule
-    lacks : key of the component that is missing if there is no limit
-    stated : value and limit as people state them, of the same margin, where not these
-    stated_least : whether the stated value may not fall short of the stated limit
+    part : part to check; the top or the anchor for the line as a whole
+    quantity : a key of `READINGS`
+    limit : limit in SI units or degrees; None if a value that it requires is missing
+    words : function that returns message and remedy for a value (NaN if unknown)
+    least : whether the limit is a lower limit
+    beyond : state if the limit is exceeded: fail or warn
+    silent : whether NaN means that the criterion does not apply, rather than unknown
+    source : source of the limit; "" for the source of the rule
+    lacks : missing key of the component if there is no limit
+    stated : function that returns value and limit in the customary form, with the same margin
+    stated_least : whether the stated limit is a lower limit
     """
 
     part: JudgedPart
@@ -92,7 +91,7 @@ class Criterion:
     stated_least: bool = False
 
     def verdict(self, result: LegResult) -> Verdict | None:
-        """On the part in a result; None where there is nothing to judge."""
+        """Evaluate the criterion in a result; None if it does not apply."""
         value = READINGS[self.quantity](result, self.part)
         if isnan(value) and self.silent:
             return None
@@ -111,7 +110,7 @@ class Criterion:
 
 
 def verdicts(criteria: Iterable[Criterion], result: LegResult) -> Iterator[Verdict]:
-    """The worst verdict on each part, from criteria that follow one another part by part."""
+    """Yield the most severe verdict on each part; `criteria` must be ordered by part."""
     for _, group in groupby(criteria, key=lambda criterion: criterion.part):
         found = [verdict for each in group if (verdict := each.verdict(result)) is not None]
         if found:
@@ -138,7 +137,7 @@ def _tilt(result: LegResult, part: JudgedPart) -> float:
 
 
 def _depth(result: LegResult, part: JudgedPart) -> float:
-    """The greatest of a part; NaN of a piece that is at the surface."""
+    """Maximum depth of a part; NaN for a piece at the surface."""
     if part.clamp is not None:
         return float(result.clamps.depth[part.clamp])
     top, bottom = (
@@ -149,7 +148,9 @@ def _depth(result: LegResult, part: JudgedPart) -> float:
 
 
 def _offset(result: LegResult) -> float:
-    """Of the top from the anchor, which in a net need not be at the origin."""
+    """Horizontal distance of the top from the anchor; in a net, the anchor need not be at the
+    origin.
+    """
     anchor = result.components[-1]
     return hypot(result.top.x - anchor.x_top, result.top.y - anchor.y_top)
 
@@ -172,18 +173,19 @@ READINGS: dict[str, Callable[[LegResult, JudgedPart], float]] = {
         1.0 - result.top.used_buoyancy if result.type == "surface" else 0.0
     ),
 }
-"""What is read of a part in a result: a tension of the whole piece is the greatest on it, that of a
-least tension leaves out what lies on the seabed, a slide is H + friction × V."""
+"""Functions that read each quantity from a result. `tension` is the maximum over the whole piece,
+`least_tension` excludes line on the seabed, `slide` is H + friction × V.
+"""
 
 
 def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
-    """Every limit that the design check judges a mooring by.
+    """Return every limit that the design check applies to a mooring.
 
-    One that the design does not give has its default; one that has none and is not given is not
-    used. The friction of an anchor that gives its own stands for `anchor_friction`. What the line
-    lets a component bear beyond its own definition is a limit that departs from it; so is every
-    other setting that only flatters. Of a mooring meant for the surface no depth of its top is
-    asked for.
+    Limits that the design does not set have their defaults; limits without default apply only if
+    set. The friction coefficient of an anchor, if specified, overrides `anchor_friction`. A load
+    that the line allows beyond the component's own definition counts as a departure from a limit,
+    and so does every other setting that only makes results look better. A mooring intended for the
+    surface has a limit on the depth of its top only if the design sets one.
     """
     given = file.checks.minimum_top_depth is not None
     used = (
@@ -211,7 +213,6 @@ def _flattering(file: MooringFile) -> Iterator[LimitKey]:
 
 @lru_cache
 def _keys(checks: Checks, friction: float | None) -> tuple[LimitKey, ...]:
-    """The limits of a file, with the friction that its anchor gives."""
     keys = limit_keys(checks)
     if friction is None:
         return tuple(keys)
@@ -219,7 +220,7 @@ def _keys(checks: Checks, friction: float | None) -> tuple[LimitKey, ...]:
 
 
 def cited(file: MooringFile, *names: str) -> str:
-    """The design, where a limit of one of these names departs from its default; else ""."""
+    """Describe the named limits that differ from their defaults; "" if there are none."""
     return "; ".join(
         f"The design's own `{key.name}`, {said(key, key.value)} in place of "
         f"{said(key, key.default)}"
@@ -229,7 +230,7 @@ def cited(file: MooringFile, *names: str) -> str:
 
 
 def said(key: LimitKey, value: float | None) -> str:
-    """A value or a default of a limit with its unit, a time in days; a dash for none."""
+    """Format a value of a limit with its unit (times in days), or a dash for None."""
     if value is None:
         return "-"
     if key.dimension == "time":

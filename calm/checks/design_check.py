@@ -92,7 +92,7 @@ def stands_of(design: Design, name: str, day: date | None = None) -> list[Moorin
 
 
 def failed_stand(design: Design, name: str, failure: NoEquilibrium) -> MooringInEnvironment:
-    """Stand of a design without equilibrium, or of one that CALM failed to judge."""
+    """Record a design that has no equilibrium, or that CALM could not check."""
     environment, situation = design.environment.name or OWN, Situation(AS_GIVEN, None, failure)
     return assess.judged_stand((situation,), design.legs[0], name, environment)
 

@@ -22,11 +22,12 @@ _Told = tuple[LegResult, Verdict]
 
 @rule("drag-coefficient")
 def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_Told]:
-    """Spheres and cylinders whose flow is faster than their constant coefficient holds for.
+    """Check that the constant drag coefficients of spheres and cylinders cover their Reynolds
+    numbers.
 
-    One verdict on a mooring, with the result that it is of: that of the environment with the
-    greatest Reynolds number beyond its range. It is a warning if the curve of a smooth shape lets
-    the line be knocked down further, and else not judged.
+    Yields at most one verdict per mooring, with the result of the environment that exceeds the
+    range most. The verdict is a warning if the drag curve of a smooth shape increases the
+    knockdown, and not judged otherwise.
     """
     fast = [(result, fast_pieces(result)) for result in results]
     found = [(rows[0], result, rows) for result, rows in fast if rows]
@@ -45,8 +46,8 @@ def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_Told]:
 
 
 def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
-    """What the curves of smooth shapes for the fast pieces make of the knockdown, or of the offset
-    of a line at the surface; and whether that is worse.
+    """Describe the effect of smooth-shape drag curves for the fast pieces on the knockdown, or on
+    the offset of a line at the surface; the flag is true if the result is worse.
     """
     file = result.file
     if file.solver.drag == "reynolds" or result.leg.of_several:

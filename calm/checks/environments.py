@@ -53,8 +53,8 @@ def environment(legs: Sequence[Leg]) -> Iterator[Found]:
 def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
     """Yield a warning if the stronger current has much weaker levels than the ordinary one.
 
-    A current is the stronger one by the name of its environment, or by its maximum. If only the
-    maximum says so, the upper and lower ends of the profile may be weaker.
+    A current counts as stronger by the name of its environment, or by its maximum. If only the
+    maximum is larger, the upper and lower ends of the profile may be weaker.
     """
     first, second = (each.file.environment for each in (ordinary, other))
     levels = np.union1d(first.current.depth, second.current.depth)

@@ -20,7 +20,7 @@ from calm.physics.materials import STEEL_DENSITY, Material, materials_in
 from calm.quantities import say
 
 GREATEST_STRENGTH = 4e9
-"""Greatest tensile strength of any fibre or wire, for a cable of unknown material [Pa]."""
+"""Upper bound on the tensile strength of any fibre or wire, for cables of unknown material [Pa]."""
 
 ROPE_EFFICIENCY = 0.6
 """Maximum breaking stress of a rope over its nominal section, as a share of its yarn strength.
@@ -151,7 +151,7 @@ def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator
 
     Parameters
     ----------
-    most, size : greatest load of a component that is no cable or chain [N], inf if unknown, and
+    most, size : maximum load of a component other than cable or chain [N] (inf if unknown), and
         its basis
     """
     least = 0.0
@@ -228,7 +228,7 @@ def contradicted_material(component: Component | Outline) -> Iterator[str]:
 
 
 def _alike(one: Material, other: Material) -> bool:
-    """Whether two materials are about equally dense, so that either name will do."""
+    """Whether two materials have densities within 10 %, so that either name is acceptable."""
     if one.density is None or other.density is None:
         return one.family == other.family or one.density is other.density
     return abs(one.density - other.density) < 0.1 * other.density
@@ -245,7 +245,7 @@ def rope_section(component: Flexible) -> float:
 
 
 def _load_bearing(rope: Cable) -> list[Material]:
-    """Return the metals of a rope except lead, else its fibres; none if a density is unknown."""
+    """Return the metals of a rope except lead, else its fibres; empty if a density is unknown."""
     named = materials_in(rope.material)
     metals = [one for one in named if one.family == "metal" and one.name != "lead"]
     found = metals or [one for one in named if one.family == "fibre"]

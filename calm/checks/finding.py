@@ -20,16 +20,16 @@ OWN = "own"
 """Name of the environment that a mooring file gives itself."""
 
 ON_THE_WAY = "launch, recovery, breaks"
-"""What stands in its place for what is judged of a mooring outside its environments."""
+"""Label used instead of an environment for rules that are evaluated once per mooring."""
 
 
 class State(StrEnum):
-    """Tell how a rule judges, the least grave first.
+    """State of a rule, from the least to the most severe.
 
-    Not judged is a rule without a limit or a plan to judge by. Unknown, where a figure that the
-    rule needs is missing, is graver than a warning: it may be a failure. Accepted is a failure or
-    an unknown that the design accepts with a reason; estimated passes by the low bound of an
-    `estimate`, and not by a figure that anyone prints.
+    A rule is not judged if it has no limit or no plan for comparison. Unknown means that the rule
+    lacks a value; it is more severe than a warning because it may be a failure. Accepted is a
+    failure or an unknown that the design accepts with a reason. Estimated means a pass by the lower
+    bound of an `estimate` instead of a published value.
     """
 
     PASS = "pass"
@@ -42,12 +42,12 @@ class State(StrEnum):
 
     @property
     def severity(self) -> int:
-        """0 for what passes, more the graver."""
+        """Rank of the state: 0 for pass, larger for more severe states."""
         return _SEVERITIES[self]
 
     @property
     def sign(self) -> str:
-        """Return what stands before a verdict or after a figure, legible without colour."""
+        """Symbol of the state, legible without colour."""
         return "✓–◦≈~?!"[self.severity]
 
 
@@ -55,9 +55,9 @@ _SEVERITIES = {state: severity for severity, state in enumerate(State)}
 
 
 def worst_state(states: Iterable[State]) -> State:
-    """The gravest of some states; pass of none.
+    """Return the most severe state, or pass if there are none.
 
-    What is not judged counts only beside nothing that is: it says nothing of a mooring.
+    `NOT_JUDGED` counts only if all states are `NOT_JUDGED`.
     """
     every = {*states}
     judged = every - {State.NOT_JUDGED} or every
@@ -65,11 +65,11 @@ def worst_state(states: Iterable[State]) -> State:
 
 
 class Conclusion(StrEnum):
-    """What the design check concludes of a mooring, the best first.
+    """Conclusion of the design check for a mooring, from best to worst.
 
-    A mooring is incomplete if a rule could not judge for want of a figure; it passes by acceptance
-    if the design accepts what fails, or a utilisation above 1. Open items are warnings, estimates
-    and unknowns that are accepted; what is not judged is none.
+    A mooring is incomplete if a rule lacks a value. It passes by acceptance if the design accepts a
+    failure or a utilisation above 1. Open items are warnings, estimates and accepted unknowns;
+    rules that are not judged do not count.
     """
 
     PASSES = "passes"
@@ -80,21 +80,21 @@ class Conclusion(StrEnum):
 
     @property
     def words(self) -> str:
-        """The conclusion as people say it, such as ``passes with open items``."""
+        """Conclusion in words, such as ``passes with open items``."""
         return self.value.replace("-", " ")
 
 
 Sense = Literal["<=", ">="]
-"""How a value is to keep to its limit."""
+"""Relation between a value and its limit."""
 
 
 @dataclass(frozen=True)
 class Lack:
-    """A figure of a component without which a rule cannot judge.
+    """Missing value of a component that a rule requires.
 
     Attributes
     ----------
-    label : of a piece or clamp that is such a component
+    label : label of a piece or clamp that uses the component
     quantity : key of the component
     """
 
@@ -104,15 +104,15 @@ class Lack:
 
 @dataclass(frozen=True)
 class MissingFigure:
-    """A figure that a component does not give, once for all rules and pieces.
+    """Missing value of a component, with all rules and pieces that need it.
 
     Attributes
     ----------
     component_id : as in `use`
     quantity : key of the component
-    needed_by : names of the rules that cannot judge without it
-    pieces, places : labels and places of the pieces and clamps that are not judged
-    class_estimate : estimate of the figure, which is too low to settle the rules; None without one
+    needed_by : names of the rules that require the value
+    pieces, places : labels and places of the affected pieces and clamps
+    class_estimate : estimate of the value, too low to satisfy the rules; None if there is none
     """
 
     component_id: str
@@ -136,20 +136,20 @@ class MissingFigure:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Hold what a rule says of a mooring, or of one of its components.
+    """Verdict of a rule on a mooring, or on one of its components.
 
     Attributes
     ----------
-    component, place : label and place of a piece or a clamp; None of the mooring as a whole
-    value, limit : SI units and degrees; None where unknown
-    sense : how the value is to keep to the limit; None without a limit
-    state : of the rule on it
-    message : what was found, with both figures
-    remedy : what to change; None where nothing need be
-    source : of the limit, where it is not that of the rule
-    lacks : the figure that the rule needs and a component does not give
-    missing : of the rule `missing` alone, the figure with all rules and pieces
-    case : code of the load case, where it is not that of the environment and situation
+    component, place : label and place of a piece or clamp; None for the mooring as a whole
+    value, limit : SI units or degrees; None if unknown
+    sense : required relation of value and limit; None without a limit
+    state : state of the rule
+    message : text of the verdict, with value and limit
+    remedy : suggested change; None if no change is needed
+    source : source of the limit; "" for the source of the rule
+    lacks : missing value of a component that the rule requires
+    missing : in verdicts of the rule `missing` only, the value with its rules and pieces
+    case : code of the load case, if it differs from that of the environment and situation
     """
 
     component: str | None
@@ -167,7 +167,7 @@ class Verdict:
 
     @property
     def margin(self) -> float | None:
-        """How far the value keeps within the limit, in its unit, negative where it does not."""
+        """Margin of the value to its limit, in its unit; negative if the limit is exceeded."""
         if self.value is None or self.limit is None or self.sense is None:
             return None
         return self.limit - self.value if self.sense == "<=" else self.value - self.limit
@@ -188,7 +188,7 @@ class Verdict:
 
     @property
     def rank(self) -> tuple[int, float]:
-        """Return what sorts verdicts, the worst first: the state, then the utilisation."""
+        """Sort key of verdicts, worst first: state, then utilisation."""
         used = self.utilisation
         return -self.state.severity, inf if used is None else -used
 
@@ -210,9 +210,10 @@ def at_most(
     *,
     least: bool = False,
 ) -> Verdict:
-    """The verdict on a value that may not pass a limit; `beyond` is its state where it does.
+    """Create the verdict on a value with an upper limit; `beyond` is its state if the limit is
+    exceeded.
 
-    With `least` it may not fall short of it.
+    With `least`, the limit is a lower limit.
     """
     sense: Sense = ">=" if least else "<="
     keeps = value >= limit if least else value <= limit
@@ -233,12 +234,12 @@ def unknown(
     lacks: str = "",
     of: LinePart | None = None,
 ) -> Verdict:
-    """The verdict if the rule cannot judge.
+    """Create the verdict of a rule that lacks a value or does not apply.
 
     Parameters
     ----------
-    lacks : key of the component whose figure is missing, if that is the reason
-    of : piece or clamp that lacks it, if it is another than the part judged
+    lacks : missing key of the component, if that is the reason
+    of : piece or clamp whose key is missing, if it differs from `part`
     """
     lacking = of or part
     lack = Lack(lacking.label, lacks) if lacks and lacking is not None else None
@@ -262,21 +263,21 @@ def verdict_on(
 
 @dataclass(frozen=True)
 class Rule:
-    """A named rule: what it judges, the quantity of its values, and its source.
+    """Named rule: evaluation function, quantity of its values, and source.
 
     Attributes
     ----------
-    name : as in findings, e.g. ``depth-rating``
-    title : for people
-    quantity : of `calm.quantities`, whose unit its values and limits have
-    source : of the rule and of its default limit
-    judge : from the evidence to verdicts: a `LegResult`, in every environment and situation
-    of_anchor : whether it judges the anchor, and nothing where a line has none
-    once : whether it judges a `Handling`, once of a mooring
-    situation : of what it judges once
-    case : code of the load case of what it judges once: L launch, R rise, B break, 0 still water
-    counted : from the evidence to the verdicts counted in samples, if they differ from `judge`
-    criteria : from a `Leg` to what is asked of it, where that can be counted in many profiles
+    name : name used in findings, e.g. ``depth-rating``
+    title : title for display
+    quantity : name in `calm.quantities` that determines the unit of values and limits
+    source : source of the rule and of its default limit
+    judge : function from evidence (a `LegResult` per environment and situation) to verdicts
+    of_anchor : whether the rule checks the anchor, and is skipped if there is none
+    once : whether the rule is evaluated once per mooring, with a `Handling` as evidence
+    situation : situation of a rule that is evaluated once
+    case : load case of a rule that is evaluated once: L launch, R rise, B break, 0 still water
+    counted : like `judge`, but yields the verdicts that are counted in samples, if different
+    criteria : function from a `Leg` to criteria that can be counted in many profiles
     """
 
     name: str
@@ -329,12 +330,12 @@ def rule(
 
 @dataclass(frozen=True, kw_only=True)
 class Finding(Verdict):
-    """A verdict, and which rule gave it of which mooring in which environment and situation.
+    """Verdict of a rule on a mooring in an environment and a situation.
 
-    `source` is that of the rule and its limit; `situation` tells what was changed for it,
-    `AS_GIVEN` where nothing was; `accept` is what the design accepts it by, `unaccepted` the state
-    without that; both are None otherwise. `probability` is that its limit is broken, where that was
-    counted.
+    `source` is the source of the rule and its limit. `situation` names the change to the design, or
+    is `AS_GIVEN`. `accept` is the entry that accepts the finding, `unaccepted` its state without
+    that entry; both are None otherwise. `probability` is the probability of exceeding the limit, if
+    it was computed.
     """
 
     mooring: str
@@ -347,7 +348,7 @@ class Finding(Verdict):
 
     @property
     def utilisation(self) -> float | None:
-        """Demand over capacity; None as well where a rule has no like quantity for them."""
+        """Demand over capacity; None if the rule has no such ratio."""
         return super().utilisation if RULE_TEXTS[self.rule].has_ratio else None
 
     def to_dict(self) -> dict[str, Any]:
@@ -376,7 +377,7 @@ class Finding(Verdict):
 
     @property
     def places(self) -> tuple[Place, ...]:
-        """Places of all pieces and clamps that the finding concerns; none of the whole line."""
+        """Places of all pieces and clamps concerned; empty for the whole line."""
         if self.missing is not None:
             return self.missing.places
         return () if self.place is None else (self.place,)
@@ -391,16 +392,16 @@ def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
 
 
 def worst_of(findings: Iterable[Finding]) -> Finding:
-    """The first of those that are as bad as any; one that is not judged only if all are."""
+    """Return the first of the most severe findings, ignoring those not judged if possible."""
     found = [*findings]
     judged = [one for one in found if one.state is not State.NOT_JUDGED]
     return min(judged or found, key=lambda one: one.rank)
 
 
 def governing(findings: Iterable[Finding]) -> Finding:
-    """The finding with the greatest utilisation, of whatever state; the worst where none has one.
+    """Return the finding with the largest utilisation, else the most severe finding.
 
-    Of findings with the same utilisation the worst is taken.
+    If utilisations are equal, the most severe of these findings is returned.
     """
     found = [*findings]
     used = [one for one in found if one.utilisation is not None]
@@ -419,7 +420,7 @@ def _is_overridden(finding: Finding) -> bool:
 
 
 def conclusion_of(findings: Iterable[Finding]) -> Conclusion:
-    """What all findings of a mooring come to."""
+    """Conclude from all findings of a mooring."""
     found = [*findings]
     states = {one.state for one in found}
     if State.FAIL in states:

@@ -1,10 +1,10 @@
-"""Growth on a line: what it adds to the drag and to the weight of all that it reaches.
+"""Biofouling: its effect on drag and weight of the line.
 
-It is a layer of one thickness around everything from the surface down to a depth in still water.
-The diameter of a cable grows by twice the thickness; the drags of a rigid piece grow as the areas
-that they are of; of a body without a size, as that of a sphere of the same area, which is its
-`drag_area`, or what its drag comes to with a coefficient of 1. The growth displaces water; what it
-weighs in it follows from its density, and is nothing where none is given.
+Growth is a layer of uniform thickness on everything above a given depth in still water. The
+diameter of a cable increases by twice the thickness. The drag of a rigid piece increases with its
+projected areas; bodies without dimensions are treated as spheres whose projected area is the
+`drag_area`, or the area that gives its drag with a coefficient of 1. The growth displaces water,
+and its weight in water follows from its density; without a density it is weightless.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,15 +23,15 @@ from calm.physics import drag
 from calm.physics.seawater import REFERENCE_DENSITY
 
 CHAIN_BREADTH = 1.8
-"""Diameter of the cylinder that displaces what a chain does, over that of its bar: OrcaFlex."""
+"""Diameter of the cylinder that displaces as much as a chain, over its bar diameter (OrcaFlex)."""
 
 
 def grown(
     pieces: Sequence[files.Piece], given: LegResult, fouling: files.Fouling
 ) -> tuple[files.Piece, ...]:
-    """The pieces with growth on all that is above a depth in still water.
+    """Return the pieces with growth on everything above a given depth in still water.
 
-    A cable or chain that reaches deeper is parted there, both parts under its label.
+    A cable or chain that extends deeper is split there; both parts keep its label.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def grown_component(
 
     Parameters
     ----------
-    gravity : [m/s²]
+    gravity : gravity [m/s²]
     """
     if isinstance(component, files.Anchor):
         return component
@@ -134,7 +134,7 @@ def _larger(
 
 
 def _scales(component: files.Component, kn: float, t: float) -> tuple[float, float, float]:
-    """By how much the areas across and along the axis grow, and the volume of the growth [m³]."""
+    """Ratios of the areas across and along the axis with and without growth; growth volume [m³]."""
     if isinstance(component, files.Cylinder):
         d, length = component.diameter, component.length
         wide, long = d + 2.0 * t, length + 2.0 * t

@@ -17,29 +17,26 @@ from calm.files import LinePart
 from calm.quantities import QUANTITIES, say
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
-"""Speed above which an anchor may bury itself or break what is on it [m/s]."""
+"""Touchdown speed above which an anchor may bury itself or damage instruments [m/s]."""
 USUAL_RISE_SPEED = 0.7
-"""A rise slower than this is warned of: it takes hours from the deep sea, and drifts away [m/s]."""
+"""Rise speed below which the check warns [m/s]: slow lines take hours to surface, and drift."""
 FAST_RISE_SPEED = 3.0
-"""A rise faster than this is warned of: the floats leap beside the ship, the line loops [m/s]."""
+"""Rise speed above which the check warns [m/s]: floats breach near the ship, and the line loops."""
 
 
 def is_hauled_in(handling: Handling) -> bool:
-    """Whether a line without a release is hauled in from its float at the surface, anchor and all.
-
-    Nothing of it rises by itself.
-    """
+    """Whether a line has a surface float and no release, and so is recovered by hauling."""
     return handling.leg.file.release is None and reaches_the_surface(handling.leg)
 
 
 @rule("backup", once=True, case="B")
 def backup(handling: Handling) -> Iterator[Verdict]:
-    """Net buoyancy of what holds the release after the worst break, or the worst loss of a float.
+    """Check the net buoyancy left to recover the release after a break or the loss of a float.
 
-    Breaks are those above the back-up floats; lost is any one buoyant element. It should be a tenth
-    of the weight it lifts, and raise it at `minimum_rise_speed`. A compact line below a single
-    float has no back-up. A surface mooring without floats below its buoy has none either, and is
-    hauled in by it.
+    Breaks above the back-up floats are considered, and the loss of any one buoyant element. The net
+    buoyancy should be a tenth of the weight it lifts, and raise it at `minimum_rise_speed`. A
+    compact line below a single float has no back-up buoyancy. Neither has a surface mooring without
+    floats below its buoy, which is recovered by hauling.
     """
     if handling.leg.file.release is None:
         if is_hauled_in(handling):
@@ -116,11 +113,13 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
             source = cited(file, "launch_safety_factor")
         message = f"{bears}; its {load} is {say('tension', limit)}."
         if tension > limit and not launch.anchor_drag_known:
-            message += " This assumes an anchor without drag; its own is not known."
+            message += " The drag of the anchor is unknown and was neglected."
             remedy, anchor = "Give the anchor's `kt`.", file.pieces[-1]
             yield unknown(piece, message, remedy, tension, lacks="kt", of=anchor)
             continue
-        remedy = "Take a stronger one, or lower the anchor on a parachute or a wire."
+        remedy = (
+            "Use a stronger component, or slow the anchor with a parachute or lower it on a wire."
+        )
         yield at_most(piece, tension, limit, message, remedy, source=source)
 
 
@@ -173,7 +172,7 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
         message = f"Released below {lowest.label}, it does not rise"
     message += f"; {say('speed', limit)} is required."
     if rise.in_still_water:
-        message += " That is in still water: in the current no steady rise was found."
+        message += " This is the speed in still water; no steady rise was found in the current."
     remedy = "Add buoyancy above the release, or remove weight."
     source = cited(handling.leg.file, "minimum_rise_speed")
     verdict = at_least(lowest, rise.rise_speed, limit, message, remedy, source=source)
@@ -210,7 +209,7 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
 
 
 def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
-    """Of a line whose float is at the surface: whether its lower end comes up by itself."""
+    """Report whether the lower end of a line with a surface float surfaces without hauling."""
     if isnan(arrival):
         depth = say("depth", float(rise.hangs_at[rise.released]))
         message = f"Once free, {lowest.label} hangs from the float, down to {depth}: haul it in."

@@ -16,16 +16,16 @@ class InventoryItem:
 
     Attributes
     ----------
-    index : of the piece, of a clamp that of the piece it is on
+    index : index of the piece, or of the piece that carries the clamp
     use, label, role, kind : as in the file
-    name : of the component, None where it gives none
-    clamped_on, at : label of the piece that a clamp is on, and how far from its top [m]; None of a
-        piece
-    cut_length : along the line [m]; None of a cable that no length fits
-    dry_mass : in air [kg]; None where it is not known and does not follow
-    wet_weight : in water of 1025 kg/m³ under the gravity of the file [N], + down; None where the
-        length is not known
-    lift_mass : of a piece with its clamps [kg]; None of a clamp, and where a mass is not known
+    name : name of the component; None if it has none
+    clamped_on, at : label of the piece that carries a clamp, and distance from its upper end [m];
+        None for a piece
+    cut_length : length along the line [m]; None for a cable without a length that fits
+    dry_mass : mass in air [kg]; None if unknown
+    wet_weight : weight in water of 1025 kg/m³, with the gravity of the file [N], + down; None if
+        the length is unknown
+    lift_mass : mass of a piece with its clamps [kg]; None for a clamp, or if a mass is unknown
     """
 
     index: int
@@ -44,13 +44,13 @@ class InventoryItem:
 
 @dataclass(frozen=True)
 class Total:
-    """Hold what all items come to, of those whose figures are known.
+    """Totals over the items whose values are known.
 
     Attributes
     ----------
-    dry_mass, missing_masses : in air [kg], and of how many items it is not known: of others than
-        none the total is a lower bound
-    wet_weight, missing_weights : the same of the weight in water [N], + down
+    dry_mass, missing_masses : mass in air [kg], and number of items of unknown mass; unless this
+        is 0, the total is a lower bound
+    wet_weight, missing_weights : weight in water [N], + down, and number of items without one
     """
 
     dry_mass: float
@@ -107,7 +107,9 @@ def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Inven
 
 
 def _in_all(component: Component, figure: float | None, length: float | None) -> float | None:
-    """A figure of a piece; of a cable or chain, which has it for each metre, times its length."""
+    """Convert a value per metre of cable or chain to the piece; values of other items are
+    unchanged.
+    """
     if figure is None or not isinstance(component, Flexible):
         return figure
     return None if length is None else figure * length
@@ -118,8 +120,8 @@ def anchor_dry_mass(required_weight: float, density: float, gravity: float) -> t
 
     Parameters
     ----------
-    required_weight : in water [N]
-    density : of the water [kg/m³]
+    required_weight : required weight in water [N]
+    density : density of the water [kg/m³]
     gravity : [m/s²]
     """
     steel, concrete = (

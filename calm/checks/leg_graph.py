@@ -48,7 +48,7 @@ class LegGraph:
             self.chains.append(chain)
             force = lifts_of(own.line, own.water, leg)
             figures = np.stack([force, drags_of(own.line, above), own.line.length])
-            # an anchor lifts nothing
+            # anchors have no buoyancy
             columns.append(np.pad(figures, ((0, 0), (0, 1)))[:, : len(above)])
         self.lifts, self.drags, self.lengths = np.hstack([np.zeros((3, 0)), *columns])
         self.opened = {
@@ -95,22 +95,24 @@ class LegGraph:
 
     @property
     def coming_up(self) -> set[int]:
-        """Pieces that come up after all releases open; without a release all pieces but anchors."""
+        """Return the pieces that surface after all releases open; without a release, all except
+        anchors.
+        """
         parts = self._rising(()) if self.opened else self.chains
         return {one for part in parts for one in part if isinstance(one, int)}
 
     def breaks(self, whole: Leg) -> tuple[Break, ...]:
-        """Return the breaks below every piece that comes up, down the file.
+        """Return the breaks below every piece that surfaces, in file order.
 
-        Of each it is judged what is left with a release, all releases being opened; `loose` is what
-        comes off before that.
+        The margin of a break refers to the section that still holds a release after all releases
+        have opened; `loose` is the net buoyancy of the section that drifts off before that.
         """
         rising = {one for part in self._rising(()) for one in part}
         before = {one for part in self._free(()) for one in part}
         found = []
         for number, chain in enumerate(self.chains):
             for at, (one, below) in enumerate(pairwise(chain)):
-                # nothing breaks below an end that hangs free, nor is a release's own end a break
+                # no break below a free end; the lower end of a release is not a break either
                 opened = (number, at) in self.opened
                 if below is None or opened or not isinstance(one, int) or one not in rising:
                     continue
@@ -132,8 +134,8 @@ class LegGraph:
         return float(lift.sum()), weight, required_margin(whole, weight, drag)
 
     def _beyond_help(self, chain: Sequence[Hashable], at: int, part: list[int]) -> bool:
-        """Return whether it parts the cluster of all floats that are left, or a short lead from it
-        to the release: as of a single line.
+        """Whether a break parts the cluster of all remaining floats, or a short lead from it to the
+        release, as for a single line.
         """
         floats = {one for one in part if self._floats(one)}
         if not floats:
@@ -157,7 +159,7 @@ class LegGraph:
         return component.kind in what or component.role in what
 
     def losses(self, whole: Leg) -> tuple[Loss, ...]:
-        """Return the loss of each buoyant piece or clamp of what comes up."""
+        """Return the loss of each buoyant piece or clamp that surfaces."""
         return tuple(
             loss
             for part in self._rising(())
@@ -185,5 +187,5 @@ class LegGraph:
             number, at = min(self.opened)
             one = self.chains[number][at]
             assert isinstance(one, int)
-            told = "The releases free all that floats from its anchors."
+            told = "The releases free every buoyant part from its anchors."
             yield verdict_on(self.pieces[one], State.PASS, told)

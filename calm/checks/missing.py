@@ -10,7 +10,7 @@ from calm.checks.finding import Finding, MissingFigure, State, Verdict, rule
 from calm.files import Clamp, Piece
 
 MOST_NAMED = 3
-"""Other pieces that a message names; the finding has all of them."""
+"""Maximum number of other pieces in a message; the finding has the full list."""
 
 _INSTEAD = {
     "working_load": ("breaking_load",),
@@ -21,16 +21,16 @@ _INSTEAD = {
 
 
 def alternatives(quantity: str) -> tuple[str, ...]:
-    """The keys of a component of which any one settles what a missing figure leaves open."""
+    """Return the keys of a component any of which resolves a missing value."""
     return quantity, *_INSTEAD.get(quantity, ())
 
 
 @rule(MISSING)
 def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Verdict]:
-    """One verdict for each component id and figure, from all that rules could not judge.
+    """Yield one verdict per component id and missing value, from all findings that lack it.
 
-    The message is that of the piece with the greatest value: the deepest, or the one that bears
-    most.
+    The message is that of the piece with the largest value: the deepest, or the most heavily
+    loaded.
     """
     for found in lacking.values():
         figure = found[0].missing
@@ -57,7 +57,8 @@ def is_lacking(finding: Finding) -> bool:
 def gathered(
     lacking: Iterable[Finding], parts: Mapping[str, Piece | Clamp]
 ) -> dict[tuple[str, str], list[Finding]]:
-    """What rules could not judge, by component id and figure, each with the whole of it.
+    """Group findings that lack a value by component id and value, and attach the full
+    `MissingFigure`.
 
     Parameters
     ----------
@@ -87,11 +88,11 @@ def with_missing(
     mooring: str,
     environment: str,
 ) -> list[Finding]:
-    """The findings of a mooring, with those that lack a figure replaced by those of `missing`.
+    """Replace the findings of a mooring that lack a value by findings of the rule `missing`.
 
     Parameters
     ----------
-    mooring, environment : their names in the findings of `missing`
+    mooring, environment : names used in the findings of `missing`
     """
     every = list(findings)
     lacking = gathered(filter(is_lacking, every), parts)

@@ -24,8 +24,9 @@ SHARE_OF_THE_PLAN = 0.02
 class PlannedPart:
     """A piece or a clamp with a planned depth [m].
 
-    `least` and `most` bound its depth in still water; they differ only if the line is slack there,
-    so that it has no unique shape: from the depth in the current to that on a straight line.
+    `least` and `most` bound its depth in still water. They differ only if the line is slack there
+    and has no unique shape: the range is from the depth in the current to the depth on a straight
+    line.
     """
 
     row: ComponentRow | ClampRow
@@ -35,14 +36,15 @@ class PlannedPart:
 
     @property
     def off(self) -> float:
-        """How much too deep it hangs [m], negative if too shallow; the least possible amount."""
+        """Depth error [m], positive if too deep; if the depth is a range, the smallest error."""
         return min(max(self.planned, self.least), self.most) - self.planned
 
 
 def _judge(handling: Handling) -> Iterator[Verdict]:
-    """Depth of each part in still water against its planned depth.
+    """Compare the depth of each part in still water with its planned depth.
 
-    Parts that are all off by the same amount are one finding: one figure is wrong for all of them.
+    Parts that are off by the same amount share one finding, because a single wrong value explains
+    them.
     """
     if handling.result is None:
         return
@@ -58,8 +60,8 @@ def _judge(handling: Handling) -> Iterator[Verdict]:
 
 
 def _counted(handling: Handling) -> Iterator[Verdict]:
-    """The verdict on each part, and that on all of them if they are off alike: a sample may have
-    other findings than the design.
+    """Yield the verdict on each part, and the common verdict if all are off by the same amount; the
+    findings of a sample may differ from those of the design.
     """
     if handling.result is not None:
         yield from _judged(handling.result)[1]
@@ -79,7 +81,7 @@ def _judged(result: LegResult) -> tuple[list[PlannedPart], list[Verdict]]:
 
 
 def _off_alike(result: LegResult, parts: list[PlannedPart], found: list[Verdict]) -> bool:
-    """Whether several parts are all off by the same amount, and any of them by too much."""
+    """Whether several parts are off by the same amount, and at least one of them by too much."""
     amounts = [part.off for part in parts]
     alike = max(amounts) - min(amounts) <= result.file.checks.planned_depth_warning
     return len(parts) > 1 and alike and any(one.state is not State.PASS for one in found)
@@ -123,7 +125,7 @@ def _verdict(file: MooringFile, part: PlannedPart, remedy: str) -> Verdict:
 
 
 def _all_alike(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) -> Verdict:
-    """One verdict on all parts, with the figures of the worst."""
+    """Combine the verdicts on all parts into one, with the values of the most severe."""
     amounts = sorted((part.off for part in parts), key=abs)
     message = f"All {len(parts)} instruments with a planned depth hang "
     message += f"{_amount(amounts[0], amounts[-1])} in still water."
@@ -143,8 +145,8 @@ def _amount(least: float, most: float) -> str:
 
 
 def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str:
-    """Return which lengths to check: those between the parts that are off by the same amount and
-    the next part in the direction of what holds them.
+    """Name the lengths to check: those between the parts that are off by the same amount and the
+    next part towards the end that holds them.
     """
     above, allowed = (
         _hangs_from_above(result, parts[number]), result.file.checks.planned_depth_warning

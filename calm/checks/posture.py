@@ -1,4 +1,4 @@
-"""Rules of where the line stands: tilt, depth, knockdown, excursion, reserve of a surface float."""
+"""Rules for the shape of the line: tilt, depth, knockdown, excursion, reserve buoyancy."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -16,25 +16,25 @@ from calm.quantities import say
 from calm.solve.finish import watch_circle_radius
 
 LEAST_TOP_DEPTH = 10.0
-"""Depth that the top of a sub-surface line should have where the design gives none [m]."""
+"""Default minimum depth of the top of a sub-surface line [m]."""
 
 MOST_OF_A_RATING = 0.5
-"""Share of a rating that the margin takes at most: what is made for shallow water may be used."""
+"""Maximum share of a depth rating used as margin, so that shallow-water equipment can be used."""
 
 JUDGED_ROLES = ("float", "instrument", "release")
-"""What is made for a depth; of line and connectors only those that give a rating are judged."""
+"""Roles that need a depth rating; other parts are checked only if they have a rating."""
 
 
 AFLOAT_KEYS = ("hull", "k_surface", "wind_area", "heave")
-"""What is given of a float at the surface alone."""
+"""Keys that apply to surface floats only."""
 
 
 def reaches_the_surface(leg: Leg) -> bool:
-    """Return whether a line is meant to have its float at the surface, as it has in still water.
+    """Whether the line is intended to have its float at the surface in still water.
 
-    A float with a figure that only one at the surface needs is meant for it, though it be too small
-    to come up. A line that reaches it has no unique shape in still water where it is longer than
-    that is deep.
+    A float with a key that only surface floats have counts as intended for the surface, even if it
+    is too small to surface. A line longer than the water depth has no unique shape in still water
+    and counts as reaching the surface.
     """
     if leg.for_surface is not None:
         return leg.for_surface
@@ -74,7 +74,7 @@ def tilt(leg: Leg) -> Iterator[Criterion]:
             yield Criterion(part, "tilt", warned, words, beyond=State.WARN)
 
 
-_STRAIGHTER = "Add buoyancy above it, or move it where the line stands straighter."
+_STRAIGHTER = "Add buoyancy above it, or move it to a more upright part of the line."
 THE_DESIGNS = "The design's own `maximum_tilt`"
 
 
@@ -96,10 +96,10 @@ def _doubtful_words(
 
 @criteria("depth-rating")
 def depth_rating(leg: Leg) -> Iterator[Criterion]:
-    """Depth in the current, and a margin, against the rating of floats and instruments.
+    """Depth in the current plus a margin, against the depth rating of floats and instruments.
 
-    A float that is knocked down below its rating is crushed, and the line with it. A surface float
-    has no rating; `freeboard` and `reserve` judge one that is pulled under.
+    A float that is knocked down below its rating implodes, and the line sinks. A surface float has
+    no depth rating; `freeboard` and `reserve` cover one that is pulled under.
     """
     margin, source = leg.file.checks.rating_margin, cited(leg.file, "rating_margin")
     for part in parts_of(leg):
@@ -123,21 +123,22 @@ def _rating_words(
     return (
         f"{stands}; it is rated to {say('depth_rating', rating)}, less a margin of "
         f"{say('depth_rating', rating - limit)}.",
-        "Take one with a greater depth rating, or add buoyancy against the knockdown.",
+        "Use a component with a greater depth rating, or add buoyancy against the knockdown.",
     )
 
 
 _STRETCH = 0.02
-"""Share of the water depth below which an unknown stretch is not asked after: what a sounding is
-worth."""
+"""Share of the water depth below which an unknown stretch is ignored: the error of a sounding."""
 
 _MEASURED = 0.2
-"""Share of its breaking load up to which a rope is measured, where it gives no working load."""
+"""Share of the breaking load assumed as the working load, if the latter is unknown."""
 
 
 @rule("stretch")
 def stretch(result: LegResult) -> Iterator[Verdict]:
-    """Judge what ropes of unknown stiffness may stretch by, and under what load ropes are cut."""
+    """Check the possible stretch of ropes of unknown stiffness, and the load under which ropes are
+    cut.
+    """
     limit, lengths = _STRETCH * result.leg.water.depth, result.leg.line.length.tolist()
     rows = zip(result.file.pieces, lengths, result.components.tension, strict=False)
     for piece, length, tension in rows:
@@ -170,9 +171,9 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
 
 @criteria("top-depth")
 def top_depth(leg: Leg) -> Iterator[Criterion]:
-    """Least depth of the top of a sub-surface line, clear of waves, hulls and nets.
+    """Minimum depth of the top of a sub-surface line, clear of waves, vessels and nets.
 
-    Where the design gives no `minimum_top_depth` its default is a warning.
+    If the design sets no `minimum_top_depth`, the default only causes a warning.
     """
     given, label = leg.file.checks.minimum_top_depth, pieces_of(leg)[0].label
     if given is None and reaches_the_surface(leg):
@@ -183,9 +184,9 @@ def top_depth(leg: Leg) -> Iterator[Criterion]:
 
     def words(depth: float, _: LegResult) -> tuple[str, str]:
         return (
-            f"{label} is {say('depth', depth)} below the surface; {say('depth', limit)} would "
-            "keep it clear of waves, hulls and nets.",
-            "Shorten the line, or mark it at the surface.",
+            f"{label} is {say('depth', depth)} below the surface; {say('depth', limit)} is "
+            "needed to stay clear of waves, hulls and nets.",
+            "Shorten the line, or add a surface marker.",
         )
 
     top = pieces_of(leg)[0]
@@ -193,17 +194,16 @@ def top_depth(leg: Leg) -> Iterator[Criterion]:
 
 
 _SHELF = 200.0
-"""Depth of water up to which no fish bite is asked after: the bites are those of the deep sea [m].
-"""
+"""Water depth up to which fish bite is ignored [m]; fish bite occurs in the deep sea."""
 
 
 _POLAR = 60.0
-"""Latitude from which no fish bite is asked after [°]: the bites are those of warm seas."""
+"""Latitude above which fish bite is ignored [°]; fish bite occurs in warm seas."""
 
 
 @rule("fish-bite")
 def fish_bite(result: LegResult) -> Iterator[Verdict]:
-    """Judge the least depth of every synthetic rope against that down to which fish bite."""
+    """Compare the minimum depth of each synthetic rope with the depth of the fish-bite zone."""
     limit, position = result.file.checks.fishbite_depth, result.file.position
     polar = position is not None and abs(position.latitude) >= _POLAR
     if result.leg.water.depth <= _SHELF or polar:
@@ -215,19 +215,19 @@ def fish_bite(result: LegResult) -> Iterator[Verdict]:
                 f"{piece.label} reaches up to {say('depth', highest)}; fish bite through rope "
                 f"down to {say('depth', limit)}."
             )
-            remedy = "Use jacketed wire there; `fishbite_depth` sets how deep they bite."
+            remedy = "Use jacketed wire there, or set `fishbite_depth`."
             source = cited(result.file, "fishbite_depth")
             yield at_least(piece, highest, limit, message, remedy, State.WARN, source)
 
 
 @criteria("knockdown")
 def knockdown(leg: Leg) -> Iterator[Criterion]:
-    """Knockdown of the top against the design's limit, where it gives one."""
+    """Limit the knockdown of the top, if the design sets `maximum_knockdown`."""
 
     def words(sunk: float, allowed: str) -> tuple[str, str]:
         if isnan(sunk):
             return (
-                "The line has no unique shape in still water to measure a knockdown from.",
+                "The line is slack in still water, so there is no reference shape for a knockdown.",
                 "Judge a slack line by its excursion: `maximum_excursion`.",
             )
         return (
@@ -240,7 +240,7 @@ def knockdown(leg: Leg) -> Iterator[Criterion]:
 
 @criteria("excursion")
 def excursion(leg: Leg) -> Iterator[Criterion]:
-    """Horizontal offset of the top against the design's limit, where it gives one."""
+    """Limit the horizontal offset of the top, if the design sets `maximum_excursion`."""
 
     def words(offset: float, allowed: str) -> tuple[str, str]:
         return (
@@ -257,7 +257,7 @@ def _of_the_top(
     limit: float | None,
     words: Callable[[float, str], tuple[str, str]],
 ) -> Iterator[Criterion]:
-    """Yield what the design itself allows the top, where it does."""
+    """Yield the limit on a quantity of the top, if the design sets one."""
     if limit is not None:
         allowed = say(quantity, limit)
         top = pieces_of(leg)[0]
@@ -266,9 +266,9 @@ def _of_the_top(
 
 @criteria("reserve")
 def reserve(leg: Leg) -> Iterator[Criterion]:
-    """Share of the surface float's buoyancy that is left: what it could still take on.
+    """Reserve buoyancy of the surface float as a share of its total buoyancy.
 
-    The 0.3 that are asked for by default cover waves, which a static solution does not see.
+    The default of 0.3 is an allowance for waves, which a static solution does not include.
     """
     if not reaches_the_surface(leg):
         return
@@ -281,7 +281,7 @@ def reserve(leg: Leg) -> Iterator[Criterion]:
             message = f"The float is {say('depth', result.top.depth)} under water: 0 % is left"
         return (
             f"{message}; {100 * limit:.0f} % should be.",
-            "Take a larger float, a lighter line, or more length.",
+            "Use a larger float, a lighter line, or more length.",
         )
 
     source = cited(leg.file, "minimum_reserve")
@@ -311,18 +311,19 @@ def freeboard(result: LegResult) -> Iterator[Verdict]:
         f"The float stands {say('freeboard', height)} out of the water."
         if height >= 0.0
         else f"The float is {say('depth', -height)} under water.",
-        "Take a larger float.",
+        "Use a larger float.",
     )
 
 
 @rule("watch-circle")
 def watch_circle(result: LegResult) -> Iterator[Verdict]:
-    """Radius √(L² - h²) within which a surface float can be found, with the line stretched.
+    """Radius √(L² - h²) of the watch circle of a surface float, with the line taut.
 
-    L is the line from the float to the anchor, h the height of the surface above the anchor's top.
+    L is the line length from the float to the anchor, h the height of the surface above the
+    anchor's top.
 
-    Worst case of a slack line, e.g. PacIOOS: 1.73 times the depth at a scope of 2. Judged by
-    `maximum_excursion`, where the design gives it.
+    This is the worst case of a slack line, e.g. PacIOOS: 1.73 times the depth at a scope of 2. The
+    limit is `maximum_excursion`, if the design sets it.
     """
     limit = result.file.checks.maximum_excursion
     if not reaches_the_surface(result.leg):
@@ -341,10 +342,10 @@ def watch_circle(result: LegResult) -> Iterator[Verdict]:
 
 @rule("scope")
 def scope(result: LegResult) -> Iterator[Verdict]:
-    """Cut length over water depth of a line to the surface; it is reported, and has no limit."""
+    """Report the scope of a surface mooring: cut length over water depth; there is no limit."""
     if not reaches_the_surface(result.leg):
         return
     depth = result.leg.water.depth
     ratio = float(result.components.cut_length.sum()) / depth
-    message = f"The line is {ratio:.3f} times as long as the water is deep."
+    message = f"Scope (cut length over water depth) is {ratio:.3f}."
     yield verdict_on(None, State.NOT_JUDGED, message, value=ratio)

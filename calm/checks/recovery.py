@@ -1,16 +1,17 @@
-"""The recovery: whether a line comes up without its anchor, how fast, and in what order.
+"""Recovery: rise speed of the line without its anchor, surfacing times and surfacing order.
 
-What is above the release and the release itself rise, all of it alike at terminal speed, until the
-first buoyant piece is at the surface. It stays there with what is rigid with it. What is below goes
-on, as a line of its own and in still water, as long as it is buoyant by itself; the line that still
-hangs between counts with it, which makes it slower than it is. So one buoyant piece after another
-comes up, each by the length of line between it and the one before, and the rest hangs below them.
+The release and everything above it rise together at terminal speed, until the first buoyant piece
+reaches the surface. It stays there with everything rigidly connected. If the line below is buoyant,
+it continues to rise as a separate line in still water; the line already suspended is included,
+which makes the computed rise too slow. Buoyant pieces surface one after
+another, each after rising by the length of line between it and the previous one, and everything
+else is suspended below them.
 
-The model leaves out how a line gathers way, that a piece may be carried up beside one that is above
-it in the line, and that floats which have come up are half out of the water. In a rise that tangles
-(`Recovery.tangles`) the order may be another.
+The model neglects acceleration, the possibility that a piece is carried past one above it in the
+line, and that surfaced floats are only half immersed. If the line tangles during ascent
+(`Recovery.tangles`), the order may differ.
 
-Back-up buoyancy is what brings up the release when the line breaks above it.
+Back-up buoyancy recovers the release when the line breaks above it.
 """
 
 from collections.abc import Iterator, Sequence
@@ -37,24 +38,24 @@ from calm.solve.solution import standing_lift
 
 @dataclass(frozen=True)
 class Recovery:
-    """The rise of a line without its anchor, from where it stands.
+    """Rise of a line without its anchor, from its equilibrium.
 
     Attributes
     ----------
     released : index of the lowest piece that rises: the lowest release, whose lower hook opens, or
-        the piece above the anchor where there is none
-    rise_speed : terminal, of all that rises [m/s], + up; 0 where it does not rise
-    net_buoyancy : of all that rises, where it stands [N]
-    time_to_surface : until the first buoyant piece is there [s]; None where none comes up
-    tension_top, tension_bottom : (n,) of every piece above the anchor, in the rise [N]; nan of one
-        that does not rise
-    arrival : (n,) when each piece is at the surface [s]; nan of one that hangs below, or stays
-    order : the pieces that come up by themselves, in their order
-    tangles : the pieces that have, or part of which has, overtaken what was above in the rise
-    in_still_water : whether the rise is that in still water, because a line that doubles back
-        finds no steady motion in this current
-    length : (m,) stretched lengths of the pieces that rise [m]; none where the line does not
-    seabed : depth of the water [m]; nan of a line that does not rise
+        the piece above the anchor if there is no release
+    rise_speed : terminal speed of the rising line [m/s], + up; 0 if it does not rise
+    net_buoyancy : net buoyancy of the rising line, in equilibrium [N]
+    time_to_surface : time until the first buoyant piece surfaces [s]; None if none does
+    tension_top, tension_bottom : (n,) tensions of the pieces above the anchor during the rise [N];
+        NaN for pieces that do not rise
+    arrival : (n,) time at which each piece surfaces [s]; NaN if it stays below
+    order : pieces that are buoyant enough to surface alone, in order of surfacing
+    tangles : pieces that overtake, entirely or in part, pieces above them in the line
+    in_still_water : whether the rise was computed in still water, because the line doubles back
+        and has no steady motion in the current
+    length : (m,) stretched lengths of the rising pieces [m]; empty if the line does not rise
+    seabed : water depth [m]; NaN if the line does not rise
     """
 
     released: int
@@ -76,10 +77,10 @@ class Recovery:
         return np.array([self.depth_at(piece, 0.0) for piece in range(len(self.arrival))])
 
     def depth_at(self, piece: int, share: float) -> float:
-        """Return the depth of a place on a piece when all is up [m]; nan where it is not known.
+        """Depth of a point on a piece after all pieces have surfaced [m]; NaN if unknown.
 
-        The place is a share of the length from the upper end of the piece of an index. It hangs by
-        the shorter way along the line to a piece that is up, above it or below.
+        The point is at a share of the length of piece number `piece`, from its upper end. It is
+        suspended by the shorter length of line from a surfaced piece, above or below.
         """
         up = np.isfinite(self.arrival[: len(self.length)])
         if piece >= len(up):
@@ -93,7 +94,7 @@ class Recovery:
         return float(np.concatenate([above, below, [self.seabed]]).min())
 
     def components(self) -> list[dict[str, Any]]:
-        """The pieces above the anchor, by name of figure; None where there is none."""
+        """Return the pieces above the anchor as dictionaries; NaN becomes None."""
         columns = (self.tension_top, self.tension_bottom, self.arrival, self.hangs_at)
         names = ("tension_top", "tension_bottom", "arrival", "depth")
         rows = zip(*(column.tolist() for column in columns), strict=True)
@@ -104,11 +105,11 @@ class Recovery:
 
 
 def recovery_of(leg: Leg, result: LegResult) -> Recovery:
-    """The recovery of a mooring from where it stands.
+    """Compute the recovery of a mooring from its equilibrium.
 
     Parameters
     ----------
-    result : of the mooring; tells where it stands and how long its pieces are
+    result : result of the mooring, for the equilibrium and stretched lengths
 
     Raises
     ------
@@ -157,7 +158,7 @@ def recovery_of(leg: Leg, result: LegResult) -> Recovery:
 
 
 def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
-    """(n,) net forces of the pieces with their clamps where they stand, + up [N]."""
+    """Net forces (n,) of the pieces with their clamps at their depths in equilibrium, + up [N]."""
     rows = slice(len(line.length))
     depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])
     density = water.density_at(np.maximum(depth, 0.0))
@@ -175,15 +176,15 @@ def _rise(line: Line, water: Water, top: float, settings: Settings) -> tuple[Fre
 def _risers(
     line: Line, water: Water, length: Floats, lifts: Floats, top: float, speed: float
 ) -> Iterator[tuple[int, float]]:
-    """The pieces that come up by themselves, and when [s].
+    """Yield the pieces that are buoyant enough to surface alone, with their times [s].
 
-    They have stretched lengths [m] and net forces [N], (n,); the line's upper end stands at `top`
-    [m] and has a speed at first [m/s]. What is below a float that is up rises plumb, as in still
-    water.
+    `length` [m] is stretched and `lifts` [N] are net forces, both (n,). The upper end of the line
+    is at depth `top` [m] and rises with `speed` [m/s] at first. The line below a surfaced float
+    rises vertically, as in still water.
     """
     time, up, count = 0.0, 0, len(length)
     for piece in np.flatnonzero(lifts > 0.0).tolist():
-        # a rope is up when its lower end is, a rigid piece when its upper end is
+        # a rope has surfaced when its lower end has, a rigid piece when its upper end has
         way = float(length[up : piece + bool(line.flexible[piece])].sum())
         if up == 0:
             way = top if piece < head_count(line) else top + way
@@ -199,10 +200,11 @@ def _risers(
 
 
 SHORT_LEAD = 50.0
-"""Length of what may lead from the lowest floats to the release without being judged [m].
+"""Maximum length of line from the lowest floats to the release that is exempt from break checks
+[m].
 
-The floats there are the back-up of what is above them. A line whose only floats stand so near to
-its release, as a bottom lander or a short line below one float, is brought up by them alone.
+Those floats are the back-up of everything above them. If all floats are so close to the release, as
+on a bottom lander or a short line below one float, they alone recover the mooring.
 """
 
 
@@ -214,10 +216,10 @@ class Break:
     ----------
     break_after, label : the piece above the break
     margin : net buoyancy of the pieces from below the break down to the release [N]
-    weight_lifted : weight in water of those of them that are heavy [N]
+    weight_lifted : weight in water of the non-buoyant ones of these pieces [N]
     required : what the margin should be [N]
-    judged : whether the design can change it
-    loose : net buoyancy of what comes off at once, and drifts, + up [N]
+    judged : whether a better design could avoid the loss of the release
+    loose : net buoyancy of the section that breaks away at once and drifts, + up [N]
     """
 
     break_after: int
@@ -231,15 +233,15 @@ class Break:
 
 @dataclass(frozen=True)
 class Loss:
-    """The loss of one buoyant element, such as a ball that is flooded; the line holds.
+    """Loss of one buoyant element, such as a flooded ball, while the line stays intact.
 
     Attributes
     ----------
-    index, label : the piece, or the piece that the clamp is on, and what is lost
-    margin : net buoyancy of what is left above the release, and of the release [N]
-    weight_lifted : weight in water of what of it is heavy [N]
+    index, label : index of the piece (that carries the clamp), label of the lost element
+    margin : net buoyancy of the release and the remaining pieces above it [N]
+    weight_lifted : weight in water of the non-buoyant pieces [N]
     required : what the margin should be [N]
-    place : of what is lost, in the line as read
+    place : place of the lost element, in the line as read
     """
 
     index: int
@@ -251,10 +253,10 @@ class Loss:
 
 
 def _down_to_the_release(leg: Leg) -> tuple[Floats, Floats]:
-    """(n,) net force [N] of each piece down to the lowest release, where the line stands upright,
-    and its drag in a rise [N/(m/s)²].
+    """Net forces (n,) [N] of the pieces down to the lowest release, with the line upright, and
+    their drags in an ascent [N/(m/s)²].
 
-    None of a line without a release, or one that no length fits.
+    Both are empty for a line without a release, or if no length fits.
     """
     release = leg.file.release
     if release is not None:
@@ -269,25 +271,25 @@ def drags_of(line: Line, pieces: Sequence[Piece]) -> Floats:
 
     Parameters
     ----------
-    pieces : those of the line, with or without its anchor
+    pieces : pieces of the line, with or without the anchor
     """
     return with_axial_clamps(line, pieces[: len(line.length)]).plumb_drag
 
 
 def losses_of(leg: Leg) -> tuple[Loss, ...]:
-    """The loss of each buoyant piece or clamp above the lowest release, from the top.
+    """Return the loss of each buoyant piece or clamp above the lowest release, from the top.
 
-    What is lost lifts no more. One that fills with water, and gives its mass and a material whose
-    density is known, weighs what that does in water; another is taken to be gone, and a cable is
-    not lost. The others lift what they do where the line stands upright.
+    A lost element provides no buoyancy. If its mass and the density of its material are known, it
+    is assumed flooded and its weight in water is added; otherwise it is assumed gone. Cables are
+    never lost. The other pieces keep the net forces of the upright line.
     """
     lift, drag = _down_to_the_release(leg)
     return losses_among(leg, leg.file.pieces[: lift.size], lift, float(drag.sum()))
 
 
 def losses_among(leg: Leg, pieces: Sequence[Piece], lift: Floats, drag: float) -> tuple[Loss, ...]:
-    """The same of the pieces of a mooring that come up together, with their net forces [N] and the
-    drag of all of them [N/(m/s)²].
+    """Return the losses among pieces that surface together, with their net forces [N] and their
+    total drag [N/(m/s)²].
     """
     gravity = leg.water.gravity
     weight = float(-lift[lift < 0.0].sum())
@@ -313,7 +315,7 @@ def losses_among(leg: Leg, pieces: Sequence[Piece], lift: Floats, drag: float) -
 
 
 def _weight_when_flooded(component: Component, gravity: float) -> float:
-    """In water, of the shell of a float that is full of water [N]; 0 where that is not known."""
+    """Weight in water of the shell of a flooded float [N]; 0 if unknown."""
     named = (material.density for material in materials_in(component.material))
     density = next((value for value in named if value and value > CATALOGUE_DENSITY), None)
     if density is None or component.mass is None:
@@ -322,24 +324,24 @@ def _weight_when_flooded(component: Component, gravity: float) -> float:
 
 
 def required_margin(leg: Leg, weight: float, drag: float) -> float:
-    """Net buoyancy required after a break that leaves a weight in water [N] to lift, with a drag
-    [N/(m/s)²]: a share of the weight, and at least what lets it rise at `minimum_rise_speed` [N].
+    """Net buoyancy required after a break [N], for a remaining weight in water [N] and drag
+    [N/(m/s)²]: a share of the weight, and at least enough to rise at `minimum_rise_speed`.
     """
     checks = leg.file.checks
     return max(checks.backup_margin * weight, drag * checks.minimum_rise_speed**2)
 
 
 def breaks_of(leg: Leg) -> tuple[Break, ...]:
-    """The breaks at every connection above the lowest release, from the top.
+    """Return the breaks at every connection above the lowest release, from the top.
 
-    The net force of a piece is that with its clamps, in the water where it stands upright. After a
-    break inside a cable what is left lies between the figures of the breaks at its two ends.
-    There are none of a line without a release, or one that no length fits.
+    The net force of a piece includes its clamps, at its depth in the upright line. For a break
+    inside a cable, the remaining net buoyancy lies between those of the breaks at its two ends. A
+    line without a release, or without a length that fits, has no breaks.
 
-    Floats that follow one another, with at most connectors and chain between them, are a cluster.
-    What breaks inside the lowest one, or in what leads from it to the release over `SHORT_LEAD` at
-    most, leaves the release on the seabed in any design, and is not judged. Where that is the
-    whole line, chain parts clusters too; one that is compact even so is judged by its losses alone.
+    Successive floats with only connectors and chain between them form a cluster. A break inside the
+    lowest cluster, or in a lead of at most `SHORT_LEAD` from it to the release, strands the release
+    in any design and is not judged. If that is the whole line, chain separates clusters, too; a
+    line that is still a single cluster is judged by its losses alone.
     """
     lift, drag = _down_to_the_release(leg)
     if not lift.size:
@@ -370,10 +372,10 @@ def breaks_of(leg: Leg) -> tuple[Break, ...]:
 
 
 def _beyond_help(above: Sequence[Piece], lift: Floats, length: Floats, *between: str) -> range:
-    """The breaks inside the lowest cluster of floats, and of a short lead below it.
+    """Range of breaks inside the lowest cluster of floats, and in a short lead below it.
 
-    The pieces are those above the release, with their net forces [N] and lengths [m]; kinds and
-    roles of what may stand `between` the floats of a cluster count.
+    `lift` [N] and `length` [m] are those of the pieces above the release; `between` lists kinds and
+    roles of pieces allowed between the floats of a cluster.
     """
     floats = [
         force > 0.0 and not _is(piece, "cable") for piece, force in zip(above, lift, strict=True)

@@ -52,13 +52,13 @@ def _repeated_labels(parts: Sequence[Part]) -> Iterator[Verdict]:
 
 
 def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
-    """Yield serial numbers that several items of one component have."""
+    """Yield serial numbers that are used for more than one item of a component."""
     items: dict[tuple[str, str], list[Part]] = defaultdict(list)
     for part in parts:
         if part.serial is not None:
             items[part.use, part.serial].append(part)
     for (use, serial), found in items.items():
-        # one text for a count, or for the parts of an assembly, is that of all of them
+        # items of a count and parts of an assembly share their serial number
         alone = {(one.place.item, one.place.clamp) for one in found}
         if len(alone) > 1:
             names = " and ".join(one.label for one in found[:2])

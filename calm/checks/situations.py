@@ -1,7 +1,7 @@
-"""The currents a mooring is judged in, and the mooring with something changed.
+"""Situations of a mooring: its environment as given, or with something changed.
 
-The currents: how strong they are, and whether they cover the line. Changed: still water, the tide,
-growth, strumming; and as deployed.
+Changes are still water, tide, biofouling, strumming, and the values as deployed. The rules on the
+strength and coverage of the currents are here, too.
 """
 
 from collections import deque
@@ -50,9 +50,10 @@ def case_of(environment: int, situation: str) -> str:
 
     Parameters
     ----------
-    environment : its number in the order of the file, from 1
-    situation : what is changed in it: strumming s, growth g, high and low water h and l, as
-        deployed d, a profiler at its lower stop p or where its wire leans most q; still water is 0
+    environment : number of the environment in file order, from 1
+    situation : name of the situation, with suffixes s strumming, g growth, h high water, l low
+        water, d as deployed, p profiler at its lower stop, q profiler at the maximum wire angle;
+        still water is 0
     """
     if situation in (STILL, STILL_LOW):
         return "0" if situation == STILL else "0l"
@@ -68,20 +69,19 @@ Situations = tuple[Situation, ...]
 
 
 def situations_of(design: Design) -> tuple[Situations, ...]:
-    """Solve a design as given, then in every situation that its file asks for.
+    """Solve a design as given, then in every situation that its file requires.
 
-    Still water, high and low water, and still low water where the environment has a `depth_range`,
-    profilers at their lower stops and where the wire leans most, growth where it has `fouling`,
-    cables with Cn × 1.5 where no law of strumming is in use, and the
-    depth and lengths of `deployed` where they are others than those of the design.
-    Pieces that are cut to fit keep the length that fits as given. Still water in which a line to
-    the surface is slack, since it is longer than the water is deep, has no unique shape and is
-    left out.
+    Situations are still water; high and low water and still low water if the environment has a
+    `depth_range`; profilers at their lower stops and at the point of maximum wire angle; biofouling
+    if `fouling` is set; cables with Cn × 1.5 if no strumming law is in use; and the depth and
+    lengths of `deployed` if they differ from the design. Pieces that are cut to fit keep the length
+    that fits as given. A surface line that is slack in still water, because it is longer than the
+    water depth, has no unique shape there, and that situation is omitted.
     """
     given = solved(AS_GIVEN, design)
     if given[0].result is None:
         return (given,)
-    # a single line keeps its purpose in changed situations
+    # a single line stays a surface or sub-surface mooring in all situations
     surface = None if design.several else reaches_the_surface(given[0].result.leg)
     legs = [each.result for each in given if each.result is not None]
     changed = [solved(name, each) for name, each in _changed(design, legs, surface)]
@@ -108,7 +108,7 @@ def solved(name: str, design: Design) -> Situations:
 
 
 _STILL: deque[tuple[object, Situations]] = deque(maxlen=4)
-"""The latest situations in still water, and what they are of."""
+"""Cache of the latest situations in still water, with their keys."""
 
 
 def _changed(
@@ -141,9 +141,7 @@ def _changed(
 
 
 def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, MooringFile]]:
-    """Return a file, of an environment with this water, in still water, at high and low water, and
-    in still low water.
-    """
+    """Yield the file in still water, at high and low water, and in still low water."""
     environment, tide = file.environment, file.environment.depth_range
     if water.moving or environment.wind is not None:
         still = replace(environment, current=_NO_CURRENT, wind=None)
@@ -156,7 +154,7 @@ def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, Moor
 
 
 def strumming_file(file: MooringFile) -> MooringFile | None:
-    """Return a file with more drag on its cables, as they strum; None where that is in it."""
+    """Return the file with Cn × 1.5 on its cables; None if it has a strumming law or no cables."""
     if file.solver.strumming is not None:
         return None
     if not any(isinstance(piece.component, Cable) for piece in file.pieces):
@@ -166,7 +164,7 @@ def strumming_file(file: MooringFile) -> MooringFile | None:
 
 
 def _shapeless(situation: Situation) -> bool:
-    """Return whether it is still water in which a slack line has no shape of its own."""
+    """Whether the situation is still water in which a slack line has no unique shape."""
     failure = situation.failure
     still = situation.name in (STILL, STILL_LOW)
     return still and failure is not None and failure.status == Status.SLACK.label
@@ -175,13 +173,13 @@ def _shapeless(situation: Situation) -> bool:
 _Part = TypeVar("_Part", Piece, Clamp)
 
 SOUNDING = 1.0, 0.023
-"""Of a sounding's error, 95 %: the fixed part [m] and the share of the depth; IHO S-44, order 2."""
+"""95 % error of a sounding: fixed part [m] and share of the depth (IHO S-44, order 2)."""
 
 
 def as_deployed(design: Design) -> Design:
-    """The design with the depth, position, serial numbers and cut lengths of its `deployed`.
+    """Return the design with depth, position, serial numbers and cut lengths of `deployed`.
 
-    What is cut to fit keeps the length that fits as designed, unless another was cut.
+    A piece that is cut to fit keeps its design length, unless `deployed` has another.
 
     Raises
     ------
@@ -197,7 +195,7 @@ def as_deployed(design: Design) -> Design:
 
 
 def _deployed_file(file: MooringFile) -> MooringFile:
-    """The same of a file in which nothing is left to cut to fit."""
+    """Apply `deployed` to a file without pieces that are cut to fit."""
     deployed = file.deployed
     assert deployed is not None
     items = {item.label: item for item in deployed.items}
@@ -216,7 +214,7 @@ def _deployed_file(file: MooringFile) -> MooringFile:
 
 
 def differs(designed: MooringFile, deployed: MooringFile) -> bool:
-    """Return whether it stands in another depth than designed, or on other lengths."""
+    """Whether the mooring was deployed at another depth, or with other lengths, than designed."""
     return deployed.environment.depth != designed.environment.depth or any(
         there.length != piece.length
         for piece, there in zip(designed.pieces, deployed.pieces, strict=True)
@@ -225,9 +223,9 @@ def differs(designed: MooringFile, deployed: MooringFile) -> bool:
 
 @rule("as-deployed", once=True, case="d")
 def deployed_depth(handling: Handling) -> Iterator[Verdict]:
-    """Return how far the top of the upright line is from where it was designed to be.
+    """Check the depth of the top of the upright line, as deployed, against its design depth.
 
-    A line to the surface keeps its top there: what differs is the depth under it.
+    For a surface mooring, the change in water depth is checked instead.
     """
     leg = handling.leg
     if leg.file.deployed is None:
@@ -254,7 +252,7 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
         f"{say('depth', designed)}: {what} is {say('depth', abs(moved))} {way}; "
         f"{say('depth', limit)} is within the error of a sounding."
     )
-    remedy = "`calm diff` with this file alone shows what that does."
+    remedy = "`calm diff` with this file shows the effect."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
 
 
@@ -264,7 +262,7 @@ _ANOTHER_SITE = 20.0
 
 
 def _far_away(leg: Leg) -> Verdict | None:
-    """Return that it was deployed at another place than it was designed for."""
+    """Report a deployment far from the planned position."""
     assert leg.file.deployed is not None
     planned = leg.file.position or leg.file.environment.position
     there = leg.file.deployed.position
@@ -275,10 +273,10 @@ def _far_away(leg: Leg) -> Verdict | None:
     if away <= _ANOTHER_SITE:
         return None
     message = (
-        f"Deployed {away:.0f} km from the planned position: the water and the currents of "
-        "this design are those of another place."
+        f"Deployed {away:.0f} km from the planned position: water depth "
+        "and currents of this design may not apply."
     )
-    remedy = "Check both positions, or give the environment of the site."
+    remedy = "Check both positions, or use the environment of the site."
     return verdict_on(None, State.UNKNOWN, message, remedy)
 
 
@@ -302,7 +300,7 @@ LEAST_CURRENT = 0.01
 
 @rule("equilibrium")
 def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
-    """Found only where there is none."""
+    """Report a missing equilibrium."""
     message = f"{failure.status}: {failure.message}"
     yield verdict_on(None, State.FAIL, message, failure.advice)
 
@@ -314,10 +312,10 @@ STILL_ONLY = verdict_on(
     "current are not judged.",
     "Give the current, or an environment that has one.",
 )
-"""What `equilibrium` says of a mooring without a current to speak of."""
+"""Verdict of `equilibrium` on a mooring without significant current."""
 
 USUAL_CURRENT = 0.2
-"""What a wind of 7 m/s alone drives at the surface, 0.03 of it by DNV-RP-C205 [m/s]."""
+"""Surface current driven by a wind of 7 m/s alone: 0.03 times the wind speed, DNV-RP-C205 [m/s]."""
 
 SHARE_OF_ITS_RECORD = 0.9
 """Share of the strongest current of its own record below which a judged one is too weak."""
@@ -328,9 +326,9 @@ WEAK_BESIDE_OTHERS = 0.02
 
 @rule("current")
 def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
-    """Judge the strongest current of all environments, and what each leaves out.
+    """Check the strongest current of all environments, and the depths that each profile omits.
 
-    Each verdict comes with the leg in the environment that it is of.
+    Each verdict comes with the leg in its environment.
     """
     speeds = [float(np.hypot(each.water.u, each.water.v).max()) for each in legs]
     for leg, speed in zip(legs, speeds, strict=True):
@@ -375,9 +373,9 @@ def _records(legs: Sequence[Leg]) -> Iterator[tuple[Leg, float]]:
 
 
 def _left_out(leg: Leg) -> str:
-    """Return what of the depth a profile of the current says nothing of; "" of one that covers it.
+    """Describe the depths that a current profile does not cover; "" if it covers all.
 
-    One speed at the surface is taken for a current that is the same everywhere.
+    A single speed at the surface counts as a current that is uniform with depth.
     """
     environment: Environment = leg.file.environment
     levels = environment.current.depth

@@ -1,4 +1,4 @@
-"""Rules of strength: every piece bears its tension, the line stays taut, and the anchor holds."""
+"""Strength rules: load capacity of every piece, minimum tension of the line, and anchor holding."""
 
 from collections.abc import Iterator, Sequence
 from functools import partial
@@ -21,22 +21,22 @@ WEAK_LINK = 0.5
 """Share of the strength of the cables on both its sides below which a piece is a weak link."""
 
 WEIGHT_OF_A_HINGE = 0.5
-"""In water [N]; what has no length and weighs less is no hardware."""
+"""Weight in water below which a piece without length is not hardware [N]."""
 
 
 def allowable_load(component: Component, factors: SafetyFactors, surface: bool) -> float | None:
-    """Load that a component may bear in use [N], None where neither of its loads is known.
+    """Allowable load of a component in use [N]; None if neither of its loads is known.
 
-    The lesser of its working load and of its breaking load over the safety factor of a surface
-    mooring, of a synthetic rope, or of steel, as far as they are known and count.
+    The smaller of its working load and its breaking load divided by the safety factor, as far as
+    known and applicable. The factor is that for a surface mooring, synthetic rope or steel.
     """
     return lesser_load(component, 1.0, safety_factor(component, factors, surface))
 
 
 def lesser_load(component: Component, working_factor: float, factor: float) -> float | None:
-    """The lesser of working load × `working_factor` and breaking load / `factor` [N].
+    """Return the smaller of working load × `working_factor` and breaking load / `factor` [N].
 
-    Of a synthetic rope that gives both, the breaking load alone counts.
+    For a synthetic rope with both loads, only the breaking load counts.
     """
     known, working = [], counted_working_load(component)
     if working is not None:
@@ -47,17 +47,18 @@ def lesser_load(component: Component, working_factor: float, factor: float) -> f
 
 
 def wanted_load(component: Component) -> str:
-    """The key of the load to ask for if a component gives none: ropes and wires are sold by their
-    breaking load, other things by their working load."""
+    """Key of the load to request if a component has none: ropes and wires are sold by breaking
+    load, other components by working load.
+    """
     return "breaking_load" if isinstance(component, Flexible) else "working_load"
 
 
 def passes_load_on(file: MooringFile, index: int) -> bool:
-    """Return whether the tension of the line goes through a piece.
+    """Whether the line tension passes through a piece.
 
-    The top one, the anchor, and what hangs at the free end of a leg are pulled at one end only: the
-    shackle there bears what they do. A hinge of another program's design, without length or weight,
-    is no piece of hardware.
+    The top piece, the anchor and a piece at the free end of a leg are loaded at one end only; the
+    adjoining shackle carries their load. A hinge of another program's design, without length or
+    weight, is not hardware.
     """
     piece = file.pieces[index]
     if piece.length == 0.0 and abs(piece.component.net_buoyancy) < WEIGHT_OF_A_HINGE:
@@ -73,7 +74,7 @@ def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -
 
 
 def safety_factor_name(component: Component, surface: bool) -> str:
-    """Return which of the `safety_factor` is asked of a component."""
+    """Name of the `safety_factor` that applies to a component."""
     if surface:
         return "surface"
     return "synthetic" if is_synthetic(component) else "steel"
@@ -81,12 +82,14 @@ def safety_factor_name(component: Component, surface: bool) -> str:
 
 @criteria("strength")
 def strength(leg: Leg) -> Iterator[Criterion]:
-    """Judge the greatest tension in every piece by working load, and breaking load / factor.
+    """Compare the maximum tension in each piece with its working load, and with breaking load /
+    factor.
 
-    The top piece and the anchor are judged where they give a load: nothing pulls through them.
+    The top piece and the anchor are checked only if they have a load: no tension passes through
+    them.
 
-    UFC 4-159-03 table 3-7 asks for 3 on new breaking strength of chain and wire; oceanographic
-    practice for 3 to 5, synthetics and surface moorings at the upper end.
+    UFC 4-159-03 table 3-7 requires 3 on new breaking strength of chain and wire. Oceanographic
+    practice uses 3 to 5, with synthetics and surface moorings at the upper end.
     """
     factors, surface = leg.file.checks.safety_factor, reaches_the_surface(leg)
     for part in pieces_of(leg):
@@ -121,15 +124,15 @@ def _strength_words(
     wanted = f"a breaking load of {say('tension', factor * tension)} or more"
     if not is_synthetic(component):
         wanted = f"a working load of {say('tension', tension)} and {wanted}"
-    return f"{bears}; {allowed}.", f"Take one with {wanted}."
+    return f"{bears}; {allowed}.", f"Use a component with {wanted}."
 
 
 @criteria("release-load")
 def release_load(leg: Leg) -> Iterator[Criterion]:
-    """Return what every release bears as long as it stands, and as it opens, against its own loads.
+    """Compare the load on every release, while deployed and on opening, with its rated loads.
 
-    As it opens it bears the pull below it, against its `opening_load`; where the maker gives none,
-    what it may bear as long as it stands has to do, and the message says so.
+    On opening it carries the tension below it, limited by its `opening_load`. Without an
+    `opening_load`, the allowable load while deployed applies, and the message mentions that.
     """
     factors, surface = leg.file.checks.safety_factor, reaches_the_surface(leg)
     for part in pieces_of(leg):
@@ -161,19 +164,20 @@ def _release_words(
         allowed = f"its opening load is {say('tension', limit)}"
     return (
         f"{bears}; {allowed}.",
-        f"Take a release made for {say('tension', tension)}, or two side by side.",
+        f"Use a release rated for {say('tension', tension)}, or share the load between two in "
+        "parallel.",
     )
 
 
 @rule("strength-steps")
 def strength_steps(result: LegResult) -> Iterator[Verdict]:
-    """Every weak link: a piece that is good for less than half of what the cables on both its sides
-    are, and bears more than half of that.
+    """Report weak links: pieces whose strength is less than half that of the cables on both sides,
+    and whose tension exceeds half of the latter.
 
-    A line whose strength jumps carries weight for nothing, and parts at its weak link. Where there
-    is none, the piece nearest to one is reported. Chain is left out of the comparison: it is
-    heavier than its load asks for, against wear; and so is what has only the low bound of an
-    estimate, which says nothing of how strong it is beside others.
+    A line of uneven strength carries unnecessary weight and parts at its weak link. If there is
+    none, the piece closest to one is reported. Chain is excluded because it is oversized against
+    wear. Loads known only as lower bounds of an estimate are excluded because they are no measure
+    of relative strength.
     """
     factors, surface = result.file.checks.safety_factor, reaches_the_surface(result.leg)
     loads = [
@@ -192,15 +196,15 @@ def strength_steps(result: LegResult) -> Iterator[Verdict]:
             piece,
             load,
             WEAK_LINK * cables,
-            f"{piece.label} is good for {say('tension', load)}, the cables above and below it "
+            f"{piece.label} is rated for {say('tension', load)}, the cables above and below it "
             f"for {say('tension', cables)} or more.",
-            "Match its strength to that of the cables next to it.",
+            "Match its strength to the adjoining cables.",
             State.WARN,
         )
 
 
 def _is_estimated(component: Component) -> bool:
-    """Whether a load of a component, as it is judged, is the low bound of an estimate."""
+    """Whether the load in use for a component is the lower bound of an estimate."""
     return any(
         getattr(component, one.quantity) in (one.low, one.low_in_waves)
         for one in component.estimate or ()
@@ -211,7 +215,9 @@ def _is_estimated(component: Component) -> bool:
 def _steps(
     result: LegResult, loads: Sequence[float | None]
 ) -> Iterator[tuple[float, Piece, float, float]]:
-    """Of all between two cables: share of their strength, the piece, own load and theirs [N]."""
+    """Yield, for each piece between two cables: strength ratio, piece, its load, the weaker cable's
+    [N].
+    """
     cables = [
         load if isinstance(piece.component, Cable) else None
         for piece, load in zip(result.file.pieces, loads, strict=False)
@@ -226,13 +232,13 @@ def _steps(
 
 @criteria("slack")
 def slack(leg: Leg) -> Iterator[Criterion]:
-    """The least tension in every wire and rope above the release; of the whole line without one.
+    """Minimum tension in each wire and rope above the release, or in the whole line without one.
 
-    A line that falls slack wears, kinks and snatches. Mooring groups ask for some 500 to 1000 N
-    above the release at slack water; no rule is published, so 500 N of wire and 300 N of rope are
-    the defaults. A piece with ``slack: allowed`` is not judged, nor what lies on the seabed. A line
-    that is short down to its release (`SHORT_LEAD`) is as taut as its floats pull: it is judged by
-    a limit of the design alone.
+    A slack line wears, kinks and takes snap loads. Mooring groups require about 500 to 1000 N above
+    the release at slack water. No published rule exists, so the defaults are 500 N for wire and 300
+    N for rope. Pieces with ``slack: allowed`` and line on the seabed are exempt. A line that is
+    short down to its release (`SHORT_LEAD`) depends on its floats alone, and only a limit set by
+    the design applies.
     """
     file = leg.file
     lowest = len(file.pieces) - 1 if file.release is None else file.release
@@ -253,7 +259,7 @@ def _words(
     part: JudgedPart, limit: float, name: str, least: float, _: LegResult
 ) -> tuple[str, str]:
     return (
-        f"{part.label} has a least tension of {say('tension', least)}; "
+        f"Minimum tension in {part.label} is {say('tension', least)}; "
         f"{say('tension', limit)} keeps a {name} taut.",
         "Add buoyancy above it, or remove weight; `slack: allowed` exempts a piece.",
     )
@@ -341,7 +347,7 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
 
 
 def _weight(leg: Leg) -> float | None:
-    """Of the anchor in water [N]; None of a mass of a material that is not known."""
+    """Weight of the anchor in water [N]; None for a mass of unknown material."""
     return leg.anchor_weight if leg.file.anchor.material_known else None
 
 
@@ -350,7 +356,7 @@ def _heavier(leg: Leg, weight: float) -> str:
 
 
 def _in_air(leg: Leg, weight: float) -> str:
-    """Return what weighs so much in water [N]."""
+    """Masses in air of steel and concrete with this weight in water [N]."""
     water = leg.water
     density = water.density_at(np.array(water.depth))
     steel, concrete = anchor_dry_mass(weight, float(density), water.gravity)

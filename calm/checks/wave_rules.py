@@ -1,4 +1,4 @@
-"""Rules of waves: the greatest tension, whether the line falls slack, how long it lasts."""
+"""Wave rules: maximum tension, slack line, and fatigue life."""
 
 from __future__ import annotations
 
@@ -22,14 +22,16 @@ _HOW = "Give `waves:` in the environment: a design sea, and a scatter table for 
 
 @dataclass(frozen=True)
 class MooringInWaves:
-    """A mooring in the waves of its environment; None where it is given none, or why unknown."""
+    """Mooring in the waves of its environment: analysis, reason why it failed, or None without
+    waves.
+    """
 
     leg: Leg
     waves: WaveAnalysis | str | None
 
     @classmethod
     def of(cls, leg: Leg) -> MooringInWaves:
-        """Of a mooring that stands."""
+        """Analyse a mooring in the waves of its environment."""
         around = leg.file.environment
         if around.waves is None:
             return cls(leg, None)
@@ -41,10 +43,10 @@ class MooringInWaves:
 
 @rule("wave-strength")
 def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
-    """Judge the greatest tension of every piece in waves.
+    """Compare the maximum tension of each piece in waves with its loads.
 
-    By its working load, and its breaking load over the factor that API RP 2SK asks of tensions
-    found dynamically. A mooring that reaches the surface is not known without waves.
+    The limits are its working load, and its breaking load over the factor that API RP 2SK requires
+    for dynamic analysis. Without waves, a mooring that reaches the surface is unknown.
     """
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
@@ -70,13 +72,13 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
                 yield unknown(piece, message, remedy, tension, lacks=lacks)
             continue
         message = f"{bears}; its loads allow {say('tension', limit)}.{_measured(row, 'greatest')}"
-        remedy = "Take a stronger one, or let the line stretch more."
+        remedy = "Use a stronger component, or add stretch to the line."
         yield _sure(waves, at_most(piece, tension, limit, message, remedy, source=source))
 
 
 @rule("wave-slack")
 def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
-    """Judge the least tension of every piece in waves: a line that falls slack snatches."""
+    """Compare the minimum tension of each piece in waves with zero, where snap loads begin."""
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):
         return
@@ -117,7 +119,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
                 f"The fatigue life of {one.label} is {_years(one.life)} ({_years(one.life_low)} "
                 f"to {_years(one.life_high)}), by {one.curve}; {_years(limit / YEAR)} is required."
             )
-            remedy = "Take a thicker one, let the line stretch more, or renew it sooner."
+            remedy = "Use a thicker component, add stretch to the line, or renew it sooner."
             life = one.life * YEAR
             yield _sure(waves, at_least(piece, life, limit, message, remedy, source=source))
 
@@ -132,7 +134,7 @@ def _measured(row: PieceInWaves, which: Literal["greatest", "least"]) -> str:
 
 
 def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
-    """Return a failure as unknown where a rope without stiffness makes the tensions too great."""
+    """Turn a failure into unknown if a rope without stiffness makes the tensions too high."""
     if verdict.state is not State.FAIL or not waves.warnings:
         return verdict
     message = f"{verdict.message} {' '.join(waves.warnings)}"
@@ -147,4 +149,4 @@ def _years(count: float) -> str:
 
 
 IN_WAVES = (wave_strength, wave_slack, fatigue)
-"""What is judged of a `MooringInWaves`, once in every environment."""
+"""Rules evaluated for a `MooringInWaves`, once per environment."""

@@ -1,4 +1,4 @@
-"""The command line: it parses, calls and shows, and computes nothing."""
+"""Command line: parse arguments, call the program, and show results."""
 
 from calm.cli.main import main
 

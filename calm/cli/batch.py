@@ -118,7 +118,7 @@ def batch(
 
 
 def _implausible(counts: Mapping[str, int], mooring: Design, record: Record) -> str:
-    """Return how many profiles have a current that cannot be true, and the first of them."""
+    """Describe the number of profiles with an implausible current, and the first one."""
     from calm.batch.statuses import first_implausible
 
     greatest = mooring.file.environment.maximum_speed
@@ -130,7 +130,7 @@ def _implausible(counts: Mapping[str, int], mooring: Design, record: Record) -> 
 
 
 def ended(counts: Mapping[str, int], output: Path) -> ExitCode:
-    """Tell how many profiles have no result, and why."""
+    """Report the profiles without a result, with reasons, and return the exit code."""
     from calm.batch.statuses import Ending, endings
 
     done = sum(counts.values())
@@ -144,7 +144,7 @@ def ended(counts: Mapping[str, int], output: Path) -> ExitCode:
 
 
 def _kinds(counts: Mapping[str, int]) -> Iterator[str]:
-    """Profiles that are NaN, by what they come to, and by status where that says more."""
+    """Describe NaN profiles by outcome, with their statuses."""
     from calm.batch.statuses import Ending, ending_of, endings
 
     for ending, count in endings(counts).items():
@@ -158,7 +158,7 @@ def _kinds(counts: Mapping[str, int]) -> Iterator[str]:
 
 
 def check_output(output: Path, *inputs: Path) -> None:
-    """Refuse a result that cannot be written, or would take the place of what it is made from."""
+    """Reject an output path that cannot be written, or that would overwrite an input."""
     # unlike `Path.resolve`, it takes links that lead round in a circle
     place = os.path.realpath(output)
     if output.is_symlink() and not output.exists():
@@ -170,7 +170,7 @@ def check_output(output: Path, *inputs: Path) -> None:
         raise UsageError(f"cannot write {output}: permission denied")
     for path in inputs:
         if place == os.path.realpath(path):
-            raise UsageError(f"{output} is an input; it is kept")
+            raise UsageError(f"{output} is an input file and was not overwritten")
     if output.suffix != ".nc":
         raise UsageError(f"cannot write {output}: its name must end in .nc")
     if os.path.isdir(output):
@@ -181,10 +181,11 @@ def check_output(output: Path, *inputs: Path) -> None:
 def stopped_by_a_signal(
     progress: Callable[[Progress], None],
 ) -> Iterator[Callable[[Progress], None]]:
-    """A batch system's request to stop ends the work as Ctrl-C does: with nothing left behind.
+    """Turn SIGINT and SIGTERM into KeyboardInterrupt while a batch runs.
 
-    Python ignores what a signal raises in the callback of a weak reference. So the returned
-    `progress` ends the work, too.
+    A stop request of a batch system then ends the work like Ctrl-C, without leftovers. Python
+    ignores exceptions raised by a signal handler in the callback of a weak reference, so the
+    returned `progress` raises KeyboardInterrupt, too.
     """
     if current_thread() is not main_thread():
         yield progress

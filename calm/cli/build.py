@@ -21,12 +21,12 @@ def build(
     environment: str | None = None,
     catalog: options.CatalogFiles = None,
 ) -> ExitCode:
-    """Build or edit a mooring or a tow, and see it bend at every change.
+    """Edit a mooring or tow interactively, with live results.
 
-    The line is a table with its picture and the design check beside it. The
-    file keeps its comments, order and units: what you do not change stays as
-    written. Unsaved work is kept beside the file, and offered again after a
-    closed terminal, a crash or a loss of power. Press ? for all keys.
+    The line is shown as a table next to its drawing and the design check.
+    Comments, order and units in the file are preserved; only the values you
+    edit change. Unsaved work is kept next to the file, and offered again after
+    a closed terminal, a crash or a power failure. Press ? for all keys.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def build(
       calm build mooring.yaml
       calm build mooring.yaml --environment storm
     """
-    # it draws and reads keys in a terminal, or through the driver that is named
+    # the builder needs a terminal, or the driver in TEXTUAL_DRIVER
     terminal = all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr))
     if not (terminal or os.environ.get("TEXTUAL_DRIVER")):
         raise UsageError(_NO_TERMINAL)

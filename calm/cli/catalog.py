@@ -69,12 +69,12 @@ def _search(catalogue: Catalogue, text: str, kind: str | None) -> dict[str, Defi
     kinds = None if kind is None else [kind]
     spelt = index.spelt(text)
     if spelt != text:
-        narrate(f"no component has `{text}`; searched for `{spelt}`")
+        narrate(f"no component matches `{text}`; searched for `{spelt}`")
     first, asked = [*remembered.favourites, *remembered.recent], spelt.split()
     fewer = (" ".join(asked[:i] + asked[i + 1 :]) for i in reversed(range(len(asked))))
     found = index.search(spelt, kinds, first=first)
     if not found:
-        narrate(f"no component has `{spelt}`; `calm catalog add` makes one from a few figures")
+        narrate(f"no component matches `{spelt}`; define one with `calm catalog add`")
         some = next((text for text in fewer if text and index.search(text, kinds)), "")
         if some:
             narrate(f"with `{some}` alone:")
@@ -84,11 +84,11 @@ def _search(catalogue: Catalogue, text: str, kind: str | None) -> dict[str, Defi
 
 @catalog.command(name="show", usage="Usage: calm catalog show [OPTIONS] ID...")
 def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
-    """Show every figure of components, with its source, and the figures derived from them.
+    """Show all values of components with their sources, and derived values.
 
-    Derived are the net force in water and Kn and Kt, the drag at 1 m/s. Entries
-    for the same item from different sources are shown side by side, the one to
-    use first.
+    Derived values are the net force in water, and Kn and Kt, the drag at 1 m/s.
+    Entries for the same item from different sources are shown side by side, the
+    one to use first.
 
     Parameters
     ----------
@@ -121,9 +121,9 @@ def add(
 ) -> ExitCode:
     """Add a component to your own catalogue, which every command reads, and show its card.
 
-    It is checked as by `calm catalog check` first: impossible figures and
-    figures without a source are refused, and what a design check will lack is
-    listed.
+    The component is checked first, as by `calm catalog check`, which rejects
+    impossible values and values without a source, and lists values that the
+    design check will need.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def add(
         Its id: small letters, figures and hyphens. It replaces an entry of the
         catalogue with the same id.
     figures
-        Its `kind` and its figures with their units, such as `diameter=432 mm`,
+        Its `kind` and its values with their units, such as `diameter=432 mm`,
         in quotes if they contain a space. The manual's page on components lists
         the keys of each kind.
     output
@@ -180,15 +180,14 @@ def add(
 
 @catalog.command(usage="Usage: calm catalog check [OPTIONS] [FILE]")
 def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
-    """Find impossible figures in a catalogue, and list missing ones.
+    """Find impossible values in a catalogue, and list missing values.
 
     A sphere that lifts more than its volume, a rope heavier than a solid bar of
-    its diameter and a cable stiffer than steel are impossible; figures without
-    a source are findings too. The exit code is 1 if there is a finding.
+    its diameter and a cable stiffer than steel are impossible. Values without
+    a source are findings, too. The exit code is 1 if there is a finding.
 
-    Figures that a design check or the sum of masses needs are listed if
-    missing, but are not findings. Figures that were searched for and not found
-    are marked.
+    Missing values that a design check or the total mass needs are listed, but
+    are not findings. Values that are known to be unpublished are marked.
 
     Parameters
     ----------

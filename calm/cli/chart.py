@@ -61,7 +61,7 @@ def solve(
     length: _Seven = None,
     json: Annotated[Path | None, Parameter(allow_leading_hyphen=True, group=_OUTPUT)] = None,
 ) -> ExitCode:
-    """Find every cable that has three given quantities.
+    """Find every cable that matches three given quantities.
 
     The cable hangs in a uniform current from A, its lower end, to B, its upper;
     drag is normal to it. Give quantities with their units. The exit code is 3
@@ -74,7 +74,7 @@ def solve(
     k
         K = density × cd × diameter × speed² / (2 × weight), from 0 to 100.
     diameter
-        Diameter of the cable, in place of K, together with the next three.
+        Diameter of the cable, instead of K, together with the next three.
     cd
         Drag coefficient of the cable.
     speed
@@ -96,7 +96,7 @@ def solve(
     length
         Length of the cable.
     json
-        Write the answer as JSON, - to print it.
+        Write the result as JSON (- for standard output).
     """
     from calm.analytic.chart import chart_solve
     from calm.report.chart_page import answer_document, answer_part

@@ -41,13 +41,13 @@ def check(
     workers: int | None = None,
     units: options.Units = None,
 ) -> ExitCode:
-    """Check designs: solve every mooring in every environment, and judge it by rule.
+    """Check designs: solve each mooring in each environment and apply the design rules.
 
-    Each mooring is solved as given, in still water, with cables that strum and,
-    where its file asks for it, at high and low water and with growth; then launched
-    anchor last, released, and broken at each connection. The exit code is 0 when
-    nothing fails and nothing is incomplete, 1 when a rule fails or lacks a figure,
-    3 when a mooring has no equilibrium.
+    Each mooring is solved as given, in still water, with strumming cables and, if
+    its file requires it, at high and low water and with biofouling. An anchor-last
+    launch, the release, and a break at each connection follow. The exit code is
+    1 if a rule fails or lacks a value, 3 if a mooring has no equilibrium, and 0
+    otherwise.
 
     Parameters
     ----------
@@ -55,31 +55,31 @@ def check(
         An environment named in the files, or an environment file. Repeatable. By default, every
         environment of each file.
     json
-        Write the findings as JSON, - to print it: what governs each rule, what does not pass,
-        and what uses half of its limit or more.
+        Write the findings as JSON (- for standard output): the governing one of each rule,
+        all that do not pass, and those with a utilisation of at least one half.
     report
         Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder:
-        of one mooring six pages and more, of several one matrix and a page of each.
+        six pages or more for one mooring, a matrix and a page each for several.
     page
-        The paper of the report.
+        Page size of the report.
     full
-        Write all the pages of each of several moorings too, as PDF files of their own.
+        For several moorings, also write all pages of each mooring as a separate PDF file.
     against
         An earlier design, with which the report compares the mooring; needs --report.
     all_findings
-        Write every finding in the JSON and in checks.csv, of every piece in every situation.
+        Write every finding into the JSON and checks.csv, for every piece and situation.
     missing
-        Print, in place of the findings, a block of YAML to complete: the figures that
-        each component lacks, with the rules that need them.
+        Instead of the findings, print a block of YAML to complete: the missing values
+        of each component, with the rules that need them.
     output
         Write the block of --missing to this file.
     allow_unknown
-        Ignore unknown figures in the exit code; the output stays the same.
+        Ignore unknowns in the exit code; the output stays the same.
     uncertainty
-        Give every finding the probability of breaking its limit, with inputs as
-        uncertain as `uncertainty` in the file says, and list the designs by it.
+        Report for each finding the probability of exceeding its limit, given the input
+        uncertainties under `uncertainty` in the file, and rank the designs by it.
     workers
-        Number of processes; by default one for each core.
+        Number of processes; one per core by default.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def check(
     outputs = Outputs(tuple(files), json)
     options.from_one(workers=workers)
     if full and report is None:
-        raise UsageError("--full writes the pages of each mooring beside the --report")
+        raise UsageError("--full needs --report")
     if against is not None and (report is None or len(files) > 1):
         raise UsageError("--against compares one mooring with an earlier design in its --report")
     _check_missing(missing, output, files, (json, report))
@@ -103,7 +103,7 @@ def check(
         given = [*files, *map(Path, environment or ()), *(catalog or ()), *filter(None, [against])]
         _check_report(report, json, given)
     drawing = Drawing(len(files) == 1, full and len(files) > 1, page)
-    # one that is compared is drawn with that
+    # a comparison is part of the section, so it is drawn here
     drawn = drawing if report is not None and against is None else None
     count = len(files) * len(environment or [None])
     ready = partial(load_ahead, count, drawn is not None)
@@ -147,7 +147,7 @@ def _read(
     against: Path | None,
     ready: Callable[[], None],
 ) -> tuple[list[DesignFile], list[Path], Design | None]:
-    """Return what is judged, the tows among the files, and the earlier design; or all their
+    """Read the designs to check, the tows among the files, and the earlier design, or report all
     mistakes.
 
     `ready` is called while other processes read.
@@ -232,10 +232,10 @@ def _answer(
     *,
     every: bool,
 ) -> None:
-    """Print what was found, and write the report if it is asked for.
+    """Print the findings, and write the report if requested.
 
-    Its PDF is set meanwhile: typst does not hold Python up. `names` are those of the PDF files of
-    single moorings, if these are asked for.
+    The PDF is typeset at the same time, because typst releases the interpreter lock. `names` are
+    the names of separate PDF files per mooring, if requested.
     """
     from concurrent.futures import ThreadPoolExecutor
 

@@ -1,4 +1,4 @@
-"""``calm deck``: papers for the deployment."""
+"""``calm deck``: deck sheets for the deployment."""
 
 from __future__ import annotations
 
@@ -34,33 +34,32 @@ def deck(
 
     Writes deck.pdf with a mooring diagram for the wall, deployment and recovery
     logs, cutting list, hardware bill, shipping list, lifts, instrument sheet and,
-    anchor last, the plan of the anchor drop; the diagram by itself as diagram.pdf
-    and diagram.svg; the lists as CSV files and as sheets of deck.xlsx; and the plan
-    as plan.json. A net of legs is drawn as a whole, as net.svg too, and listed leg
-    by leg; its drop is not planned.
+    for anchor-last deployment, the anchor drop plan. Also written are the diagram
+    as diagram.pdf and diagram.svg, the lists as CSV files and as sheets of
+    deck.xlsx, and the plan as plan.json. A net is drawn as a whole (also as
+    net.svg) and listed leg by leg; its drop is not planned.
 
     Parameters
     ----------
     output
-        The folder to write; with several moorings, each gets a subfolder of its
-        name.
+        The folder to write; several moorings get a subfolder each, with their names.
     page
-        The paper.
+        Page size.
     environment
         The environment of depths and lengths: a name from the files, or an
         environment file; further ones are design currents. By default the
-        file's own, with all those it names.
+        default environment of the file, with all named environments.
     order
-        Which end goes over the side last.
+        Deployment order.
     ship_speed
         Speed over the ground at which the ship tows the line out before the
-        anchor is let go.
+        anchor is released.
     streamed
         Horizontal distance from the anchor to the top float when the anchor is
-        let go; by default that of the line towed at that speed.
+        released; by default that of the line towed at that speed.
     course
-        Course over the ground as the ship tows the line out; by default against
-        the current at the surface.
+        Course over the ground while the line is towed out; by default against
+        the surface current.
 
     Examples
     --------
@@ -155,7 +154,7 @@ def _plan(deck: Deck) -> dict[str, Any]:
 
 
 def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
-    """Return what the sheets cannot show of the names in a file, and where."""
+    """Describe characters of the file that the font of the sheets lacks, with their places."""
     from calm.drawing.typesetting import lacking
 
     signs = lacking(text for text, _ in _texts(deck))
@@ -167,7 +166,7 @@ def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
 
 
 def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
-    """Return what a person wrote, and where it stands."""
+    """Yield the texts of the file that appear on the sheets, with their place."""
     from calm.report.provenance import title_pairs
 
     for name, text in title_pairs(deck.file):
@@ -183,10 +182,9 @@ def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
 
 
 def _folders(designs: Sequence[reading.DesignFile], output: Path) -> list[Path]:
-    """Return where each mooring's sheets go.
+    """Folder of the sheets of each mooring.
 
-    UsageError: two moorings would have the same folder, or a file that is read stands where one
-    goes.
+    UsageError: two moorings have the same folder, or a folder has the path of an input file.
     """
     if len(designs) == 1:
         return [output]

@@ -68,9 +68,9 @@ def diff(
 
 
 def compared(files: tuple[Path, ...], lines: list[Design]) -> Comparison:
-    """Two designs, or one with what was deployed of it.
+    """Compare two designs, or one design with its deployment.
 
-    UsageError: a mooring and a tow; a single tow, or a file that says nothing of a deployment.
+    UsageError: a mooring and a tow, a single tow, or a file without `deployed:`.
     """
     from calm.case import Design
     from calm.checks.comparison import comparison_of
@@ -88,4 +88,4 @@ def compared(files: tuple[Path, ...], lines: list[Design]) -> Comparison:
         design, there = (Design(replace(one.file, deployed=None)) for one in (first, deployed))
         return comparison_of(("design", "deployed"), design, there)
     except NoEquilibrium as failure:
-        raise UsageError(f"{files[0]}: what is cut to fit has no length: {failure}") from failure
+        raise UsageError(f"{files[0]}: no cut length fits: {failure}") from failure

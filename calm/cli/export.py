@@ -20,14 +20,14 @@ def export(
 ) -> ExitCode:
     """Write a mooring or a tow for another program.
 
-    What the other program cannot represent is reported, and listed at the head of the file. A
-    piece cut to fit is exported with its cut length.
+    Features that the other program cannot represent are reported and listed at
+    the top of the file. A piece cut to fit is exported with its cut length.
 
     Parameters
     ----------
     to
         The program: mdd (Mooring Design & Dynamics), cbl (WHOI Cable), moordyn (MoorDyn 2,
-        with the current in a file beside it) or csv (a list).
+        with the current in a second file) or csv (a list).
     output
         The file to write.
 

@@ -1,4 +1,4 @@
-"""``calm grid``: what instruments measured at moving depths, put onto fixed levels."""
+"""``calm grid``: interpolate measurements at moving depths onto fixed levels."""
 
 from __future__ import annotations
 
@@ -177,9 +177,9 @@ def fields_of(
     *,
     in_time: bool,
 ) -> dict[str, GriddedQuantity]:
-    """The field of each quantity; one that has too few instruments is left out, and said.
+    """Grid each quantity; quantities with too few instruments are omitted with a message.
 
-    UsageError: none is left; no time is common; no instrument is of the line.
+    UsageError: no quantity remains, no times overlap, or no instrument belongs to the line.
     """
     import numpy as np
 
@@ -201,7 +201,7 @@ def fields_of(
             narrate(line)
         dropped = sum(series[name][i].dropped for i in points)
         if dropped:
-            narrate(f"{name}: {dropped} values are left out because of their flag")
+            narrate(f"{name}: {dropped} values excluded because of their flag")
         for i, at in points.items():
             one, column = series[name][i], samples.label.index(where.places.label[at])
             had = one.dropped or np.isfinite(one.value).any()
@@ -214,5 +214,5 @@ def fields_of(
     if not fields:
         raise UsageError("; ".join(reasons))
     for reason in reasons:
-        narrate(f"{reason}: it is left out")
+        narrate(f"{reason}; the quantity is omitted")
     return fields

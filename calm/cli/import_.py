@@ -32,10 +32,10 @@ def import_(
 ) -> ExitCode:
     """Make mooring files from designs of other programs.
 
-    The program is found from the content of the file. Every figure is taken
+    The program is recognised from the content of the file. All values come
     from the file. Guesses are marked as comments on their lines, and reported
-    together with what was left out. A file that CALM cannot represent is
-    refused with the reason, and nothing is written.
+    together with omissions. A file that CALM cannot represent is rejected
+    with the reason, and nothing is written.
 
     Parameters
     ----------
@@ -47,12 +47,12 @@ def import_(
         The program: mdd, cbl, moordyn, oceanarray, moords or table. By default recognised
         from the content.
     strict
-        Refuse files that need guesses.
+        Reject files that need guesses.
     define
-        A macro of WHOI Cable, as NAME=VALUE, or the id in the catalogue of what oceanarray
-        names, as "NAME=ID". Repeatable.
+        A macro of WHOI Cable, as NAME=VALUE, or the catalogue id for an oceanarray name, as
+        "NAME=ID". Repeatable.
     environment
-        An environment file, in place of the water in the file.
+        An environment file, instead of the environment in the file.
     onto
         A mooring file: the list of instruments FILE (serial number, name, nominal depth, clock
         offset; CSV, RODB's info.dat, oceanarray, or NetCDF) is assigned to its line, and OUTPUT
@@ -60,14 +60,14 @@ def import_(
     columns
         The columns of a table by their headings: name=Item,length=Len.
     elements
-        A library of elements, with the figures that a list or oceanarray lacks: the mdcodes.mat of
+        A library of elements, for values that a list or oceanarray lacks: the mdcodes.mat of
         Mooring Design & Dynamics, the table of moords, or a workbook.
     match_catalogue
-        Use catalogue entries for components that agree in name and figures.
+        Use catalogue entries for components that agree in name and values.
     allow_include
         Allow a file to include others from outside its own folder.
     json
-        Write what was guessed and left out as JSON, - to print it.
+        Write guesses and omissions as JSON (- for standard output).
 
     Examples
     --------
@@ -163,9 +163,9 @@ def _is_folder(files: tuple[Path, ...], output: Path) -> bool:
 
 
 def _targets(files: tuple[Path, ...], output: Path) -> list[Path]:
-    """Return where each mooring file will stand.
+    """Path of each mooring file to write.
 
-    UsageError: two would stand in one place, or one in the place of a file that is read.
+    UsageError: two files have the same path, or one would overwrite an input file.
     """
     from calm.report.folder import check_destination
 

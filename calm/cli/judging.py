@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 
 class Drawing(NamedTuple):
-    """How moorings are drawn for the report.
+    """Settings for the pages of moorings in the report.
 
     Attributes
     ----------
-    alone : whether a mooring has all its pages there, and not one behind the summary
-    full : whether each of many has all its pages as a PDF of its own
-    paper : what these are printed on
+    alone : whether the report contains all pages of a mooring, instead of one after the summary
+    full : whether each of several moorings also gets all its pages as a separate PDF
+    paper : page size
     """
 
     alone: bool = True
@@ -36,8 +36,8 @@ class Drawing(NamedTuple):
 
 
 class DrawnSection(NamedTuple):
-    """A mooring's section of the report: its row of the summary, its HTML and its PDF leaf, and all
-    its pages as a PDF of its own, if that is asked for.
+    """Section of a mooring in the report: its row of the summary, its HTML and PDF leaves, and all
+    its pages as a separate PDF, if requested.
     """
 
     section: CheckedSection
@@ -128,7 +128,7 @@ def load_ahead(stands: int, drawn: bool) -> None:
         import calm.report.html  # noqa: F401
         from calm.drawing.typesetting import signs
 
-        signs()  # has the font read
+        signs()  # reads the font
 
 
 def _solve_and_conclude(

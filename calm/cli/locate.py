@@ -31,14 +31,14 @@ def locate(
     update: Path | None = None,
     accept: bool = False,
 ) -> ExitCode:
-    """Find where an anchor lies from acoustic ranges taken by a ship.
+    """Locate an anchor from ship-to-release acoustic ranges.
 
-    Outliers among the ranges are reported and left out, if enough ranges
-    remain. The position comes with its 95 % ellipse, the depth with its
-    interval, and a warning if the ship's positions leave them poorly known. If
-    two positions fit, both are given, and weighed by the distance that an
-    anchor can fall back from the planned position. Exit code 1 while both
-    remain. Rays are taken as straight.
+    Outliers are reported and rejected if enough ranges remain. The position
+    comes with its 95 % ellipse, the depth with its interval, and a warning if
+    the ship's positions constrain them poorly. If two positions fit, both are
+    given, and weighted by the possible fallback of an anchor from the planned
+    position. The exit code is 1 if both remain. Acoustic rays are assumed
+    straight.
 
     Parameters
     ----------
@@ -49,22 +49,22 @@ def locate(
         and NOC's programs.
     sound_speed
         Speed of sound for times: a speed, or a CSV file with the columns
-        depth[m] and sound_speed[m/s]; 1500 m/s by default. Ranges in metres are
-        used as they are.
+        depth[m] and sound_speed[m/s]; 1500 m/s by default. Ignored for ranges
+        in metres.
     transducer
         Depth of the ship's transducer.
     depth
-        Depth of the water at the anchor, if known; otherwise it is estimated.
+        Water depth at the anchor, if known; otherwise it is estimated.
     above_seabed
         Height above the seabed of the transponder, such as the release.
     plot
         Draw the ranges as circles about the ship, with the position found:
         .png, .svg or .pdf.
     json
-        Write the place as JSON, - to print it.
+        Write the position as JSON (- for standard output).
     near
-        Planned latitude and longitude of the anchor, by which two positions are
-        weighed; by default the planned position in the file of --update.
+        Planned latitude and longitude of the anchor, used to weight two
+        positions; by default the planned position in the file of --update.
     hemisphere
         Hemispheres of positions that have neither letter nor sign, such as S,W.
     update
@@ -74,7 +74,7 @@ def locate(
         if the position is in doubt for another reason, nothing is written, and
         the exit code is 1.
     accept
-        Write the position in spite of a doubt.
+        Write the position even if it is in doubt.
 
     Examples
     --------
@@ -115,7 +115,7 @@ def locate(
     sound = _sound(sound_speed or DEFAULT_SPEED)
     survey = read_ranges(file, under, hemisphere)
     if sound_speed is not None and not survey.timed:
-        narrate("--sound-speed is not used: ranges in metres are taken as they are")
+        narrate("--sound-speed is ignored because the ranges are already in metres")
     for notice in survey.notices:
         narrate(f"{file}: {notice}")
     mooring = None if update is None else range_fit.located_mooring(update)
@@ -138,7 +138,7 @@ def locate(
     if edited is None:
         return ExitCode.FINDING if located.undecided and not accept else ExitCode.DONE
     if doubts and not accept:
-        narrate(f"{update} is not written: {'; '.join(doubts)}. --accept writes it anyway")
+        narrate(f"{update} was not changed: {'; '.join(doubts)}. Use --accept to write it anyway")
         return ExitCode.FINDING
     working, text = edited
     lost = working.save(text)

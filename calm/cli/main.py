@@ -47,8 +47,9 @@ Exit codes: 0 done, 1 a check found something, 2 bad input or usage,
 3 no equilibrium, 70 internal error, 130 interrupted."""
 
 _SELDOM = 100_000
-"""New objects after which unused circles of them are looked for. Python's own 700 cost a command a
-tenth of its time: what it imports is all looked through again and again."""
+"""Number of new objects between collections of reference cycles. Python's default of 700 costs a
+command a tenth of its time, because all imported objects are scanned repeatedly.
+"""
 
 
 def _version() -> str:
@@ -58,7 +59,7 @@ def _version() -> str:
     return f"{__version__} (commit {commit})" if commit else __version__
 
 
-# The file of an autoloaded function runs at the first Tab; one that is sourced names its function.
+# zsh runs an autoloaded file at the first Tab; a sourced script must name its function itself.
 _ZSH_CALL = '\n\nif [ "$funcstack[1]" = _calm ]; then _calm "$@"; else compdef _calm calm; fi\n'
 
 
@@ -77,7 +78,7 @@ def completion(shell: Literal["bash", "zsh", "fish"], /) -> ExitCode:
       calm completion fish > ~/.config/fish/completions/calm.fish
     """
     script = app.generate_completion(prog_name="calm", shell=shell)
-    if shell == "zsh":  # which calls the function that has the name of the file
+    if shell == "zsh":  # zsh calls the function named after the file
         script = script.replace("_cyclopts_calm", "_calm").rstrip("\n") + _ZSH_CALL
     show(script)
     return ExitCode.DONE
@@ -85,7 +86,7 @@ def completion(shell: Literal["bash", "zsh", "fish"], /) -> ExitCode:
 
 app = App(
     name="calm",
-    help="Statics of oceanographic moorings and tows: shape and tensions in a current.",
+    help="Design and analyse oceanographic moorings and tows.",
     help_epilogue=_EPILOGUE,
     help_format="plaintext",
     help_formatter=HelpAtWidth(),
@@ -123,8 +124,9 @@ _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
         (completion, "SHELL"),
     ),
 }
-"""The commands by what they are for, in the order of `--help`: each with its usage, where that is
-not the one made from its options."""
+"""Commands by purpose, in the order of `--help`; each with its usage, unless that is generated from
+its options.
+"""
 
 for _number, (_name, _commands) in enumerate(_GROUPS.items()):
     _group = Group(_name, sort_key=_number)
@@ -156,12 +158,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         CALM_DEBUG is 1.
     """
     prepare()
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # to look for them takes time
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # searching for plugins takes time
     if arguments is None:
         gc.set_threshold(_SELDOM)
-        atexit.register(gc.freeze)  # what is left needs no last search for cycles
+        atexit.register(gc.freeze)  # remaining objects need no final collection
         if not sys.warnoptions:
-            warnings.simplefilter("ignore")  # what libraries say to programmers
+            warnings.simplefilter("ignore")  # warnings of libraries for programmers
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         code = app(words, exit_on_error=False, print_error=False)
@@ -172,7 +174,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         narrate(f"calm: {error}")
         return ExitCode.NO_EQUILIBRIUM
     except UnusedCliTokensError as error:
-        narrate(f"calm: too many words: {' '.join(error.unused_tokens or ())}")
+        narrate(f"calm: unexpected argument: {' '.join(error.unused_tokens or ())}")
         return ExitCode.BAD_INPUT
     except (CycloptsError, CalmError) as error:
         narrate(f"calm: {error}")

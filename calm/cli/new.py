@@ -18,7 +18,7 @@ def new(
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     force: bool = False,
 ) -> ExitCode:
-    """Write a commented mooring file to start from, or a record of currents for it.
+    """Write a commented mooring file as an example, or a matching current record.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def new(
     record
         Write a small synthetic record, NetCDF, for `calm batch`; needs --output.
     output
-        The file to write; by default the standard output.
+        The file to write; standard output by default.
     force
         Overwrite an existing file.
 
@@ -53,7 +53,7 @@ def _new_record(output: Path | None, force: bool) -> ExitCode:
     from calm.records.record import made_record
 
     if output is None:
-        raise UsageError("a record is not text; give the file to write, --output record.nc")
+        raise UsageError("a record is binary and cannot be printed; specify --output record.nc")
     _write(output, made_record(), force)
     result = output.with_name(f"{output.stem}-result.nc")
     narrate(f"{output} written; solve it with: calm batch FILE --currents {output} -o {result}")

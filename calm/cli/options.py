@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 CatalogFiles = Annotated[
     list[Path] | None,
     Parameter(
-        help="A catalogue of your own; its components replace others of the same id. Repeatable."
+        help="Additional catalogue file; its components override those of the same id. Repeatable."
     ),
 ]
 MooringPath = Annotated[Path, Parameter(help="Mooring file.")]
 MooringPaths = Annotated[list[Path], Parameter(help="Mooring files.")]
 EnvironmentName = Annotated[
     str | None,
-    Parameter(help="The environment to use instead: a name from the file, or an environment file."),
+    Parameter(help="Use this environment: a name from the mooring file, or an environment file."),
 ]
 Samples = Annotated[int, Parameter(help="Number of samples, a power of two.")]
 Threads = Annotated[
@@ -43,15 +43,15 @@ Declination = Annotated[
 OutputFile = Annotated[Path, Parameter(alias="-o")]
 JsonAnswer = Annotated[
     Path | None,
-    Parameter(help="Write the answer as JSON, - to print it.", allow_leading_hyphen=True),
+    Parameter(help="Write the result as JSON (- for standard output).", allow_leading_hyphen=True),
 ]
 Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 """A quantity that may be negative, which must not be taken for an option."""
 Units = Annotated[
     str | None,
     Parameter(
-        help="Units of tables and reports, such as force=kgf,length=ft,speed=kn,mass=lb, in "
-        "place of those of the file; JSON, CSV and NetCDF stay in SI."
+        help="Units of tables and reports, such as force=kgf,length=ft,speed=kn,mass=lb, "
+        "instead of those of the file; JSON, CSV and NetCDF stay in SI."
     ),
 ]
 
@@ -62,9 +62,9 @@ def option(name: str) -> str:
 
 
 def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
-    """Choose the units of tables and reports: those given, else those in which all files agree.
+    """Select the units of tables and reports: `given`, else those on which all files agree.
 
-    UsageError: of a text that names no such dimension or unit.
+    UsageError: the text contains an unknown dimension or unit.
     """
     from calm.errors import nearest
     from calm.files.logbook import unit_meant
@@ -74,7 +74,7 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
         asked = [file.units for file in files]
         alike = all(one == asked[0] for one in asked)
         if not alike:
-            narrate("the files ask for different units; SI is shown: choose with --units")
+            narrate("the files set different units; results are in SI (use --units to choose)")
         show_in(asked[0] if asked and alike else {})
         return
     chosen: dict[str, str] = {}

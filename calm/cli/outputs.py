@@ -1,4 +1,4 @@
-"""Outputs of a command: its results, where they were asked for; narration; its exit code."""
+"""Outputs of a command: results, messages, and exit code."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 
     TerminalPart = ReportPart | TerminalSchematic
 
-_NARROWEST = 40  # columns: figures are no longer cut, but wrapped by the terminal
-_WRITTEN_OUT = "calm-written-out"  # the handler of signs that a stream cannot carry
+_NARROWEST = 40  # columns: below this width the terminal wraps the numbers
+_WRITTEN_OUT = "calm-written-out"  # error handler for characters that a stream cannot encode
 _SIGNS = "°×–−→≤≥²³█▒◦≈"  # those of the tables
 
 
 def prepare() -> None:
-    """Let no sign that the terminal cannot show stop a command: it is written out, or becomes ?."""
+    """Escape characters that the terminal cannot show, or replace them by ?."""
     codecs.register_error(_WRITTEN_OUT, _written_out)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -49,12 +49,12 @@ def _written_out(error: UnicodeError) -> tuple[str, int]:
 
 
 def show(text: str, *, styled: bool = False) -> None:
-    """Write data to the standard output, at once.
+    """Write text to standard output immediately.
 
-    Nothing in it steers a terminal, unless it is `styled` by CALM; a file or a pipe gets it as it
-    is.
+    Control sequences are removed on a terminal, unless the text is `styled` by CALM; files and
+    pipes get the text unchanged.
 
-    A reader that has seen enough (``calm run m.yaml | head``) is no error.
+    A reader that stops early (``calm run m.yaml | head``) causes no error.
 
     UsageError: the output cannot be written, e.g. because the disk is full.
     """
@@ -82,7 +82,7 @@ def show_parts(*parts: TerminalPart) -> None:
         if number:
             console.print()
         console.print(shown(part, plain=plain) if isinstance(part, ReportPart) else part)
-    # Tables are padded to full width, which only clutters a text that is kept.
+    # Tables are padded to full width, which only clutters stored text.
     show(re.sub(" +$", "", text.getvalue(), flags=re.MULTILINE), styled=True)
 
 
@@ -91,12 +91,12 @@ def _on_terminal() -> bool:
 
 
 def narrate(text: str) -> None:
-    """Write a line to the standard error, and nothing in it that steers a terminal."""
+    """Write a line to standard error, without terminal control sequences."""
     print(printable(text), file=sys.stderr, flush=True)
 
 
 def narrate_card(card: ReadCard) -> None:
-    """Write what was read from a file to the standard error."""
+    """Write the contents read from a file to standard error."""
     from calm.records.card import card_rows
 
     rows = card_rows(card.to_dict())
@@ -107,7 +107,7 @@ def narrate_card(card: ReadCard) -> None:
 
 
 def _abandon_output() -> None:
-    """Throw away what is still buffered, which would fail again when the interpreter ends."""
+    """Discard buffered output, which would fail again when the interpreter exits."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -115,13 +115,13 @@ class ExitCode(IntEnum):
     """The exit codes of ``calm``, the same for every command."""
 
     DONE = 0
-    """What was asked is done."""
+    """The command succeeded."""
 
     FINDING = 1
-    """A check failed, or lacks a figure that it needs."""
+    """A check failed, or lacks a value that it needs."""
 
     BAD_INPUT = 2
-    """A file, an option or an output path cannot be used; nothing was solved."""
+    """A file, an option or an output path is unusable; no result was computed."""
 
     NO_EQUILIBRIUM = 3
     """A mooring has no equilibrium that may be shown."""
@@ -146,11 +146,11 @@ OutputPath = Annotated[Path | None, Parameter(allow_leading_hyphen=True)]
 """Type of an option that takes a path, or - for the standard output."""
 
 STDOUT = Path("-")
-"""What a path says that stands for the standard output."""
+"""Path that stands for standard output."""
 
 
 class Shown(Protocol):
-    """What a command shows of one of its files."""
+    """Result of a command for one of its files."""
 
     @property
     def file(self) -> Path:
@@ -225,16 +225,19 @@ class Outputs:
             if count > 1:
                 raise UsageError(f"two outputs would go to {os.path.relpath(real)}")
             if real in mooring_files:
-                raise UsageError(f"{os.path.relpath(real)} is a mooring file; it is kept")
+                raise UsageError(
+                    f"{os.path.relpath(real)} is a mooring file and was not overwritten"
+                )
         for path in asked:
             if path != STDOUT:
                 check_destination(path)
 
     def write_answer(self, document: Callable[[], dict[str, Any]], part: ReportPart | None) -> None:
-        """Write what a command without files answers: `json`, and the part unless that is shown.
+        """Write the result of a command without input files: `json`, and the part unless JSON is
+        printed.
 
-        What makes the document is called only where that was asked for; the version of CALM, and
-        with it the units, are added where it has none. UsageError: the system refuses to write.
+        `document` is called only if JSON is requested; the version of CALM and the units are added
+        if missing. Raises UsageError if the system rejects the file.
         """
         from calm.report.folder import write_file
         from calm.report.result_files import to_json

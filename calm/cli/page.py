@@ -13,19 +13,18 @@ def page(
     output: Annotated[Path, Parameter(alias="-o")],
     runtime: Path | None = None,
 ) -> ExitCode:
-    """Write the line builder as a web page, which needs no installation.
+    """Write the line builder as a web page that needs no installation.
 
-    Any web server can offer the folder. Files that are opened in the page, and what it makes of
-    them, stay in the browser. Once loaded, the page works without a network.
+    Any web server can serve the folder. Files opened or created in the page stay
+    in the browser. Once loaded, the page works without a network.
 
     Parameters
     ----------
     output
         The folder to write.
     runtime
-        A folder with a release of Pyodide and with xterm.js and xterm.css, copied into the page,
-        so that it loads nothing from elsewhere. By default the page loads them from Pyodide's
-        address.
+        A folder with a release of Pyodide and with xterm.js and xterm.css, copied into the page so
+        that it needs no other server. By default the page loads them from Pyodide's address.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Work that takes long: shared out over the cores of the machine, and how far it is."""
+"""Long computations: distribution over the cores of the machine, and progress display."""
 
 from __future__ import annotations
 
@@ -21,20 +21,21 @@ _Done = TypeVar("_Done")
 _Given = ParamSpec("_Given")
 
 BAR = 24
-"""Signs from nothing to all."""
+"""Number of characters of a full bar."""
 
 FEW = 4
 """So many tasks are done before another process has started."""
 
 _PATIENCE = 1.0  # seconds before the progress of a loop is reported
-_REDRAWN = 0.2  # seconds between two states of what is drawn
+_REDRAWN = 0.2  # seconds between updates on a terminal
 _FIRST_LINE, _NEXT_LINES = 10.0, 60.0  # seconds without a terminal
 
 
 class ProgressTeller:
-    """Tells how far work is, in a line of the terminal; to be called with a batch's `Progress`.
+    """Progress display in one line of the terminal, called with a batch's `Progress`.
 
-    With a `patience` [s] a terminal is told nothing before; time counts from the first call else.
+    With a `patience` [s], a terminal stays silent for that time. Without it, time starts at the
+    first call.
     """
 
     def __init__(self, patience: float | None = None) -> None:
@@ -54,7 +55,7 @@ class ProgressTeller:
         self.tell(lambda seconds: head + state(progress, seconds))
 
     def tell(self, text: Callable[[float], str]) -> None:
-        """Write what a text is after so many seconds, unless something was a moment ago."""
+        """Write the text for the elapsed time, unless a line was written a moment ago."""
         now = monotonic()
         if self._started is None:
             self._started = now
@@ -67,7 +68,7 @@ class ProgressTeller:
         self._drawn = self._terminal
 
     def clear(self) -> None:
-        """Take away what is drawn."""
+        """Remove the progress line."""
         if self._drawn:
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
             self._drawn = False
@@ -102,12 +103,12 @@ def grouped(number: int) -> str:
 
 
 def progress(items: Iterable[_Task], what: str, total: int | None = None) -> Iterator[_Task]:
-    """The items one by one; when they take long, a terminal shows how many are done.
+    """Yield the items; on a terminal, the progress appears if they take long.
 
     Parameters
     ----------
     what : the items, in the plural
-    total : how many there are, where `items` cannot tell
+    total : number of items, if `items` has no length
     """
     total = total or (len(items) if isinstance(items, Sized) else 0)
     if sys.stderr is None or not sys.stderr.isatty():
@@ -127,14 +128,14 @@ def mapped(
     what: str,
     meanwhile: Callable[[], object] | None = None,
 ) -> list[_Done]:
-    """Return what a function makes of every task, in their order; how far it is is shown.
+    """Apply a function to every task in parallel, in order, and show the progress.
 
     Parameters
     ----------
-    function : of a module, so that another process finds it
-    workers : how many processes; None for one on each core
+    function : a function of a module, so that another process can import it
+    workers : number of processes; None for one per core
     what : the tasks, in the plural
-    meanwhile : what this process does while others work; nothing where it works itself
+    meanwhile : called in this process while others work; not called without other processes
     """
     workers = min(workers or os.cpu_count() or 1, len(tasks))
     if workers < 2 or len(tasks) <= FEW:
@@ -160,10 +161,10 @@ def mapped(
 def begun(
     function: Callable[_Given, _Done], *given: _Given.args, **named: _Given.kwargs
 ) -> Callable[[], _Done]:
-    """Let another process make something while this one goes on; what is returned hands it over.
+    """Start a computation in another process, and return a function that waits for its result.
 
-    The function is of a module, so that another process finds it. On a machine of one core it is
-    made here when it is called for.
+    The function must belong to a module, so that another process can import it. On a machine with
+    one core, it runs in this process when the result is requested.
     """
     if (os.cpu_count() or 1) < 2:
         return partial(function, *given, **named)
@@ -180,6 +181,6 @@ def begun(
 
 
 def _as_parent(shown: Mapping[str, str]) -> None:
-    """Show the units of the parent, and leave interrupts to it."""
+    """Adopt the display units of the parent process, and ignore interrupts."""
     show_in(shown)
     signal.signal(signal.SIGINT, signal.SIG_IGN)

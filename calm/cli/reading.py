@@ -24,14 +24,16 @@ def read_all(
     environment: str | None,
     catalogs: Sequence[Path],
 ) -> list[Line]:
-    """Read all files by `calm.case.load`, or one like it; or an `InputError` with all mistakes."""
+    """Read all files with `calm.case.load` or a similar function; raise one InputError for all
+    mistakes.
+    """
     read: list[Line] = []
     problems: dict[Problem, None] = {}
     for file in files:
         try:
             read.append(load(file, environment, catalogs))
         except InputError as error:
-            # A catalogue that all files share has its mistakes told once.
+            # mistakes of a shared catalogue are listed once
             problems |= dict.fromkeys(error.problems)
     if problems:
         raise InputError(list(problems))
@@ -81,7 +83,7 @@ def read_designs(
     loaded = mapped(_load, tasks, workers, "files read", meanwhile)
     for file, read in zip(files, loaded, strict=True):
         if isinstance(read, tuple):
-            problems |= dict.fromkeys(read)  # what files share has its mistakes told once
+            problems |= dict.fromkeys(read)  # mistakes of shared files are listed once
         elif any(one.towed for one in read):
             tows.append(file)
         else:
@@ -100,21 +102,22 @@ def read_designs(
 def names_of_files(
     designs: Sequence[DesignFile], folder: Path, taken: Sequence[str] = ()
 ) -> list[str]:
-    """Names of moorings as those of files or folders; signs that systems refuse become a stroke.
+    """Convert mooring names to names of files or folders.
 
-    UsageError: two moorings would have the same, or one that is `taken`.
+    Characters that systems reject become hyphens.
+    UsageError: two moorings have the same name, or one that is `taken`.
     """
     plain = (re.sub(r'[\x00-\x1f<>:"/\\|?*]+', "-", each.name).strip(" .") for each in designs)
     names = [name or "mooring" for name in plain]
     known = [one.casefold() for one in (*names, *taken)]
     for name in names:
         if known.count(name.casefold()) > 1:
-            raise UsageError(f"two moorings would go to {folder / name}; give them other names")
+            raise UsageError(f"two moorings would be written to {folder / name}; rename one")
     return names
 
 
 def _told_apart(names: dict[Path, str]) -> dict[Path, str]:
-    """The names, each with its file's where several files have it."""
+    """Add the file to each name that occurs in several files."""
     while True:
         count = Counter(names.values())
         if max(count.values()) == 1:
@@ -125,9 +128,9 @@ def _told_apart(names: dict[Path, str]) -> dict[Path, str]:
 
 
 def _cut_alike(moorings: Sequence[Design]) -> tuple[Design, ...]:
-    """The same mooring in every environment: what is cut to fit, is cut once, for the first.
+    """Use equal cut lengths in every environment: pieces are cut to fit in the first environment.
 
-    What does not depend on the environment, such as the line in still water, is solved once.
+    Results that do not depend on the environment, such as the line in still water, are shared.
     """
     from calm.case import Design
     from calm.case.memory import Memory
@@ -135,16 +138,16 @@ def _cut_alike(moorings: Sequence[Design]) -> tuple[Design, ...]:
     memory = Memory()
     first, *others = (Design(each.file, memory=memory) for each in moorings)
     try:
-        leg = first.legs[0]  # nothing in one of several is cut to fit
+        leg = first.legs[0]  # nets have no pieces cut to fit
         return first, *(Design(leg.cut(each.file), memory=memory) for each in others)
     except NoEquilibrium:
-        return first, *others  # the first is reported not to stand, and why
+        return first, *others  # the missing equilibrium of the first is reported later
 
 
 def _load(
     task: tuple[Path, Sequence[str] | None, Sequence[Path]],
 ) -> list[Design] | tuple[Problem, ...]:
-    """Return what was read, or what is wrong with it."""
+    """Read a file and return its designs or its problems."""
     from calm.case.design import load_in
 
     try:
@@ -154,11 +157,11 @@ def _load(
 
 
 def _refuse_one_name(moorings: Sequence[Design]) -> None:
-    """Two environments of one name could not be told apart."""
+    """Reject environments of equal name, which results could not distinguish."""
     from calm.checks.finding import ON_THE_WAY, OWN
 
     names = Counter(mooring.file.environment.name or OWN for mooring in moorings)
-    names[ON_THE_WAY] += 1  # a column of its own
+    names[ON_THE_WAY] += 1  # has a separate column
     for name, count in names.items():
         if count > 1:
-            raise UsageError(f"{count} environments are called {name}; give them other names")
+            raise UsageError(f"{count} environments are named {name}; rename all but one")

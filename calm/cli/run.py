@@ -66,18 +66,18 @@ def run(
         -o draws depth, layback and tension against speed. A speed without
         equilibrium is a row with its status and makes the exit code 3.
     explain
-        Show how much of the knockdown each drag causes, and the effect of more
-        buoyancy, less drag or another current; in the JSON too. Not of tows.
+        Show the contribution of each drag force to the knockdown, and the effect of
+        more buoyancy, less drag or another current; also in the JSON. Not for tows.
     schematic
-        Draw the line, part by part and not to scale, above its table; in its
-        place if there is no equilibrium.
+        Print a schematic (not to scale) above the table, or instead of it if there
+        is no equilibrium.
     uncertainty
         Solve each mooring for many samples of the inputs under `uncertainty` in
-        its file (current, drags, buoyancy, lengths, depth), and show the 5, 50
-        and 95 % points of its figures and the causes of their spread; in the
-        JSON, the picture and the reports too.
+        its file (current, drag, buoyancy, lengths, depth), and print the 5th, 50th
+        and 95th percentiles of the results and the contribution of each input to
+        the spread; also in the JSON, the plot and the reports.
     verbose
-        Also say below the table how accurate the figures are, and how they were found.
+        Also print the numerical error and solver statistics.
 
     Examples
     --------

@@ -24,7 +24,7 @@ SUFFIXES = (".json", ".csv", ".svg", ".png", ".pdf")
 MOST_SPEEDS = 10_000
 """Maximum number of speeds in one table."""
 
-_ROUNDING = 1e-9  # of a step: what unit conversion may leave between the last step and the end
+_ROUNDING = 1e-9  # of a step: rounding error of unit conversion at the end of the range
 
 
 @dataclass(frozen=True)

@@ -17,22 +17,22 @@ if TYPE_CHECKING:
 def verify(
     words: list[str] | None = None, /, *, field: bool = False, json: OutputPath = None
 ) -> ExitCode:
-    """Compute figures that are known without CALM, and compare them.
+    """Verify CALM against published and analytical results.
 
-    Each figure is published, or comes from a closed form or an independent
-    integration, or is a property that any line must have. Figures met by
-    construction are checked but not counted. The exit code is 1 if a figure is
-    out of tolerance.
+    Each expected value is published, or comes from a closed form or an
+    independent integration, or is a property that any line must have. Values
+    that agree by construction are checked but not counted. The exit code is 1
+    if a value is out of tolerance.
 
     Parameters
     ----------
     words
-        Only cases whose source or name contains all these words or parts of words.
+        Only cases whose source or name contains all these words (or parts of words).
     field
-        Instead, estimate the depths of a real mooring at hidden sensors, and compare them
-        with the measured depths: see `calm docs motion`.
+        Instead, estimate the depths of a real mooring at withheld sensors, and compare them
+        with the measured depths (see `calm docs motion`).
     json
-        Write the figures, with the reason for each tolerance, as JSON, - to print it.
+        Write the values, with the reason for each tolerance, as JSON (- for standard output).
 
     Examples
     --------
@@ -47,7 +47,7 @@ def verify(
     outputs = Outputs(json=json)
     if field:
         if words:
-            raise UsageError("--field takes no words")
+            raise UsageError("--field cannot be combined with search words")
         return verify_field(outputs)
     chosen = _chosen(words or [])
     cases = [case for source in chosen for case in source.cases]
@@ -60,9 +60,9 @@ def verify(
 
 
 def _chosen(words: Sequence[str]) -> list[Source]:
-    """The sources with the cases that have every word.
+    """Select the sources and cases that contain every word.
 
-    UsageError: no case has them.
+    UsageError: no case contains all words.
     """
     from calm.verification import SOURCES
 
@@ -75,7 +75,7 @@ def _chosen(words: Sequence[str]) -> list[Source]:
 
 HIDDEN = tuple(f"Aquadopp {height}" for height in (526, 426, 326, 226, 126))
 MEAN, EACH, BANDS = 0.55, 0.75, (0.88, 0.99)
-"""Most of the rms of interpolation, in the mean and for each; share within the bands of 95 %."""
+"""Limits of rms over rms of interpolation (mean, each), and of the share in 95 % bands."""
 
 
 def verify_field(outputs: Outputs) -> ExitCode:

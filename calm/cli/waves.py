@@ -110,9 +110,9 @@ def waves(
     if analysis.status != SLACK:
         return ExitCode.DONE
     narrate(
-        f"{file}: {SLACK}: the least tension falls below 0, where linear tensions do not "
-        "hold. Give the line more weight or more stretch, or solve it in the time "
-        "domain: `calm export --to moordyn`."
+        f"{file}: {SLACK}: minimum tension is below 0, where linear tensions are "
+        "invalid. Add weight or stretch to the line, or solve it in the time domain: "
+        "`calm export --to moordyn`."
     )
     return ExitCode.NO_EQUILIBRIUM
 
@@ -125,9 +125,9 @@ def _asked(
     scatter: Path | None,
     duration: str,
 ) -> tuple[list[SeaState] | None, float | None, float]:
-    """Return the seas, where they run [degrees], and how long they last [s]; None: not said.
+    """Read the sea states, their direction [degrees] and duration [s]; None if not specified.
 
-    UsageError: with all that is wrong with the options.
+    UsageError: lists all mistakes in the options.
     """
     from calm.errors import nearest
     from calm.records import sea_states

@@ -1,6 +1,6 @@
-"""Lists of what goes to sea with a mooring: what hangs where, in which order, how heavy.
+"""Deck sheets of a mooring: parts with their depths, order of handling, and weights.
 
-The one model of the sheets and of their files.
+This model is the common source of the printed sheets and their files.
 """
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -35,15 +35,15 @@ _Listed = TypeVar("_Listed")
 
 @dataclass(frozen=True)
 class RecoveredItem:
-    """A piece or clamp as it comes up.
+    """Piece or clamp in order of surfacing.
 
     Attributes
     ----------
-    item : which
-    time : after the release [s]; None of what does not come up by itself
-    hangs_at : depth of the upper end of a piece, or of a clamp where it is on one, when all is up
-        that comes up [m]; None where not known
-    by_itself : whether it is buoyant enough to come up without what is above it
+    item : the piece or clamp
+    time : time after release [s]; None if the part does not surface
+    hangs_at : final depth of a clamp, or of the upper end of a piece, after everything buoyant has
+        surfaced [m]; None if unknown
+    by_itself : whether the part is buoyant enough to surface alone
     """
 
     item: DeckItem
@@ -54,16 +54,16 @@ class RecoveredItem:
 
 @dataclass(frozen=True)
 class Lift:
-    """A stage: a piece at the rail, with what is clamped on it, and all that is over the side.
+    """Lift: a piece at the rail with its clamps, and everything already over the side.
 
     Attributes
     ----------
-    index, label : of the piece
-    mass : of the lift in air [kg]; None where a mass in it is not known, or that of a cable, which
-        is not lifted but paid out
-    weight : of the lift in water [N], + down; None where a length is not known
-    hanging : weight in water of all that is over the side with it [N], + down: what a winch holds
-        where all of it hangs from there; negative where it floats
+    index, label : index and label of the piece
+    mass : mass of the lift in air [kg]; None if a mass is unknown, or for a cable, which is paid
+        out instead
+    weight : weight of the lift in water [N], + down; None if a length is unknown
+    hanging : weight in water of everything over the side, including the lift [N], + down: the load
+        on a winch if all is suspended from it; negative if it floats
     """
 
     index: int
@@ -79,9 +79,9 @@ class Lifts:
 
     Attributes
     ----------
-    deployment : in the order over the side
-    recovery : from the top of the line down to the release
-    unknown : labels of the pieces whose mass in air is not known: the heaviest lift may be one
+    deployment : lifts in the order over the side
+    recovery : lifts from the top of the line down to the release
+    unknown : labels of the pieces of unknown mass in air, any of which may be the heaviest lift
     """
 
     deployment: tuple[Lift, ...]
@@ -90,28 +90,28 @@ class Lifts:
 
     @property
     def heaviest(self) -> Lift | None:
-        """The heaviest single lift in air, of those that are known."""
+        """Heaviest single lift of known mass in air."""
         known = [lift for lift in self.deployment if lift.mass is not None]
         return max(known, key=lambda lift: lift.mass or 0.0, default=None)
 
 
 @dataclass(frozen=True)
 class Deck:
-    """The sheets of one mooring, or of a net of legs.
+    """Deck sheets of a mooring or of a net.
 
     Attributes
     ----------
-    result : in the environment of the sheets
-    environment : its name
-    order : in which the line goes over the side
-    parts : every piece and clamp, down the line, of a net leg by leg
-    deployment, recovery : in the order over the side, and in that of surfacing
-    rise : of the line without its anchor; None where it could not be solved, and of a net
-    cuts, hardware, shipped, lifts, instruments : what the sheets of these names say
-    plan : of the anchor drop, or why it could not be solved; None where the anchor goes first,
-        and of a net
-    notes : what is not known, and why
-    assessment : what the design check says of the mooring
+    result : result in the environment of the sheets
+    environment : name of that environment
+    order : deployment order
+    parts : every piece and clamp down the line, leg by leg in a net
+    deployment, recovery : parts in the order over the side, and in order of surfacing
+    rise : rise of the line without its anchor; None if it has no solution, and for a net
+    cuts, hardware, shipped, lifts, instruments : contents of the sheets of these names
+    plan : plan of the anchor drop, or the reason for having none; None for anchor-first
+        deployment, and for a net
+    notes : missing information, with reasons
+    assessment : result of the design check
     """
 
     result: Result
@@ -137,14 +137,14 @@ class Deck:
         return self.result.file
 
     def leg(self, index: int) -> str:
-        """Return the name of the leg that a piece is in; nothing of a single line."""
+        """Name of the leg that contains a piece; "" for a single line."""
         number = leg_numbers(self.file)[index]
         return self.result.legs[number].name if self.result.several else ""
 
     def by_leg(
         self, items: Iterable[_Listed], index: Callable[[_Listed], int]
     ) -> Iterator[tuple[str, list[_Listed]]]:
-        """Yield the name of each leg, and what is listed of it; of a line all at once."""
+        """Yield the name of each leg and its items; a single line is one group."""
         for name, group in groupby(items, key=lambda one: self.leg(index(one))):
             yield name, [*group]
 
@@ -156,12 +156,12 @@ def deck_of(
     streamed: float | None = None,
     course: float | None = None,
 ) -> Deck:
-    """The sheets of a mooring, or of a net, of which neither drop nor rise is solved.
+    """Create the deck sheets of a mooring, or of a net (without drop and rise).
 
     Parameters
     ----------
-    moorings : the same one in each environment, that of the sheets first, and cut alike in all
-    ship_speed, streamed, course : of the anchor drop, see `calm.drop.drop_plan` [m/s], [m],
+    moorings : the mooring in each environment, that of the sheets first, with equal cut lengths
+    ship_speed, streamed, course : inputs of the anchor drop, see `calm.drop.drop_plan` [m/s], [m],
         [degrees]
 
     Raises
@@ -227,13 +227,13 @@ def deck_of(
 
 
 def _deck_times(file: MooringFile) -> Mapping[str, float] | None:
-    """Return the time of handling a piece by its role [s]; None if the file does not give it."""
+    """Handling time of a piece by role [s]; None if not specified."""
     given = None if file.document is None else file.document.deck_time
     return None if given is None else {str(role): time for role, time in given.items()}
 
 
 def _standing(mooring: Design, notes: list[str]) -> Result:
-    """The mooring solved; one that still water leaves slack in a current that hardly moves it.
+    """Solve the mooring; a line that is slack in still water is solved in a weak current.
 
     Raises
     ------
@@ -266,22 +266,21 @@ def _name(mooring: Design) -> str:
 def surfacing(
     parts: Sequence[DeckItem], pieces: Collection[int], recovery: Recovery | None
 ) -> tuple[RecoveredItem, ...]:
-    """Return what comes up, the first first; what hangs below, and what stays, comes after it in
-    order.
+    """List the parts that surface, in order, followed by parts that stay below.
 
-    Without a solved rise there are no times, and the order is that of the line.
+    Without a solved rise there are no times, and the parts are in line order.
 
     Parameters
     ----------
-    parts : down the line
-    pieces : indices of those that come up
+    parts : parts down the line
+    pieces : indices of the pieces that surface
     """
     rising = [one for one in parts if one.index in pieces]
     if recovery is None:
         return tuple(RecoveredItem(one, None, None, False) for one in rising)
     found = [_surfacing(one, recovery) for one in rising]
     times = [inf if one.time is None else one.time for one in found]
-    # stable: what comes up with a piece stays after it
+    # stable sort keeps items that surface together in line order
     return tuple(found[i] for i in sorted(range(len(found)), key=times.__getitem__))
 
 
@@ -304,8 +303,8 @@ def lifts_of(
 
     Parameters
     ----------
-    legs : number of the leg of each piece
-    rising : indices of the pieces that come up
+    legs : leg number of each piece
+    rising : indices of the pieces that surface
     """
     pieces = [one for one in inventory if one.clamped_on is None]
     weights = _weights(inventory)

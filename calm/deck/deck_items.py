@@ -1,4 +1,4 @@
-"""Every piece and clamp of a mooring as the deck has it: where it hangs, when it goes over."""
+"""Pieces and clamps of a mooring as deck items: position, depth and handling order."""
 
 import re
 from collections import Counter
@@ -23,17 +23,17 @@ class DeckItem:
 
     Attributes
     ----------
-    part : as read
-    index : of the piece, of a clamp that of the piece it is on
-    on : label of the piece that a clamp is on; None of a piece
-    at : of a clamp, from the upper end of that piece, unstretched [m]
-    of_length : of a clamp, the unstretched length of that piece [m]
-    cut_length, stretched : of a piece [m]; of a clamp None
-    depth, height : of the upper end, of a clamp of its place [m]
-    tilt : from the vertical [degrees]
-    tension : the greatest in a piece [N]; of a clamp None
-    serial : as designed
-    deployed_serial, remark : as deployed; the serial number of the design where none is given
+    part : the part as read
+    index : index of the piece, or of the piece that carries the clamp
+    on : label of the piece that carries a clamp; None for a piece
+    at : distance of a clamp from the upper end of its piece, unstretched [m]
+    of_length : unstretched length of the piece that carries a clamp [m]
+    cut_length, stretched : lengths of a piece [m]; None for a clamp
+    depth, height : depth and height above the seabed of a clamp, or of the upper end of a piece [m]
+    tilt : tilt from the vertical [degrees]
+    tension : maximum tension in a piece [N]; None for a clamp
+    serial : serial number as designed
+    deployed_serial, remark : as deployed; the serial number defaults to that of the design
     """
 
     part: Piece | Clamp
@@ -53,12 +53,12 @@ class DeckItem:
 
     @property
     def label(self) -> str:
-        """Return what people call it."""
+        """Label of the part."""
         return self.part.label
 
     @property
     def name(self) -> str:
-        """Name of the component; its id where it has none."""
+        """Name of the component, or its id if it has no name."""
         return self.part.component.name or self.part.use
 
     @property
@@ -68,23 +68,23 @@ class DeckItem:
 
     @property
     def hardware(self) -> str:
-        """Return the name of a connector in short, as people write it: `13 shackle`."""
+        """Short name of a connector, such as `13 shackle`."""
         sized = _SIZED.fullmatch(self.part.use)
         return f"{sized[2]} {sized[1]}" if sized else self.name
 
     @property
     def is_rigid(self) -> bool:
-        """Return whether it is no cable or chain."""
+        """Whether the part is neither cable nor chain."""
         return not isinstance(self.part.component, Flexible)
 
     @property
     def role(self) -> str:
-        """Return what it is for."""
+        """Role of the component."""
         return self.part.component.role
 
     @property
     def is_joint(self) -> bool:
-        """Return whether it is hardware that only joins pieces, with nothing of its own to tell."""
+        """Whether the item is hardware that only connects pieces, without data of its own."""
         joins = self.role == "connector" and self.on is None and self.is_rigid
         return joins and not self._is_told_of
 
@@ -94,17 +94,17 @@ class DeckItem:
 
     @property
     def places(self) -> tuple[float, ...]:
-        """Return where it is clamped, or the two stops between which it travels [m]."""
+        """Position of a clamp, or the two stops of a profiler [m]."""
         travel = getattr(self.part, "travel", None)
         ends = (self.at,) if travel is None else (min(end, self.of_length or end) for end in travel)
         return tuple(end for end in ends if end is not None)
 
     @property
     def kind(self) -> tuple[object, ...]:
-        """Return what is alike in items that share a row where they follow one another.
+        """Key of consecutive items that share a row.
 
-        That is floats and clamps of one component; never what has a serial number or a remark, an
-        instrument, a release, an anchor, or what is cut.
+        Floats and clamps of one component share a row. Items with a serial number or a remark,
+        instruments, releases, anchors and cut pieces never do.
         """
         alone = not self.is_rigid or self.role in ("instrument", "release", "anchor")
         return (self.label,) if alone or self._is_told_of else (self.name, self.on)
@@ -112,13 +112,13 @@ class DeckItem:
 
 @dataclass(frozen=True)
 class DeckRow:
-    """Hold what shares a row on paper: glass on its chain, floats shackled to one another.
+    """Items that share a printed row, such as glass floats on chain or floats shackled together.
 
     Attributes
     ----------
-    items : like pieces that follow one another, or like clamps
-    floats : like floats on the one cable or chain that the items are
-    joints : hardware between the items, and that which comes after them
+    items : consecutive equal pieces, or equal clamps
+    floats : equal floats on the cable or chain
+    joints : hardware between the items, and after them
     """
 
     items: tuple[DeckItem, ...]
@@ -132,18 +132,18 @@ class DeckRow:
 
     @property
     def label(self) -> str:
-        """Label of the item, or those of the first and the last of several."""
+        """Label of the item, or labels of the first and the last item."""
         return label_of_run(self.items)
 
     @property
     def name(self) -> str:
-        """Names of all, with how many there are of several; of a chain with floats theirs."""
+        """Names with their counts, or names of the floats on a chain."""
         floats = f"{len(self.floats)} × " if len(self.floats) > 1 else ""
         return floats + self.floats[0].name if self.floats else name_of_run(self.items)
 
     @property
     def cluster(self) -> tuple[object, ...]:
-        """Return what is alike in chains with floats that share a row; nothing of other rows."""
+        """Key of chains with floats that share a row, or an empty key."""
         if not self.floats or any(one._is_told_of for one in (*self.items, *self.floats)):
             return ()
         first, floats = self.first, [(one.name, one.places) for one in self.floats]
@@ -152,13 +152,13 @@ class DeckRow:
 
     @property
     def lengths(self) -> str:
-        """Cut length of a cable or chain as shown, and how many there are of several."""
+        """Cut length of a cable or chain, with the number of pieces."""
         many = f"{len(self.items)} × " if len(self.items) > 1 else ""
         return many + QUANTITIES["length"].format(self.first.cut_length)
 
     @property
     def joined(self) -> str:
-        """Return the hardware in words, such as `2 × 13 shackle`; nothing without."""
+        """Describe the connecting hardware, such as `2 × 13 shackle`; "" if there is none."""
         counts = Counter(one.hardware for one in self.joints)
         return ", ".join(f"{n} × {name}" if n > 1 else name for name, n in counts.items())
 
@@ -203,12 +203,12 @@ def _lies_on(run: tuple[DeckItem, ...], row: DeckRow, items: Sequence[DeckItem])
 
 
 def label_of_run(items: Sequence[DeckItem]) -> str:
-    """Return the label of an item, or those of the first and the last of several."""
+    """Format the label of an item, or the labels of the first and the last item."""
     return items[0].label if len(items) == 1 else f"{items[0].label} – {items[-1].label}"
 
 
 def name_of_run(items: Sequence[DeckItem]) -> str:
-    """Return the name of an item, or how many of each name there are of several."""
+    """Format the name of an item, or the number of items of each name."""
     counts = Counter(item.name for item in items)
     if len(items) == 1:
         return items[0].name
@@ -254,7 +254,7 @@ def _deck_item(
 
 @dataclass(frozen=True)
 class Extreme:
-    """A depth [m] and the environment in which it is."""
+    """Extreme depth [m], and its environment."""
 
     depth: float
     environment: str
@@ -266,10 +266,10 @@ class DeckInstrument:
 
     Attributes
     ----------
-    item : where it hangs in the environment of the sheets
-    still : depth in still water [m]; None where that has no unique shape
-    shallowest, deepest : over all environments
-    greatest_tilt : over all environments [degrees]
+    item : the item in the environment of the sheets
+    still : depth in still water [m]; None if the line has no unique shape there
+    shallowest, deepest : extreme depths over all environments
+    greatest_tilt : maximum tilt over all environments [degrees]
     """
 
     item: DeckItem
@@ -305,16 +305,16 @@ def instruments_of(
 
 
 class Order(StrEnum):
-    """Tell which end goes over the side last."""
+    """Deployment order of the line."""
 
     ANCHOR_LAST = "anchor-last"
     ANCHOR_FIRST = "anchor-first"
 
 
 def over_the_side(parts: Sequence[DeckItem], order: Order) -> tuple[DeckItem, ...]:
-    """The pieces in the order in which they go over the side, each with its clamps after it.
+    """Sort the pieces in the order over the side, each followed by its clamps.
 
-    Anchor first, a piece goes with its lower end ahead, and so its lowest clamp comes first.
+    Anchor first, the lower end of a piece leads, so its lowest clamp comes first.
     """
     if order is Order.ANCHOR_LAST:
         return tuple(parts)

@@ -1,4 +1,4 @@
-"""Lists of what is cut, and how exactly; of what joins the pieces, with spares; and of freight."""
+"""Lists of cut lengths with tolerances, connecting hardware with spares, and freight."""
 
 import re
 from collections import Counter
@@ -18,10 +18,10 @@ from calm.files.pieces import parts_of
 from calm.solve import expect_many
 
 LENGTH_ERROR = 0.005
-"""Error of a length, as a share of it: the tolerance, and the error whose effect is reported."""
+"""Relative error of a length: the tolerance, and the error whose effect is reported."""
 
 ORDINARY = 20
-"""Pieces of a line whose solution takes as long as that of an ordinary one."""
+"""Number of pieces of an ordinary line, for estimates of computing time."""
 
 LEAST_TOLERANCE = 0.02
 """Least error with which a wire is measured on a deck [m]."""
@@ -29,7 +29,7 @@ LEAST_TOLERANCE = 0.02
 
 @dataclass(frozen=True)
 class Mark:
-    """Tell where a clamp goes: metres from the upper end, measured as the cable is."""
+    """Position of a clamp mark from the upper end [m], measured under the load of the cable."""
 
     label: str
     at: float
@@ -41,15 +41,15 @@ class Cut:
 
     Attributes
     ----------
-    item : which
-    length, load : as it is measured: the length [m] under that load [N]
-    unstretched : its length without load [m]
-    marks : of the clamps, down the cable, measured under the same load
-    termination : as the file says; None where it does not
-    tolerance : of its length [m]
-    effect : how much deeper the top of its line or leg is where this is longer by `LENGTH_ERROR`
-        [m]; None where such a line does not stand
-    over, onto : its number over the side, and onto the drum, which is the other way round
+    item : the piece
+    length, load : length to measure [m], under this load [N]
+    unstretched : length without load [m]
+    marks : clamp marks down the cable, measured under the same load
+    termination : termination in the file, or None
+    tolerance : tolerance of the length [m]
+    effect : increase in depth of the top of its line or leg if the piece is longer by
+        `LENGTH_ERROR` [m]; None if that line has no equilibrium
+    over, onto : sequence number over the side, and onto the drum in reverse order
     """
 
     item: DeckItem
@@ -70,13 +70,13 @@ class Cut:
 
 
 def cuts_of(result: Result, parts: Sequence[DeckItem], order: Order) -> tuple[Cut, ...]:
-    """Return all that is cut and marked, down the line.
+    """List all pieces to cut and mark, down the line.
 
     Parameters
     ----------
-    result : in the environment of the sheets
-    parts : every piece and clamp, down the line
-    order : in which the line goes over the side
+    result : result in the environment of the sheets
+    parts : every piece and clamp down the line
+    order : deployment order
     """
     cables = [
         one
@@ -120,7 +120,7 @@ def _cut(result: Result, one: DeckItem, over: int, count: int) -> Cut:
 
 
 def _effect(result: Result, index: int, length: float) -> float | None:
-    """Return how much deeper the top is, in the same water, where a piece is cut too long [m]."""
+    """Increase in depth of the top if a piece is cut too long, in the same water [m]."""
     number = leg_numbers(result.file)[index]
     longer = result.design.with_length(index, length * (1.0 + LENGTH_ERROR))
     try:
@@ -132,7 +132,9 @@ def _effect(result: Result, index: int, length: float) -> float | None:
 
 
 SPARE_SHARE = 0.1
-"""Of what is in the line, at least one, of small parts two: a default of this program."""
+"""Share of spares in the number fitted, with a minimum of one, or two for small parts (CALM
+default).
+"""
 
 _KINDS = {
     "cotter pins": r"cotter",
@@ -153,15 +155,15 @@ _SMALL = frozenset({"shackles", "pins", "cotter pins", "thimbles"})
 
 @dataclass(frozen=True)
 class Stock:
-    """Count one kind of thing that is brought along.
+    """Stock of one kind of connecting hardware.
 
     Attributes
     ----------
-    kind : of `ORDER`
-    use, name : id and name of the component; of what belongs to others only the name
-    count : in the line
-    length : of chains, in all [m]
-    basis : what the count follows from, where it is not a piece of the line
+    kind : a member of `ORDER`
+    use, name : id and name of the component; accessories have only a name
+    count : number in the line
+    length : total length of chains [m]
+    basis : basis of the count, unless the item is a piece of the line
     """
 
     kind: str
@@ -173,7 +175,9 @@ class Stock:
 
     @property
     def spares(self) -> int:
-        """A tenth, rounded up, and of what is small and easily lost at least two."""
+        """Number of spares: a tenth, rounded up, with a minimum of two for small parts and one for
+        others.
+        """
         return max(ceil(SPARE_SHARE * self.count), 2 if self.kind in _SMALL else 1)
 
     @property
@@ -183,11 +187,11 @@ class Stock:
 
 
 def hardware_of(legs: Sequence[Sequence[DeckItem]]) -> tuple[Stock, ...]:
-    """The connectors of a line or of legs, the chains, and what belongs to them.
+    """List the connectors and chains of a line or of legs, with their accessories.
 
-    A shackle has a bolt with nut and cotter pin, unless its definition says that its pin is screwed
-    in. A termination that names a thimble has one at each end. Where metals that corrode each other
-    touch, an isolator is between them and an anode at the baser one.
+    A shackle has a bolt with nut and cotter pin, unless its definition mentions a screw pin. A
+    termination that mentions a thimble has one at each end. For each contact of dissimilar metals,
+    an isolator is listed, and an anode for the less noble piece.
     """
     parts = [one for leg in legs for one in leg]
     groups: dict[tuple[str, str], list[DeckItem]] = {}
@@ -263,15 +267,15 @@ def _thimbles(parts: Sequence[DeckItem]) -> Iterator[Stock]:
 
 @dataclass(frozen=True)
 class ShippedComponent:
-    """All of one component.
+    """Total of one component, for shipping.
 
     Attributes
     ----------
-    use, name, count : of the component
-    length : of cables and chains, in all [m]
-    mass : in air, of those whose mass is known [kg]
-    volume : of the things themselves, of those whose volume is known [m³]
-    missing_masses, missing_volumes : of how many it is not known: the sum is a lower bound
+    use, name, count : id, name and number of the component
+    length : total length of cable or chain [m]
+    mass : total of the known masses in air [kg]
+    volume : total of the known volumes, without packing [m³]
+    missing_masses, missing_volumes : number of unknown values; unless 0, the sum is a lower bound
     """
 
     use: str
@@ -285,12 +289,12 @@ class ShippedComponent:
 
     @property
     def known_mass(self) -> float | None:
-        """The mass, or its lower bound; None where that of none is known."""
+        """Mass, or its lower bound; None if no mass is known."""
         return None if self.missing_masses == self.count else self.mass
 
     @property
     def known_volume(self) -> float | None:
-        """The volume, or its lower bound; None where that of none is known."""
+        """Volume, or its lower bound; None if no volume is known."""
         return None if self.missing_volumes == self.count else self.volume
 
 
@@ -310,16 +314,17 @@ def shipped_of(
 
 
 def all_shipped(shipped: Sequence[ShippedComponent]) -> ShippedComponent:
-    """The total of what is shipped."""
+    """Total of the shipping list."""
     names = ("count", "mass", "volume", "missing_masses", "missing_volumes")
     sums = {name: sum(getattr(one, name) for one in shipped) for name in names}
     return ShippedComponent(use="", name="Total", length=None, **sums)
 
 
 def volume_of(component: Component, length: float | None) -> float | None:
-    """Volume of a piece [m³]: of a sphere, cylinder, cable by its size; else what it displaces.
+    """Volume of a piece [m³], from the dimensions of spheres, cylinders and cables, else from
+    displacement.
 
-    None where it is not known.
+    None if unknown.
     """
     if isinstance(component, Sphere):
         return pi * component.diameter**3 / 6.0

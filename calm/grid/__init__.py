@@ -1,1 +1,1 @@
-"""Gridding: what was measured at moving depths, put onto fixed levels with its uncertainty."""
+"""Gridding: measurements at moving depths, interpolated to fixed levels with uncertainty."""

@@ -1,13 +1,13 @@
-"""A quantity over depth and time as a Gaussian process, with the scales that its record has.
+"""Gaussian-process model of a quantity over depth and time, with scales fitted to the record.
 
-The field is a mean profile and an anomaly, both from the record. The anomaly's standard deviation
-goes with depth; its correlation is that of Matérn of order 3/2 along depth and exponential in time
-(Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17 and 4.18; mean and
-variance eq. 2.25 and 2.26). A part of the variance has no correlation: what is smaller than the
-spacing of sensors, and the sensor. Errors of depths times the local gradient are added to what is
-found: they may last for the whole record and be common to the line, so that nothing averages them
-away. Half of their variance also counts as each instrument's own, which weighs those whose depth is
-better known.
+The field is a mean profile plus an anomaly, both estimated from the record. The standard deviation
+of the anomaly depends on depth. Its correlation is a Matérn function of order 3/2 along depth and
+an exponential function in time (Rasmussen and Williams, Gaussian Processes for Machine Learning,
+2006, eq. 4.17 and 4.18; mean and variance eq. 2.25 and 2.26). Part of the variance is uncorrelated:
+scales below the sensor spacing, and sensor noise. Depth errors times the local gradient are added
+to the resulting deviation, because they may be common to the line for the whole record and do not
+average out. Half of their variance also counts as independent noise of each instrument, which gives
+more weight to instruments of well-known depth.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ MOST_FOR_PROFILE = 30_000
 OWN = 0.5
 """Part of the variance of a depth's error that is the instrument's own."""
 KNOWN = 0.5
-"""Of the variance of the record, left at a level: where it is more, the value says little."""
+"""Share of variance remaining at a level, above which a value is poorly constrained."""
 GOOD_FIT = 1.96
 """Half the width of an interval of 95 %, in standard deviations."""
 
 INTERPOLATED, DOUBTFUL, MISSING = 8, 3, 9
-"""Flags of the OceanSITES table of what is written."""
+"""OceanSITES quality flags of the output."""
 
 
 class Scales(NamedTuple):
-    """Hold scales of the anomaly's correlation: depth [m], time [s], share without correlation."""
+    """Correlation scales of the anomaly: depth [m], time [s], uncorrelated variance share."""
 
     depth: float
     time: float
@@ -59,7 +59,7 @@ class RecordProfile:
     deviation: Floats
 
     def mean_at(self, depth: Floats) -> Floats:
-        """Return the mean at some depths; beyond the record that of its end."""
+        """Interpolate the mean profile, constant beyond the ends of the record."""
         return np.interp(depth, self.node, self.mean)
 
     def deviation_at(self, depth: Floats) -> Floats:
@@ -110,7 +110,7 @@ class LevelPosterior(NamedTuple):
 
 
 class LevelValues(NamedTuple):
-    """Value, standard deviation and flag of some times at each level: (n, k)."""
+    """Value, standard deviation and flag at each time and level: (n, k)."""
 
     value: Floats
     deviation: Floats
@@ -118,7 +118,7 @@ class LevelValues(NamedTuple):
 
 
 def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> GriddedQuantity:
-    """Return the field of a record, its scales as likely as can be.
+    """Fit the field of a record with maximum-likelihood scales.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def profile_of(samples: Samples, noise: float) -> RecordProfile:
 
 
 def spacing(samples: Samples) -> float:
-    """Return how far apart the instruments are along depth, the median [m]; pairs count as one."""
+    """Median vertical spacing of the instruments [m]; closely spaced pairs count once."""
     place = np.sort(np.nanmean(samples.depth[:, np.isfinite(samples.value).any(axis=0)], axis=0))
     apart = np.diff(place)
     wide = apart[apart > 0.2 * (place[-1] - place[0]) / max(len(apart), 1)]
@@ -172,8 +172,8 @@ def spacing(samples: Samples) -> float:
 
 
 def _local_line(weight: Floats, off: Floats, value: Floats, width: float) -> tuple[Floats, Floats]:
-    """Return value and slope at 0 of weighted lines over the last axis; flat where depths are too
-    close for one.
+    """Fit weighted lines over the last axis; return value and slope at 0, with zero slope if the
+    depths are too close.
     """
     total = np.maximum(weight.sum(axis=-1), 1e-300)
     centre = (weight * off).sum(axis=-1) / total
@@ -185,7 +185,7 @@ def _local_line(weight: Floats, off: Floats, value: Floats, width: float) -> tup
 
 
 class _Block(NamedTuple):
-    """Observations of some times, each with those of its neighbours: (n, m)."""
+    """Observations at and around each of several times: (n, m)."""
 
     depth: Floats
     anomaly: Floats
@@ -225,8 +225,8 @@ def _block(field: GriddedQuantity, times: NDArray[np.int64]) -> _Block:
 
 
 def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
-    """Return (n, k) gradients at depths, by lines through the sensors around, and how far the
-    depths of these are off [m].
+    """Estimate (n, k) vertical gradients from the surrounding sensors, and the depth errors of
+    these sensors [m].
 
     Parameters
     ----------
@@ -256,7 +256,7 @@ def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> 
 
 
 def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) -> LevelPosterior:
-    """Return what is found at levels: (n, k) each.
+    """Compute the posterior mean and deviation at levels: (n, k) each.
 
     Parameters
     ----------
@@ -280,10 +280,11 @@ def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) 
 
 
 def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -> LevelValues:
-    """Return the estimate at fixed levels of some times.
+    """Estimate values at fixed levels for some times.
 
-    A value between the sensors of its time is flagged as interpolated; one beyond them, or of which
-    the record says little, as doubtful; where it says nothing at all there is none.
+    Values between the sensors in use are flagged as interpolated. Values beyond them, or poorly
+    constrained by the record, are flagged as doubtful. Values that the record does not constrain at
+    all are missing.
 
     Parameters
     ----------
@@ -306,10 +307,10 @@ def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -
 
 
 def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
-    """Return the scales at which the samples of some times are likeliest.
+    """Find the scales of maximum posterior probability for the samples at some times.
 
-    A weak prior holds what a record does not tell: a quarter of the line, six steps of time, and
-    2 % without correlation, each within a factor of five or so.
+    A weak prior applies to scales that the record does not constrain: a quarter of the line, six
+    time steps, and 2 % uncorrelated variance, each within a factor of about five.
     """
     from scipy.optimize import minimize
 
@@ -341,10 +342,10 @@ def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
 
 
 def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, Floats]:
-    """Return (n, s) what each sensor measured less what the others say, and its deviation.
+    """Leave-one-out residual (n, s) of each sensor, measured minus predicted, and its deviation.
 
-    The sensor is left out at the neighbouring times, too: the block of the inverse that is its own
-    (Rasmussen and Williams, eq. 5.12, for several at once). NaN where it measured nothing.
+    The sensor is omitted at the neighbouring times, too, by means of its block of the inverse
+    (Rasmussen and Williams, eq. 5.12, extended to blocks). NaN if the sensor has no value.
     """
     block = _block(field, times)
     sensors = field.samples.value.shape[1]
@@ -369,7 +370,9 @@ FEWEST = 20
 
 
 def _widening(field: GriddedQuantity, times: NDArray[np.int64]) -> Widening | None:
-    """Return how much wider the bands must be to cover 95 % of each sensor, left out in turn."""
+    """Find the factors by which bands must be widened to cover 95 % of each sensor, withheld in
+    turn.
+    """
     miss, spread = left_out(field, times)
     place = np.where(np.isfinite(miss), field.samples.depth[times], np.nan)
     enough = np.isfinite(miss).sum(axis=0) >= FEWEST

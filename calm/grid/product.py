@@ -48,7 +48,7 @@ def parse_levels(text: str) -> NDArray[np.float64]:
 
 
 def _metres(part: str) -> float:
-    """Return a number of metres, with its unit or without (QuantityError: it is none)."""
+    """Parse a length in metres, with or without unit; raises QuantityError."""
     plain = "" if delimited.NUMBER.fullmatch(part.strip()) is None else " m"
     return parse_quantity(f"{part}{plain}", "length", usual_unit="m")
 
@@ -166,7 +166,7 @@ def write_grid(
     output: Path,
     shown: Callable[[Sequence[int]], Iterable[int]] = lambda each: each,
 ) -> None:
-    """Write a gridded file, block by block; it has its name only once it is whole.
+    """Write a gridded file block by block; it gets its final name on completion.
 
     Parameters
     ----------

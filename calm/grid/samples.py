@@ -1,4 +1,4 @@
-"""Samples of instruments at the depths where they were, brought to common times."""
+"""Samples of instruments at their actual depths, averaged to common times."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
 
 
 ANOTHER_PLACE = 30.0
-"""How far pressures [dbar] are from a place [m] at the least, that are of another."""
+"""Difference between pressure [dbar] and depth [m] that indicates another instrument."""
 
 MOST = 5_000_000
 """Times that are written, at most: a second each for two months."""
@@ -122,11 +122,11 @@ class Samples:
 def common_times(
     depths: MooringDepths, series: Sequence[InstrumentSeries], step: np.timedelta64 | None
 ) -> Times:
-    """Return the times that a field is estimated for: those of the depths, or a step apart.
+    """Return the times of the field: those of the depths, or equally spaced times.
 
-    They begin and end where both depths and values are known.
+    They cover the period in which both depths and values are known.
 
-    UsageError: depths and values have no time in common, or the step is longer than what they have.
+    UsageError: depths and values do not overlap in time, or the step is longer than the overlap.
     """
     known = [one.time[np.isfinite(one.value)] for one in series]
     known = [one for one in known if len(one)]
@@ -156,9 +156,9 @@ def common_times(
 def gather(
     depths: MooringDepths, series: Sequence[InstrumentSeries], points: dict[int, int], time: Times
 ) -> Samples:
-    """Return the means of values, and of the depths at which they were taken, around each time.
+    """Average values, and the depths at which they were measured, around each time.
 
-    A value belongs to the nearest of the times, where that is no further than half a step.
+    A value belongs to the nearest time, if that is within half a step.
 
     Parameters
     ----------

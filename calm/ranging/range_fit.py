@@ -1,9 +1,9 @@
-"""The place that fits ranges best, and how well it is known.
+"""Best-fitting position for acoustic ranges, and its uncertainty.
 
-Ranges are straight lines from the ship's transducer; of those that belong, residuals are taken as
-normal and alike.
+Ranges are straight lines from the ship's transducer. Residuals of accepted ranges are assumed
+normal with equal variance.
 
-What was located is written into the mooring file that it was for.
+This module also writes the position into the mooring file.
 """
 
 from dataclasses import asdict, dataclass
@@ -25,18 +25,18 @@ from calm.ranging.ranges import Sound, Survey, read_ranges
 
 CONFIDENCE = 0.95
 MISSED = 0.25
-"""Of the ranges: where most miss the place that fits best by more, it is none."""
+"""Median residual, as a share of the ranges, above which the fit is rejected."""
 SCATTERED, SCATTERED_SHARE = 10.0, 0.005
-"""Scatter [m], and as a share of the ranges, beyond which it is more than ranging gives."""
+"""Scatter [m], and as a share of the ranges, above which it exceeds normal ranging errors."""
 LEVEL = 0.05
-"""Depth below the ship, in lengths of the ranges, of what answers at the ship's own level."""
+"""Minimum depth of the transponder below the ship, as a share of the ranges."""
 MOST_REJECTED = 1.0 / 3.0
 """Share of the ranges that may be rejected without a doubt."""
 FALL_BACK, LEAST_FALL_BACK = 0.1, 50.0
 """Standard deviation of the distance of an anchor from its plan, as a share of the depth it falls
 back over, and at the least [m]."""
 ODDS = 20.0
-"""Of two places one is taken whose odds against the other are at least these."""
+"""Minimum odds for choosing one of two positions."""
 
 
 @dataclass(frozen=True)
@@ -58,27 +58,27 @@ class SecondPlace:
 
 @dataclass(frozen=True)
 class Located:
-    """Describe where what answers stands.
+    """Position of a transponder.
 
     Attributes
     ----------
     survey : the ranges
     latitude, longitude : WGS 84 [degrees]
-    depth : below the surface [m]
-    horizontal_95 : greater half-axis of the ellipse that holds the place with 95 % [m]; nan where
-        there are no more ranges than unknowns, or they do not tell
-    ellipse : both half-axes [m] and the bearing of the greater [degrees]
-    depth_95 : half of the interval of 95 % of the depth [m]; 0 where the depth was given
-    rms : of the residuals of the ranges in use, by the degrees of freedom [m]
-    residuals : (n,) measured less computed range [m]
-    used : (n,) False of what does not belong
-    sound_speed : harmonic mean on the way [m/s]
-    warnings : about geometry and consistency
-    place : (3,) east, north, up in the frame of the survey [m]
+    depth : depth below the surface [m]
+    horizontal_95 : major half-axis of the 95 % ellipse [m]; NaN without redundant ranges, or if
+        the ranges do not constrain it
+    ellipse : both half-axes [m], and bearing of the major one [degrees]
+    depth_95 : half of the 95 % interval of the depth [m]; 0 if the depth was given
+    rms : rms residual of the ranges in use, by degrees of freedom [m]
+    residuals : (n,) measured minus computed ranges [m]
+    used : (n,) False for rejected ranges
+    sound_speed : harmonic mean along the path [m/s]
+    warnings : warnings about geometry and consistency
+    place : (3,) position east, north, up in the frame of the survey [m]
     depth_given : whether the depth was given
-    second : another place that fits; None where there is none
-    undecided : whether both of these remain
-    doubts : why the place is not to be written down without a person's word
+    second : another position that fits, or None
+    undecided : whether both positions remain possible
+    doubts : reasons for not writing the position without confirmation
     """
 
     survey: Survey
@@ -100,7 +100,7 @@ class Located:
     doubts: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the JSON object; None stands where a figure is unknown."""
+        """Return the JSON object; unknown values are None."""
         lines = self.survey.line
         major, minor, bearing = map(_known, self.ellipse)
         rejected = [(lines[i], self.residuals[i].item()) for i in np.flatnonzero(~self.used)]
@@ -136,13 +136,13 @@ def locate(
     depth: float | None = None,
     near: tuple[float, float] | None = None,
 ) -> Located:
-    """Find where what answers stands.
+    """Locate a transponder from acoustic ranges.
 
     Parameters
     ----------
     survey : ranges as read, or their file, by a transducer at the surface
-    sound : its speed, for times: by depth, or one for all depths [m/s]
-    depth : of what answers [m], where it is known; else it is found too
+    sound : speed of sound for times, as a profile or a constant [m/s]
+    depth : depth of the transponder [m]; estimated if None
     near : latitude and longitude [degrees] of the plan: two places that fit are weighed by how far
         an anchor can fall back from there
 
@@ -251,10 +251,11 @@ def _weighed(
     near: tuple[float, float] | None,
     scattered: float,
 ) -> tuple[Floats, Floats | None, str]:
-    """Return the likelier place, the other one, and why both remain; empty where one does.
+    """Return the more likely position, the other one, and the reason for keeping both ("" if
+    decided).
 
-    A place is as likely as the scatter [m] of its ranges and its distance from the plan together,
-    both normal. The place near the plan does not decide it alone where the other fits far better.
+    The likelihood of a position combines the scatter [m] of its ranges and its distance from the
+    plan, both normal. The position near the plan is not chosen if the other fits far better.
     """
     if other is None:
         return x, None, ""
@@ -288,16 +289,16 @@ def _second(model: range_model.RangeModel, x: Floats, other: Floats, used: Boole
 
 
 def _scatter(residuals: Floats, freedom: int) -> float:
-    """Return the root of the mean square by the degrees of freedom [m]; nan of none."""
+    """Root mean square by degrees of freedom [m]; NaN without degrees of freedom."""
     return sqrt(float(residuals @ residuals) / freedom) if freedom else nan
 
 
 def _intervals(
     jacobian: Floats, rms: float, freedom: int, depth_given: bool, farthest: float
 ) -> tuple[float, float, float, float]:
-    """Half-axes [m], bearing of the greater [degrees], half the interval of the depth [m].
+    """Half-axes [m], bearing of the major axis [degrees], and half the depth interval [m].
 
-    None of them, nan, where they are as wide as the longest range.
+    Values are NaN if the interval is as wide as the longest range.
     """
     from scipy.stats import chi2, norm
     from scipy.stats import f as fisher
@@ -332,7 +333,7 @@ def _intervals(
 FAR = 2.0
 """Times the depth of the water from the planned position: farther than an anchor is laid astray."""
 NEAR = 0.5
-"""Share of the distance as written, within which degrees read as degrees and minutes are meant."""
+"""Share of the distance below which degrees are assumed to be misread degrees and minutes."""
 DEEPER, DEEPER_SHARE = 30.0, 0.03
 """Difference of the depth from the planned one [m], or as a share of it if that is larger, beyond
 which it is in doubt."""
@@ -351,10 +352,10 @@ def located_mooring(path: Path) -> MooringFile:
 def with_deployed(
     path: Path, before: MooringFile, located: Located, water_depth: float
 ) -> tuple[WorkingFile, str, tuple[str, ...], tuple[str, ...]]:
-    """Return a mooring file, its text with the place in its `deployed`, how far that is from the
-    plan, and what of that is in doubt.
+    """Return the mooring file, its text with the position in `deployed`, the deviation from the
+    plan, and any doubts.
 
-    All else stays byte for byte: comments, and what `deployed` says besides.
+    The rest of the file, including comments and other keys of `deployed`, is unchanged.
 
     Parameters
     ----------
@@ -388,7 +389,7 @@ def with_deployed(
 def _beside_the_plan(
     file: MooringFile, located: Located, water_depth: float
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return where the anchor stands from its planned position, how much deeper, and the doubts."""
+    """Compare the anchor with its planned position and depth, and list any doubts."""
     planned, plan_depth = file.position, file.environment.depth
     assert plan_depth is not None  # of a mooring
     deeper = water_depth - plan_depth

@@ -1,9 +1,9 @@
-"""Ranges as they should be from a place, the place that most agree on, and those that do not.
+"""Model of acoustic ranges: computed ranges, robust fit, and rejection of outliers.
 
-Where ranges can be spared, a fit that outliers hardly move comes first; then each doubtful range is
-judged by the others (Student's test, all of them together at 1 %). Where none can, all count.
+If there are enough ranges, a robust fit comes first, then each doubtful range is tested against the
+others (Student's test, 1 % for all of them together). Otherwise all ranges count.
 
-A survey may not agree with itself, or not tell one place from another: it is said.
+Inconsistent surveys, and surveys with poor geometry, are reported.
 """
 
 from collections.abc import Iterator
@@ -18,20 +18,21 @@ from calm.positions import Frame
 from calm.ranging.ranges import Sound, Survey
 
 BY_CHANCE = 0.01
-"""Of a survey without an outlier: how often one is called so."""
+"""Probability of rejecting a range from a survey without outliers."""
 FLOOR = 2.0
 """Scatter that no range is better than [m]: the ship's antenna is some metres from its transducer,
 and both move while the sound travels."""
 SPARE = 2
-"""Ranges beyond the unknowns that are left when others are rejected: with fewer, any two that are
-wrong alike outvote a third that is right."""
+"""Minimum number of redundant ranges after rejection; with fewer, two ranges with equal errors
+would outvote a correct third one.
+"""
 APART = 10.0
 """Distance from which two places are two [m]."""
 
 
 @dataclass(frozen=True)
 class RangeModel:
-    """Ranges from a place: the unknowns are east, north and, where it is not given, the depth."""
+    """Model of ranges from a position: the unknowns are east, north and, unless given, depth."""
 
     survey: Survey
     sound: Sound
@@ -56,7 +57,7 @@ class RangeModel:
         return self.sound.mean(self.survey.transducer, max(below, self.survey.transducer))
 
     def measured(self, x: Floats) -> Floats:
-        """Return (n,) ranges [m], of times by the speed of sound on the way to the place."""
+        """Ranges [m] (n,); times are converted by the mean speed of sound to the position."""
         if not self.survey.timed:
             return self.survey.measured
         ranges: Floats = 0.5 * self.survey.measured * self.mean_speed(x)
@@ -139,9 +140,9 @@ class RangeModel:
         return self._below(fit.x)
 
     def judged(self, x: Floats, used: Booleans) -> Booleans:
-        """Return the ranges that belong: the worst of them out, or what fits the others in.
+        """Reject the worst outlier, or restore a range that fits the others.
 
-        A range is judged by its residual over its standard error as the others give it.
+        A range is tested by its residual over its standard error, as estimated from the others.
         """
         from scipy.stats import t as student
 
@@ -170,9 +171,9 @@ class RangeModel:
         return changed
 
     def consistency(self, x: Floats, used: Booleans) -> list[str]:
-        """Return whether the ranges fit better when all are longer or shorter by a factor.
+        """Describe a scale factor of all ranges that improves the fit, if any.
 
-        UsageError: by a factor of two: one-way for two-way times, or the other way round.
+        UsageError: a factor of two, from mixing one-way and two-way times.
         """
         from scipy.optimize import least_squares
         from scipy.stats import t as student
@@ -212,9 +213,9 @@ class RangeModel:
         return [f"{said}: were they taken with another speed of sound?"]
 
     def another_place(self, x: Floats, used: Booleans, scatter: float) -> Floats | None:
-        """Return the unknowns of another place that fits nearly as well, or within a scatter [m].
+        """Find another position that fits nearly as well, or within a scatter [m].
 
-        None without one. Places on either side of the track are looked at.
+        None if there is no other. Positions on either side of the track are tried.
         """
         starts = [mirrored(self.ships[used], self.place(x))[: len(x)], *self._starts()]
         fits = [self.least_squares(start, used) for start in starts]
@@ -240,7 +241,7 @@ def scatter(residuals: Floats, unknowns: int) -> float:
 
 
 def _doubled(timed: bool, factor: float) -> str:
-    """Return what ranges are that fit when all are twice as long, or half as long."""
+    """Describe the probable error if the ranges fit at twice or half their length."""
     instead = "give the distance from the ship to the transponder"
     meant = {
         (True, 2.0): "one-way times: two-way times are needed, there and back",
@@ -263,13 +264,13 @@ depth."""
 def geometry_warnings(
     ships: Floats, place: Floats, below: float, depth_given: bool
 ) -> Iterator[str]:
-    """Return what of a survey leaves the place poorly known.
+    """Warn of survey geometry that constrains the position poorly.
 
     Parameters
     ----------
-    ships : (n, 3) places of the transducer [m]
-    place : (3,) of what answers [m]
-    below : its depth below the transducer [m]
+    ships : (n, 3) positions of the transducer [m]
+    place : (3,) position of the transponder [m]
+    below : depth of the transponder below the transducer [m]
     """
     away = (ships - place)[:, :2]
     distance = np.linalg.norm(away, axis=1)

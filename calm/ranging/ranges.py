@@ -1,8 +1,8 @@
 """Ranges from a CSV file: `latitude[deg],longitude[deg]` of the ship, `range[m]` or `time[s]`.
 
-Surveys as ships write them down otherwise are read as that table: positions in two columns, degrees
-and minutes; columns by the names of deck boxes and event logs; and two forms without a heading, of
-programs that find an anchor by its ranges:
+Other survey formats are converted to that table: positions in two columns, degrees and minutes;
+column names of deck boxes and event logs; and two forms without a heading, from programs that
+locate an anchor by ranges:
 
 - five columns: degrees and minutes of latitude and of longitude, and seconds one way (WHOI);
 - three columns: range, latitude and longitude, below the target, depth, height of the release
@@ -30,9 +30,9 @@ from calm.whole_file import read_text
 
 EXAMPLE = "latitude[deg],longitude[deg],range[m]"
 LONGEST = {"range": 25_000.0, "time": 35.0}
-"""Beyond what the transponders of moorings answer [m], and there and back [s]."""
+"""Maximum range of mooring transponders [m], and maximum two-way time [s]."""
 WIDEST = 50.0
-"""How far from the middle of a survey its positions may be [km]."""
+"""Maximum distance of positions from the middle of a survey [km]."""
 _FILLS = frozenset({"-9999", "-999", "-99", "9999", "99999", "999999", "-99999", "1e35", "1e+35"})
 _COLUMNS = {"latitude": "latitude", "longitude": "longitude", "range": "length", "time": "time"}
 
@@ -182,7 +182,7 @@ def _figure(name: str, text: str, factor: float) -> float:
 
 
 def _misplaced(path: Path, values: list[tuple[int, float, float, float]]) -> list[Problem]:
-    """Return the mistakes of positions that are none, and those that are far from the others."""
+    """Report fill values and positions that are far from the others."""
     problems = []
     places = []
     for line, latitude, longitude, _ in values:
@@ -202,7 +202,7 @@ def _misplaced(path: Path, values: list[tuple[int, float, float, float]]) -> lis
 
 
 SLOWEST, FASTEST = 1380.0, 1680.0
-"""Of sound in natural waters [m/s]: near-freezing fresh water, the deepest trench."""
+"""Speed of sound in natural waters [m/s]: near-freezing fresh water, deepest trench."""
 _OF_SOUND = {"depth": "length", "sound_speed": "speed"}
 _EXAMPLE = "depth[m],sound_speed[m/s]"
 
@@ -226,10 +226,10 @@ class Sound:
         return cls(np.zeros(1), np.array([speed]))
 
     def mean(self, above: float, below: float) -> float:
-        """Return the harmonic mean between two depths [m/s].
+        """Harmonic mean between two depths [m/s].
 
-        A straight ray spends its way evenly over the depths between its ends, at any slope, so its
-        time is its length over this mean.
+        A straight ray at any slope covers equal lengths per depth interval, so its travel time is
+        its length divided by this mean.
         """
         if len(self.speed) == 1 or below - above < 1e-6:
             return float(np.interp(0.5 * (above + below), self.depth, self.speed))
@@ -245,10 +245,10 @@ class Sound:
 
 
 def read_sound(path: Path) -> Sound:
-    """Return a profile from a CSV file with the header ``depth[m],sound_speed[m/s]``.
+    """Read a profile from a CSV file with the header ``depth[m],sound_speed[m/s]``.
 
-    InputError: with every mistake of the file: a depth that does not grow, a speed that no water
-    has.
+    InputError: lists every mistake of the file, such as depths that do not increase or implausible
+    speeds.
     """
     problems: list[Problem] = []
     columns = read_named_columns(delimited.read_table(path, _EXAMPLE), _OF_SOUND, problems)
@@ -284,7 +284,7 @@ def _complaint(name: str, text: str, factor: float, depths: list[float]) -> str:
 
 
 def sound_complaint() -> str:
-    """Return what is said of a speed of sound that no water has."""
+    """Message for an implausible speed of sound."""
     return f"is not a speed of sound in water; it is {SLOWEST:g} to {FASTEST:g} m/s"
 
 
@@ -294,7 +294,7 @@ _OTHER_NAMES: Mapping[str, str] = {
     **dict.fromkeys(("slant_range", "slant", "distance", "rng", "slantrange"), "range"),
     **dict.fromkeys(("twt", "twtt", "two_way_time", "two_way_travel_time", "travel_time"), "time"),
 }
-"""What columns are called elsewhere."""
+"""Alternative column names."""
 
 _PART = re.compile(r"(?i)(?:ship[ _]?)?(lat|lon)\w*?[ _\[(]*(deg|min|hem|ns|ew|dir)\w*[\])]*")
 _LARGEST = 5_000_000
@@ -304,9 +304,10 @@ _BareRow = tuple[int, list[str]]
 
 
 def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[str]]:
-    """Return the table of a survey, the depth of its transducer [m] where it says so, and notices.
+    """Read the table of a survey, the depth of its transducer [m] if given, and notices.
 
-    InputError: it cannot be read, is empty, or has no header and is of neither form without one.
+    InputError: the file is unreadable, is empty, or has neither a header nor one of the two known
+    forms.
     """
     rows = _bare_rows(path)
     columns = len(rows[0][1]) if rows else 0
@@ -337,7 +338,7 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
 
 
 def _bare_rows(path: Path) -> list[_BareRow]:
-    """Return the rows of a file of numbers alone, as many in each; none of any other file."""
+    """Read the rows of a purely numeric file with equal row lengths; empty for other files."""
     whole = enumerate(read_text(path, largest=_LARGEST).splitlines(), 1)
     bare = ((number, re.split("[%#]", line)[0].strip()) for number, line in whole)
     lines = [(number, line) for number, line in bare if line]
@@ -349,9 +350,9 @@ def _bare_rows(path: Path) -> list[_BareRow]:
 
 
 def _row_of_depths(rows: Sequence[_BareRow]) -> int:
-    """Return which row, from 1, has the depths: the first, or the second, below the target.
+    """Find the row of depths: 1, or 2 if it follows the target; 0 if there is none.
 
-    Only the others have places of one survey in their last two cells; 0 where neither is so.
+    The last two cells of all other rows must be positions of one survey.
     """
     if len(rows) <= 4:
         return 0
@@ -363,7 +364,7 @@ def _row_of_depths(rows: Sequence[_BareRow]) -> int:
 
 
 def _placed(cells: Sequence[str]) -> str:
-    """Return degrees and minutes as one cell, the sign of the degrees before both."""
+    """Join degrees and minutes in one cell, with the sign of the degrees first."""
     degrees, *rest = (cell.strip() for cell in cells)
     degrees = re.sub(r"\.0*$", "", degrees)
     return " ".join([degrees, *rest]).strip()

@@ -1,1 +1,1 @@
-"""A result as people and programs see it: tables, documents and plots."""
+"""Output of results for people and programs: tables, documents and plots."""

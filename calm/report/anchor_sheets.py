@@ -1,7 +1,7 @@
-"""Sheets of an anchor: the plan of its drop, and where it was found to lie.
+"""Anchor sheets: the anchor drop plan, and the anchor position from acoustic ranges.
 
-The plan says what to do, what to expect, and how it falls; the place is plotted as ships do, by
-circles.
+The plan lists instructions, expected values and the course of the descent. The position is plotted
+by range circles, as on board.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 
 
 _ROWS = 6
-"""Of the table of the fall."""
+"""Number of rows in the table of the descent."""
 _DEEPER = 0.5
-"""By how much deeper than at rest a float has to come to be listed [m]."""
+"""Extra depth, relative to equilibrium, from which a float is listed [m]."""
 
 
 def drop_part(plan: DropPlan) -> ReportPart:
@@ -50,7 +50,7 @@ def drop_part(plan: DropPlan) -> ReportPart:
 
 
 def _instructions(plan: DropPlan) -> Prose:
-    """Return what the ship does."""
+    """Format the instructions for the ship."""
     beyond = "beyond" if plan.tow_past >= 0.0 else "before"
     speed = say("speed", plan.ship_speed)
     if QUANTITIES["speed"].display_unit != "kn":
@@ -141,7 +141,7 @@ def _depths_table(plan: DropPlan) -> list[Table]:
         for each in plan.depths
         if each.part.component.role != "float" or each.beyond or each.greatest > each.rest + _DEEPER
     ]
-    # components of one rating share a row; what sinks beyond it stands alone
+    # components of equal rating share a row; those that sink below their rating are separate
     runs = grouped(listed, lambda one: one.label if one.beyond else (one.part.use, one.rating))
     rows = [(max(run, key=lambda one: one.greatest), run) for run in runs]
     depth = QUANTITIES["depth"]
@@ -185,7 +185,9 @@ def _distance(distance: float) -> str:
 
 
 def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
-    """A place east and north of the target [m], in words, with its position where that is known."""
+    """Describe a place by its distances north and east of the target [m], and its position if
+    known.
+    """
     east, north = place
     position = plan.position(place)
     return (
@@ -262,7 +264,7 @@ _ROUND = np.linspace(0.0, 2.0 * np.pi, 1441)
 
 
 def located_part(located: Located, water_depth: float) -> ReportPart:
-    """The place, how well it is known, and the residual of every range; in a depth of water [m]."""
+    """Report the position, its uncertainty and the residual of each range; `water_depth` [m]."""
     outliers = [
         line for line, used in zip(located.survey.line, located.used, strict=True) if not used
     ]

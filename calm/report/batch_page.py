@@ -1,4 +1,4 @@
-"""The statistics of a batch as a page with tables and drawings, in short, and as files."""
+"""Statistics of a batch on a page with tables and drawings, on a terminal, and as files."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -87,7 +87,7 @@ _EXTRAPOLATED = (
 
 
 def limits_table(summary: Summary) -> Table:
-    """Return how often every limit is broken, and the worst of it."""
+    """Tabulate how often each limit is exceeded, and the most severe value."""
 
     def state(one: Exceedance) -> Cell:
         broken = one.limit.criterion.beyond if one.share else State.PASS
@@ -141,7 +141,7 @@ def statistics_tables(summary: Summary) -> Iterator[Table]:
 
 
 def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
-    """The worst profiles by each response, with the others beside it."""
+    """Yield the worst profiles by each response, together with their other responses."""
     for name, profiles in summary.worst.items():
         if not profiles:
             yield Prose((f"The {TITLES[name]} is not known in any profile.",), State.UNKNOWN)
@@ -186,14 +186,14 @@ def _fitted(fit: Fit) -> str:
 
 
 def write_summary(result: Path, mooring: Design) -> Summary:
-    """Gather what a finished result says, and write it beside it, as JSON and as a page.
+    """Summarise a finished result as JSON and HTML files in the same folder.
 
-    The result is only read: this can be done, and done again, at any time after it is finished.
+    The result is only read, so this can be repeated at any time after the batch has finished.
 
     Parameters
     ----------
-    result : RESULT.nc, which then has RESULT.summary.json and RESULT.summary.html
-    mooring : that it was solved for
+    result : RESULT.nc; RESULT.summary.json and RESULT.summary.html are written
+    mooring : mooring of the batch
 
     Raises
     ------
@@ -210,7 +210,7 @@ def write_summary(result: Path, mooring: Design) -> Summary:
 
 
 def summary_paths(result: Path) -> tuple[Path, Path]:
-    """Return where the summary of a result stands: its JSON and its page."""
+    """Paths of the summary of a result: JSON and HTML page."""
     return result.with_suffix(".summary.json"), result.with_suffix(".summary.html")
 
 
@@ -224,10 +224,10 @@ _ALL = (
 
 
 def summary_part(summary: Summary) -> ReportPart:
-    """Return what a summary says; it fits 80 columns, where long labels wrap.
+    """Summarise a batch for a terminal of 80 columns, in which long labels wrap.
 
-    Components and clamps with the 99 % percentile and the maximum of each quantity, how often
-    each rule fails, the worst profile by each response, and return levels.
+    Lists components and clamps with the 99th percentile and the maximum of each quantity, the
+    failure rate of each rule, the worst profile by each response, and return levels.
     """
     lost = State.FAIL if summary.count - summary.solved else None
     ended = blocks.Span(batch_summary.standing(summary), lost)
@@ -262,7 +262,7 @@ def _parts(summary: Summary) -> Table:
 
 
 def _levels(summary: Summary) -> Iterator[Table]:
-    """Return levels, where there are any."""
+    """Yield the table of return levels, if any were fitted."""
     rows = []
     for response in summary.responses:
         quantity = QUANTITIES[QUANTITY[response.name]]
@@ -291,7 +291,7 @@ _LIMIT = Stroke("#b3261e", 1.0, (4.0, 2.0))
 
 
 def series_figure(summary: Summary) -> str:
-    """Least and greatest value of every response in each interval of time, as SVG."""
+    """Draw the minimum and maximum of each response per time interval, as SVG."""
     tall, responses = 108.0, summary.known_responses
     page = Graph(_WIDTH, len(responses) * (tall + _GAP) + 20.0, "responses through time", _SIZE)
     begin = responses[0].begin
@@ -318,8 +318,8 @@ def series_figure(summary: Summary) -> str:
 
 
 class _Panel(NamedTuple):
-    """Hold what curves show, of which quantity; each with its stroke and label; and the limit on
-    it.
+    """Panel of exceedance curves of a quantity, each with stroke and label, and the limit of the
+    quantity.
     """
 
     title: str
@@ -339,7 +339,7 @@ def exceedance_figure(summary: Summary) -> str:
 
 
 def parts_figure(parts: Sequence[statistics.PartDistributions]) -> str:
-    """Return the same of the knockdown and the tilt of some parts, those that move most, as SVG."""
+    """Draw exceedance curves of the knockdown and tilt of the parts that move most, as SVG."""
     panels = []
     for name in ("knockdown", "tilt"):
         known = [(part.label, getattr(part, name)) for part in parts]
@@ -382,7 +382,7 @@ def _shares(title: str, panels: Sequence[_Panel], tall: float) -> str:
 
 
 def _limit_of(summary: Summary, response: Response) -> float | None:
-    """The limit of the design on a response, as it is shown; None where it gives none."""
+    """Limit of the design on a response, in display units; None if the design sets none."""
     wanted = {"knockdown": "knockdown", "offset": "excursion"}.get(response.name)
     for rule in summary.rules:
         if rule.name == wanted:

@@ -120,7 +120,7 @@ def _time(time: np.datetime64 | None) -> str | None:
 
 
 def rules_table(summary: Summary) -> Table:
-    """Return how often each rule fails or warns anywhere on the line."""
+    """Tabulate the share of profiles in which each rule fails or warns."""
 
     def broken(heading: str, name: str, state: State, unit: str = "%") -> Field:
         def cell(rule: RuleShare) -> Cell:
@@ -146,7 +146,7 @@ def rules_table(summary: Summary) -> Table:
 
 
 def _most_often(rule: RuleShare) -> str:
-    """The part that breaks a rule most often, and how many cannot be judged by it."""
+    """Name the part that exceeds a limit most often, and count the unknown ones."""
     most = max(rule.exceedances, key=lambda one: one.share or 0.0, default=None)
     worst = ""
     if most and most.share:
@@ -156,7 +156,9 @@ def _most_often(rule: RuleShare) -> str:
 
 
 def profiles_table(title: str, profiles: Sequence[tuple[str, WorstProfile]]) -> Table:
-    """Profiles with their responses, each with what it is the worst by where that is not said."""
+    """Tabulate profiles with their responses, and the response for which each is the worst, if
+    stated.
+    """
 
     def response(name: str) -> Field:
         column, cell = quantity(QUANTITY[name], lambda row: getattr(row[1], name), TITLES[name])
@@ -178,10 +180,10 @@ TITLES = {
     "tilt": "greatest tilt",
     "offset": "offset of the top",
 }
-"""Of the responses, by their names."""
+"""Titles of the responses, by name."""
 
 QUANTITY = {name: name for name in TITLES} | {"anchor_tension": "tension"}
-"""Of a response, in `calm.quantities`."""
+"""Quantity of each response, as a name in `calm.quantities`."""
 
 METHODS_IN_SHORT = {"gev": "GEV", "pot": "POT"}
 
@@ -194,16 +196,16 @@ DEFINITIONS = (
     "p of n is the p quantile. Tension of a component: the greater of its two ends. "
     "Knockdown and depth of a component: of its upper end.",
 )
-"""What must be known to read the figures."""
+"""Definitions of the statistics, printed with the tables."""
 
 
 def when(time: np.datetime64 | NDArray[np.datetime64] | None) -> str:
-    """A time to the minute, in words; a dash where there is none."""
+    """Format a time to the minute, or a dash for None."""
     return "-" if time is None else str(np.datetime_as_string(time, unit="m")).replace("T", " ")
 
 
 def percent(share: float | None) -> str:
-    """A share in percent; one above zero is not written as 0."""
+    """Format a share in percent, with values above zero never shown as 0."""
     if share is None:
         return "-"
     if 0.0 < share < 5e-5:
@@ -231,7 +233,7 @@ def standing(summary: Summary) -> str:
 
 
 def left_out(summary: Summary) -> str:
-    """Return how many profiles with a current were not solved, and what that does to figures."""
+    """Describe the number of unsolved profiles with a current, and the effect on statistics."""
     if not summary.unsolved:
         return ""
     with_current = summary.solved + summary.unsolved
@@ -256,7 +258,7 @@ def refusals(summary: Summary) -> Iterator[str]:
 
 
 def stops_tables(summary: Summary) -> Iterator[Table]:
-    """Yield the depths of the stops of the profilers, as they are typed into these."""
+    """Tabulate the depths of the profilers' stops, in dbar and metres."""
     if not summary.stops:
         return
     shares = (*(f"{share:g} %\ndbar" for share in statistics.STOP_SHARES),

@@ -16,12 +16,12 @@ from calm.quantities import QUANTITIES, Quantity
 
 @dataclass(frozen=True)
 class Column:
-    """Head of a column: title, unit below it, and whether its cells are numbers.
+    """Heading of a column: title, unit below it, and whether its cells are numbers.
 
-    `share` is that of the width which numbers and short words leave: 0 of a column of short words,
-    1 of names, more of sentences; a column of numbers has one if it is not 1. `short` is the title,
-    in lines, where there is little room; a column that is not `narrow` is left out there. In one
-    that is `marked` cells may carry a mark.
+    `share` is the share of the width left over by numbers and short words: 0 for short words, 1 for
+    names, more for sentences; numeric columns have a share only if it is not 1. `short` is a title,
+    in lines, for narrow tables; a column that is not `narrow` is omitted there. Cells of a `marked`
+    column may carry a mark.
     """
 
     heading: str
@@ -35,13 +35,13 @@ class Column:
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell: its text, a smaller line below it, and the state it shows in colour and word.
+    """Cell: its text, a smaller line below it, and the state shown in colour and words.
 
-    `mark` is the sign after a figure that is near a limit or beyond it. A cell may be indented
-    below the row above it, and `strong` where the reader looks for it. On paper the detail of
-    one that `goes_on` follows in the same line, and `then` is what is to be done about it. A `bar`
-    is a share of a limit, drawn with its mark at 1, `picture` a drawing as SVG; `tone` is how a
-    share stands out in a matrix: `fail`, `over` or `near`.
+    `mark` is the sign after a value close to a limit or beyond it. A cell may be indented below the
+    row above it, or `strong` to stand out. In print, the detail of a cell that `goes_on` follows on
+    the same line, and `then` is the suggested action. `bar` is a share of a limit, drawn with a
+    mark at 1; `picture` is an SVG drawing; `tone` is the highlight in a matrix: `fail`, `over` or
+    `near`.
     """
 
     text: str = ""
@@ -59,12 +59,12 @@ class Cell:
 
 @dataclass(frozen=True)
 class Table:
-    """Rows under columns; the last `totals` of the rows are sums.
+    """Table: rows under columns; the last `totals` rows are sums.
 
-    A row of a single cell heads those below it. The rows of a table that is `sortable` may be put
-    in another order and chosen from; a `dense` one has more columns than fit with room to spare.
-    One that is to be filled in `by_hand` has rules and room to write. `aside` stands beside the
-    title, in smaller letters. One that is `ruled` has a hair line below each row.
+    A row of a single cell is a heading for the rows below it. Rows of a `sortable` table can be
+    sorted and filtered. A `dense` table has so many columns that spacing is reduced. A table to
+    fill in `by_hand` has rules and room to write. `aside` is printed next to the title in smaller
+    letters. A `ruled` table has a hairline below each row.
     """
 
     title: str
@@ -79,7 +79,7 @@ class Table:
     ruled: bool = True
 
     def without_empty_columns(self) -> Table:
-        """Return the table without the columns in which no row has a word, unless `by_hand`."""
+        """Remove columns without text, unless the table is to be filled in `by_hand`."""
         count = len(self.columns)
         full = [row for row in self.rows if len(row) == count]
         kept = [at for at in range(count) if any(row[at] != _EMPTY for row in full)]
@@ -101,16 +101,16 @@ _EMPTY = Cell()
 
 @dataclass(frozen=True)
 class Pairs:
-    """Hold a name and a value of each of several things; a value may have several lines."""
+    """List of names with their values; a value may have several lines."""
 
     pairs: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A drawing as SVG, and what it shows in words; a `tall` one may fill a page.
+    """SVG drawing with a title that describes it; a `tall` one may fill a page.
 
-    `aside` stands beside the title, `note` below the drawing.
+    `aside` is printed next to the title, `note` below the drawing.
     """
 
     title: str
@@ -122,7 +122,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Span:
-    """Words of a sentence that look as a state does, or `quiet` as what is read last."""
+    """Part of a sentence, coloured by a state, or `quiet` for secondary text."""
 
     text: str
     state: State | None = None
@@ -130,7 +130,7 @@ class Span:
 
 
 Line = str | tuple[Span, ...]
-"""A sentence, as it is or in spans."""
+"""Sentence, as plain text or as spans."""
 
 
 @dataclass(frozen=True)
@@ -157,9 +157,9 @@ class Heading:
 
 @dataclass(frozen=True)
 class Listing:
-    """Text as it stands in a file; on paper that is attached by its `name`, where it has one.
+    """Text of a file; in print it is attached under `name`, if set.
 
-    One that takes more than `most` lines there is in the attachment alone.
+    A text that takes more than `most` lines there appears in the attachment only.
     """
 
     title: str
@@ -170,7 +170,7 @@ class Listing:
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """What a drawing is: above and below its title in small letters, and its fields."""
+    """Title block of a drawing: small text above and below the title, and fields."""
 
     above: str
     title: str
@@ -180,13 +180,13 @@ class TitleBlock:
 
 @dataclass(frozen=True)
 class SignOff:
-    """Revisions, and boxes to sign in, each with the name that is known; at the foot of a page.
+    """Revisions and signature boxes with known names, at the foot of a page.
 
     Attributes
     ----------
-    revisions : revision, date, by whom and what for
-    roles : who signs, and the name
-    note : beside the boxes
+    revisions : revision, date, author and reason
+    roles : role and name of each signatory
+    note : text next to the boxes
     """
 
     revisions: tuple[tuple[str, str, str, str], ...]
@@ -196,7 +196,7 @@ class SignOff:
 
 @dataclass(frozen=True)
 class OpenItem:
-    """What is open: its state and number, what it is, and what was found and is to be done."""
+    """Open item: its state, number and heading, and a text with value and suggested action."""
 
     state: State
     number: int
@@ -206,7 +206,7 @@ class OpenItem:
 
 @dataclass(frozen=True)
 class OpenItems:
-    """The gravest items first; where not all have room, `more` says where the others stand."""
+    """List of open items, most severe first; `more` refers to items that do not fit."""
 
     title: str
     items: tuple[OpenItem, ...]
@@ -216,9 +216,9 @@ class OpenItems:
 
 @dataclass(frozen=True)
 class Beside:
-    """Blocks beside each other on paper, the left ones with a share of the width.
+    """Two groups of blocks side by side in print; the left one has a share of the width.
 
-    With a `height` [pt] they have that on paper, and no more.
+    If `height` [pt] is set, they have exactly that height in print.
     """
 
     left: tuple[Block, ...]
@@ -229,7 +229,7 @@ class Beside:
 
 @dataclass(frozen=True)
 class PageBreak:
-    """Begin a page with what follows, where there are pages."""
+    """Page break, in output that has pages."""
 
 
 Block = (
@@ -240,9 +240,9 @@ Block = (
 
 @dataclass(frozen=True)
 class ReportPart:
-    """Blocks under a heading; what a command shows of one thing is a part of its own.
+    """Blocks under a heading; the output of a command about one object is a separate part.
 
-    Its tables have letters of a size [pt] on paper; nothing but a listing has smaller ones.
+    `size` is the font size of its tables in print [pt]; only listings use a smaller one.
     """
 
     title: str
@@ -252,13 +252,13 @@ class ReportPart:
 
 @dataclass(frozen=True)
 class Running:
-    """Hold what stands at the head and the foot of every page.
+    """Running header and footer of every page.
 
     Attributes
     ----------
-    document, title : on the left of the head
-    verdict, date : on its right
-    foot : on the left of the foot; the number of the page is on its right
+    document, title : left side of the header
+    verdict, date : right side of the header
+    foot : left side of the footer, opposite the page number
     """
 
     document: str = ""
@@ -270,10 +270,10 @@ class Running:
 
 @dataclass(frozen=True)
 class Section:
-    """All that a report says of one mooring or tow: its name, and the parts that are printed.
+    """Section of a report on one mooring or tow: its name, and the parts to print.
 
-    A section may be made in a process of its own. One with `running` texts of its own begins a
-    page, and has no other title.
+    A section may be built in a separate process. A section with its own `running` texts starts a
+    page and has no other title.
     """
 
     name: str
@@ -287,14 +287,14 @@ class Report:
 
     Attributes
     ----------
-    title, subtitle : of the first page
-    front : what stands before the sections
-    sections : one for each mooring or tow
-    date : in words, None where no date was given
-    plates : drawings before all else
-    verdict : at the head of every page, with its state
-    foot : at the foot of every page
-    running : in place of title, verdict, date and foot, where the first page has a block of its own
+    title, subtitle : titles of the first page
+    front : parts before the sections
+    sections : one section per mooring or tow
+    date : date as text, or None
+    plates : full-page drawings at the beginning
+    verdict : verdict with its state, in the header of every page
+    foot : text in the footer of every page
+    running : replaces title, verdict, date and foot if the first page has its own title block
     """
 
     title: str
@@ -309,7 +309,7 @@ class Report:
 
 
 Field = tuple[Column, Callable[[Any], Any]]
-"""Head of a column, and what it shows of an item: a cell, a text, a number, or None for nothing."""
+"""Column, and a function from an item to its content: a cell, text, number, or None."""
 
 Shown = str | int | Callable[[Any], Any]
 
@@ -319,11 +319,10 @@ def words(heading: str, show: Shown = "", share: float = 1.0, **more: Any) -> Fi
 
     Parameters
     ----------
-    heading : over it
-    show : what it shows of an item, the name of an attribute, by default that of the heading, or
-        which of its members
-    share : of the width, as in `Column`
-    more : what else a `Column` says
+    heading : heading of the column
+    show : name of the attribute of an item, or index of its member; the heading by default
+    share : share of the width, as in `Column`
+    more : further fields of `Column`
     """
     return Column(heading, share=share, **more), _getter(show, heading)
 
@@ -340,7 +339,7 @@ def number(heading: str, show: Shown = "", unit: str = "", **more: Any) -> Field
 
 
 def of_first(*fields: Field) -> list[Field]:
-    """The same columns for items that begin with what they show."""
+    """Adapt fields to items that are sequences, using the first member of each item."""
 
     def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
         return lambda row: show(row[0])
@@ -354,13 +353,13 @@ def blank(heading: str, unit: str = "", share: float = 1.0) -> Field:
 
 
 def quantity(name: str | Quantity, show: Shown = "", heading: str | None = None) -> Field:
-    """A column of a quantity, in the unit that people read.
+    """Create the column of a quantity, in display units.
 
     Parameters
     ----------
-    name : of the quantity, or the quantity
-    show : what it shows of an item [SI, degrees], as in `words`; by default what has its name
-    heading : where it is another than that of the quantity
+    name : name of the quantity, or the quantity itself
+    show : value of an item [SI, degrees], as in `words`; by default the attribute of that name
+    heading : heading, if it differs from that of the quantity
     """
     shown = QUANTITIES[name] if isinstance(name, str) else name
     value = _getter(show, shown.name)
@@ -376,7 +375,7 @@ _SHORT = {
 
 
 def quantity_column(quantity: Quantity, heading: str | None = None) -> Column:
-    """The head of a column of a quantity, or another, with the unit that people read."""
+    """Create the heading of a quantity's column, in display units."""
     short = None if heading else _SHORT.get(quantity.name)
     marked = quantity.name in ("tilt", "safety_factor")
     title, unit = heading or quantity.heading, quantity.display_unit
@@ -384,12 +383,12 @@ def quantity_column(quantity: Quantity, heading: str | None = None) -> Column:
 
 
 def figure_cell(quantity: Quantity, value: float | None, state: State | None = None) -> Cell:
-    """Return a value of a quantity as it stands under its `quantity_column`.
+    """Format a value for a `quantity_column`.
 
     Parameters
     ----------
-    value : SI, degrees; None where it is not known
-    state : warns or fails where the figure is near a limit or beyond it, and marks it so
+    value : value in SI units or degrees; None if unknown
+    state : warning or failure if the value is close to a limit or beyond it; sets the mark
     """
     return Cell(quantity.format(value), state=state, mark=state.sign if state else "")
 
@@ -402,17 +401,17 @@ def table_of(
     sums: Iterable[Any] = (),
     **more: Any,
 ) -> Table:
-    """Return a table with a row for each item and a column for each field.
+    """Build a table with a row for each item and a column for each field.
 
-    Columns without a word in them are left out, unless the table is filled in by hand.
+    Columns without text are omitted, unless the table is to be filled in by hand.
 
     Parameters
     ----------
-    items : a cell among them heads the rows below it
-    fields : as `words`, `number` and `quantity` make them
-    note : below the table
-    sums : items whose rows close the table as its totals
-    more : what else a `Table` says
+    items : items; a `Cell` among them is a heading for the rows below it
+    fields : fields created by `words`, `number` and `quantity`
+    note : text below the table
+    sums : items of the total rows at the end of the table
+    more : further fields of `Table`
     """
     totals = list(sums)
     rows = (
@@ -429,7 +428,7 @@ def _cell(shown: Any) -> Cell:
 
 
 def warned(texts: Iterable[str], state: State = State.WARN) -> tuple[Prose, ...]:
-    """Sentences that must not be overlooked, where there are any."""
+    """Create a block of warnings, if there are any."""
     lines = tuple(texts)
     return (Prose(lines, state),) if lines else ()
 

@@ -40,7 +40,7 @@ _HIGHEST = 3.0
 
 @dataclass(frozen=True)
 class Family:
-    """Loci of one ratio: what it is called, its colour, and the values worth a line."""
+    """Family of curves of constant ratio: name, colour, and the values to draw."""
 
     name: str
     colour: str
@@ -58,10 +58,11 @@ _FAMILIES = (
 
 
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
-    """The chart of one K, 0 to 100: a page of A4 that belongs to no window; no text covers another.
+    """Draw the chart of one K (0 to 100) on an A4 page, without overlapping labels.
 
-    The lower ends of the cables to be read are at angles ``below-90`` or ``above-90``. UsageError:
-    K out of range; ``above-90`` at K = 0, whose curve ends at 90°.
+    The lower ends of the cables are at angles ``below-90`` or ``above-90``. Raises UsageError if K
+    is out of range, or for ``above-90`` at K = 0, where the curve ends at 90°. The figure is not
+    attached to a window.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -99,7 +100,7 @@ _COORDINATES = ("phi", "arc", "distance", "height", "tension")
 
 
 def _frame(axes: Axes, points: CurvePoints, above: bool) -> None:
-    """Limits that leave room for the graduations beside the curve."""
+    """Set axis limits that leave room for the graduations along the curve."""
     left = float(points.distance[points.phi >= _RIGHT].min()) if above else 0.0
     right = float(points.distance.max())
     low = float(points.height[points.phi >= _RIGHT].min()) if above else 0.0
@@ -132,7 +133,7 @@ def _graduate(axes: Axes, labels: Labels, points: CurvePoints) -> None:
 
 
 def _place(points: CurvePoints, scale: Floats, value: float) -> tuple[float, float, float]:
-    """y′, z′ and φ where a graduation of the curve has a value."""
+    """Interpolate y′, z′ and φ at the point of the curve where a graduation has a value."""
     at = (float(np.interp(value, scale, getattr(points, name))) for name in _COORDINATES)
     phi, _, distance, height, _ = at
     return distance, height, phi
@@ -196,9 +197,9 @@ _TRIALS = 41
 
 
 class Labels:
-    """Labels and ticks of one pair of axes, whose limits are final, of a figure with a canvas.
+    """Labels and ticks of a pair of axes with final limits, in a figure with a canvas.
 
-    A text that finds no free place is left out.
+    A label without a free position is omitted.
     """
 
     def __init__(self, axes: Axes) -> None:
@@ -218,7 +219,9 @@ class Labels:
             self.boxes.append(Bbox([np.subtract(place, half), np.add(place, half)]))
 
     def tick(self, x: float, y: float, angle: float, size: float, colour: str) -> None:
-        """A tick on the right of a curve that runs at `angle` [rad]; size in points, < 0: left."""
+        """Draw a tick to the right of a curve that runs at `angle` [rad]; `size` in points,
+        negative: left.
+        """
         place, right = self._place(x, y, angle)
         ends = np.array([place, place + right * size * self._points])
         across = self.axes.transData.inverted().transform(ends)
@@ -237,7 +240,7 @@ class Labels:
         self._keep(label)
 
     def along(self, text: str, path: Floats, colour: str, font: float) -> bool:
-        """A text on a line of points (n, 2), turned along it; whether there is a free place."""
+        """Place a text along a line of points (n, 2); return whether a free position was found."""
         line = self.axes.transData.transform(path)
         lengths = _lengths(line)
         if lengths[-1] < _SHORTEST * self._points:
@@ -281,7 +284,7 @@ class Labels:
         label.set_position(tuple(self.axes.transData.inverted().transform(place)))
 
     def _keep(self, label: Text) -> bool:
-        """Keep a label where it is free, or remove it."""
+        """Keep a label if its position is free, else remove it."""
         box = label.get_window_extent().padded(_MARGIN * self._points)
         frame = self.axes.get_window_extent()
         inside = (
@@ -313,7 +316,7 @@ _NOTE = "A lower end, B upper end; D positive when B is downstream of A; angles 
 
 
 def answer_document(answer: ChartAnswer) -> dict[str, Any]:
-    """The JSON object: `status`, `k`, `solutions` (SI, degrees); without any, the reason too."""
+    """Return the JSON object: `status`, `k`, `solutions` (SI, degrees) or else the reason."""
     found = {"solutions": [_figures(solution) for solution in answer.solutions]}
     reason = () if answer.solutions else ("message", "advice")
     return members(answer, "status", "k") | found | members(answer, *reason)

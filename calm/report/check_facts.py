@@ -1,4 +1,4 @@
-"""Key figures of a design check: what decides of a mooring, in its JSON."""
+"""Key figures of a design check, for its JSON."""
 
 from dataclasses import dataclass
 from math import hypot
@@ -14,7 +14,7 @@ from calm.report.result_files import members
 
 @dataclass(frozen=True)
 class StrongestCurrent:
-    """The strongest current of all environments, and what the rule says of one that is weak."""
+    """Strongest current of all environments, and the warning if it is weak."""
 
     speed: float
     depth: float
@@ -24,9 +24,9 @@ class StrongestCurrent:
 
 @dataclass(frozen=True)
 class LeastFactor:
-    """The least breaking load over tension of all environments, and the piece that has it.
+    """Minimum safety factor (breaking load over tension) of all environments, and its piece.
 
-    `unknown` counts the pieces that give no breaking load.
+    `unknown` counts the pieces without a breaking load.
     """
 
     factor: float
@@ -37,7 +37,7 @@ class LeastFactor:
 
 
 def key_figures(assessment: Assessment) -> dict[str, Any]:
-    """The JSON object, in SI units; null stands for what is not known."""
+    """Return the JSON object, in SI units; unknown values are None."""
     every = [*assessment.every_finding()]
     anchors = [one for one in every if one.rule == "anchor-weight" and one.value is not None]
     anchor = None
@@ -73,7 +73,7 @@ def strongest_current(assessment: Assessment) -> StrongestCurrent:
 
 
 def least_factor(assessment: Assessment) -> LeastFactor | None:
-    """The least factor in every situation; None where no piece gives a breaking load."""
+    """Minimum safety factor over all situations; None if no piece has a breaking load."""
     found = []
     for stand, situation in ((one, each) for one in assessment.stands for each in one.situations):
         if situation.result is None:

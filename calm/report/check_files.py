@@ -33,12 +33,12 @@ MUCH_USED = 0.5
 def listed_findings(
     assessment: Assessment, *, every: bool = False
 ) -> Iterator[tuple[Finding, bool]]:
-    """Findings of a mooring, and whether each governs its rule.
+    """Yield the listed findings of a mooring, and whether each governs its rule.
 
-    Listed are the governing finding of each rule, and of each rule and component the governing one
-    of all environments, unless it passes with a utilisation below `MUCH_USED`; what fails, is
-    unknown or warns is listed for each environment. A cluster of equal floats is one component.
-    With `every`, all findings of all situations are listed.
+    The governing finding of each rule is listed, and the governing finding of each rule and
+    component over all environments, unless it passes with a utilisation below `MUCH_USED`.
+    Failures, unknowns and warnings are listed for each environment. A cluster of equal floats
+    counts as one component. With `every`, all findings of all situations are listed.
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}
@@ -53,7 +53,7 @@ def listed_findings(
 
 
 def _listed_as(finding: Finding) -> Hashable:
-    """What findings share of which one is listed."""
+    """Key of findings that share one list entry."""
     if finding.state not in GRAVE:
         return finding.rule, finding.state, finding.place
     place = finding.case if finding.case == "0" else finding.environment
@@ -61,11 +61,11 @@ def _listed_as(finding: Finding) -> Hashable:
 
 
 def check_document(assessments: Sequence[Assessment], *, every: bool = False) -> dict[str, Any]:
-    """The JSON object of a design check; what could not be solved is null.
+    """Return the JSON object of a design check; None for anything that could not be solved.
 
     Parameters
     ----------
-    every : list every finding, and not only those that `listed_findings` chooses
+    every : list every finding instead of the selection of `listed_findings`
 
     Returns
     -------
@@ -163,7 +163,6 @@ _OF_RECOVERY = ("released", "rise_speed", "time_to_surface", "net_buoyancy", "or
 
 
 def _handled(way: Launch | Recovery | None, names: Sequence[str]) -> dict[str, Any] | None:
-    """Return what a launch or a recovery comes to; null where it is not known."""
     return None if way is None else members(way, *names) | {"components": way.components()}
 
 
@@ -187,7 +186,7 @@ INVENTORY_HEADER = (
 
 
 def checks_csv(assessments: Sequence[Assessment], *, every: bool = False) -> str:
-    """A row for each finding listed, of one mooring after the other; what is unknown is empty.
+    """Write the listed findings as CSV, one mooring after the other; unknown values are empty.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Many moorings in many environments: one matrix, and a page of each mooring."""
+"""Design check of many moorings in many environments: a matrix, and a page for each mooring."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ _NEAR = 0.9
 
 @dataclass(frozen=True)
 class MatrixCell:
-    """The greatest use of a mooring in an environment; None where no check has one."""
+    """Maximum utilisation of a mooring in an environment; None if no check has a utilisation."""
 
     use: float | None
     state: State
@@ -41,17 +41,17 @@ class MatrixCell:
 
 @dataclass(frozen=True)
 class SummaryRow:
-    """What the summary shows of a mooring.
+    """Row of a mooring in the summary.
 
     Attributes
     ----------
-    mooring : its name
-    depth : of the water, in words
-    cells : by environment, in their order
-    handling : of launch, recovery and breaks
-    governs : what has the greatest use in the first environment
-    accepted, findings : how many
-    conclusion, draft : the verdict
+    mooring : name of the mooring
+    depth : water depth as text
+    cells : cells by environment, in order
+    handling : cell of launch, recovery and breaks
+    governs : check with the largest utilisation in the first environment
+    accepted, findings : number of accepted findings, and of all findings
+    conclusion, draft : verdict, and whether the report is a draft
     """
 
     mooring: str
@@ -65,7 +65,7 @@ class SummaryRow:
 
     @property
     def first_failure(self) -> tuple[str, str] | None:
-        """The first environment in which it fails, and what does; None where nothing fails."""
+        """First environment in which the mooring fails, and the failure; None without failures."""
         cells = {**self.cells, "launch": self.handling} if self.handling else self.cells
         failed = (
             (name, cell.told) for name, cell in cells.items()
@@ -119,7 +119,7 @@ def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
 
 
 def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
-    """The matrix, and what governs each mooring."""
+    """Yield the matrix of utilisations, and the governing check of each mooring."""
     names, shown, codes = environments_of(rows)
     failing = [row for row in rows if row.conclusion is Conclusion.FAILS]
     incomplete = [row for row in rows if row.conclusion is Conclusion.INCOMPLETE]
@@ -158,7 +158,7 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
 
 
 def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], dict[str, str]]:
-    """The environments of all moorings, the worst of them that have room, and their codes."""
+    """Environments of all moorings, those shown (the most severe), and the codes of all."""
     names = list(dict.fromkeys(name for row in rows for name in row.cells))
     codes = {name: f"E{at}" for at, name in enumerate(names, 1)}
     if len(names) <= _MOST_ENVIRONMENTS:
@@ -194,7 +194,7 @@ def _failure(row: SummaryRow, codes: Mapping[str, str]) -> str:
 
 
 def mooring_page(signed: SignedMooring) -> Iterator[Block]:
-    """A mooring on one page: the verdict, the cases, and a row a rule with what governs it."""
+    """Yield the one-page report of a mooring: verdict, load cases, and one row per rule."""
     findings = [*signed.assessment.every_finding()]
     yield title_block(signed)
     yield verdict_box(signed)

@@ -1,4 +1,4 @@
-"""Pages 4 to 6 of a design check: every rule, the handling at sea, and what all rests on."""
+"""Pages 4 to 6 of a design check: checks in full, deployment and recovery, and basis."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -46,7 +46,7 @@ from calm.report.page_one import MOST_REVISIONS, TEXT_HEIGHT, SignedMooring, ite
 
 
 def checks_page(signed: SignedMooring) -> Iterator[Block]:
-    """Every rule in a row: the piece and the case that govern it, by what limit, what to do."""
+    """Yield one row per rule, with the governing piece and case, the limit and the remedy."""
     findings = [*signed.assessment.every_finding()]
     yield checks_table(signed, findings)
     yield blocks.Heading("How far to trust these figures")
@@ -54,7 +54,7 @@ def checks_page(signed: SignedMooring) -> Iterator[Block]:
 
 
 def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
-    """A row of each rule, that with the greatest use first."""
+    """Tabulate the governing finding of each rule, by decreasing utilisation."""
     tags = item_tags(signed)
     rows = []
     for name, found in by_rule(findings).items():
@@ -97,11 +97,11 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
 
 
 _A_DIFFERENCE = 0.1
-"""Of two knockdowns, that is told of [m]."""
+"""Smallest difference of two knockdowns that is reported [m]."""
 
 
 def _trust(signed: SignedMooring) -> str:
-    """How well the figures are known."""
+    """Describe the uncertainty of the results."""
     results = [one for case in signed.standing for one in case.results]
     if not results:
         return "The mooring has no equilibrium; nothing that rests on one is judged."
@@ -126,7 +126,7 @@ def _trust(signed: SignedMooring) -> str:
 
 
 def handling_page(signed: SignedMooring) -> Iterator[Block]:
-    """Launch and recovery in short, what still floats after any break, and the parts list."""
+    """Yield launch and recovery in brief, net buoyancy after breaks, and the parts list."""
     assessment = signed.assessment
     if assessment.launch is not None or assessment.recovery is not None:
         yield Beside((_launch(assessment),), (_recovery(assessment),))
@@ -191,7 +191,7 @@ def _recovery(assessment: Assessment) -> Table:
 
 
 def _limit(assessment: Assessment, rule: str) -> str:
-    """The limit of a rule, and its use where that is beyond it."""
+    """Limit of a rule, and its utilisation if available."""
     found = [one for one in assessment.findings if one.rule == rule]
     if not found:
         return ""
@@ -204,7 +204,7 @@ _MOST_BREAKS = 10
 
 
 def _breaks(assessment: Assessment) -> Table:
-    """What still floats after a break, the worst of each part of the line, and after a loss."""
+    """Tabulate the net buoyancy after the most critical break of each section, and after a loss."""
     parts = {piece.index: piece for piece in assessment.file.pieces}
     groups: dict[str, list[Break]] = {}
     part = "the top"
@@ -257,7 +257,7 @@ def _breaks(assessment: Assessment) -> Table:
 
 
 def _inventory(signed: SignedMooring) -> Table:
-    """How many and how much of each component, in the order of the line, and their items."""
+    """Tabulate number, length, mass and weight of each component, with item numbers."""
     items = signed.assessment.inventory
     numbers = item_numbers(signed) if signed.standing else {}
     unit = LOAD.display_unit
@@ -310,7 +310,7 @@ def _inventory(signed: SignedMooring) -> Table:
 
 
 def basis_page(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
-    """The limits, the environment, what is not judged, the file, and the hash of all inputs."""
+    """Yield the limits, environment, exclusions, mooring file, and hash of all inputs."""
     assessment = signed.assessment
     waters = {one.leg.file.environment.name or "own": one.leg.water for one in assessment.stands}
     waves = all(one.leg.file.environment.waves for one in assessment.stands)
@@ -340,7 +340,7 @@ _UNJUDGED = 11
 
 
 def _limits(limits: Iterable[LimitKey]) -> Table:
-    """The limits used; those of the design's own in bold."""
+    """Tabulate the limits used; limits set by the design are bold."""
 
     def own(key: LimitKey) -> bool:
         return key.departs or key.default is None
@@ -370,7 +370,7 @@ def _value(key: LimitKey, value: float | None) -> str:
 
 
 def _in_short(source: str) -> str:
-    """Who gives a limit, without what is quoted."""
+    """Name of the source of a limit, without quotations."""
     head = re.split(r"[:;]", source)[0]
     return head if len(head) <= 45 else head.split(",")[0]
 
@@ -394,7 +394,7 @@ _MOST_LEVELS = 12
 
 
 def _environment(waters: dict[str, Water]) -> Table:
-    """The current level by level; of several environments the strongest of each."""
+    """Tabulate the current by level, or the strongest current of each of several environments."""
     if len(waters) > 1:
         rows = []
         for name, water in waters.items():

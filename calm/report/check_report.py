@@ -18,7 +18,7 @@ from calm.report.page_one import SignedMooring, page_one
 from calm.version import __version__
 
 _SIZE = 9.0
-"""Of the letters of a table [pt]."""
+"""Font size of tables [pt]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +29,7 @@ class CheckedSection(Section):
 
 
 def signed_mooring(assessment: Assessment) -> SignedMooring:
-    """A mooring as its papers show it."""
+    """Collect the load cases, open items and input hash of a mooring for its report."""
     files = [one.leg.file for one in assessment.stands]
     items = open_items(assessment)
     return SignedMooring(assessment, load_cases(assessment), items, provenance.input_hash(files))
@@ -38,9 +38,9 @@ def signed_mooring(assessment: Assessment) -> SignedMooring:
 def mooring_section(
     assessment: Assessment, against: Comparison | None = None, paper: str = "a4"
 ) -> CheckedSection:
-    """The pages of one mooring; they are drawn, which takes some tenths of a second.
+    """Build the pages of one mooring, which takes some tenths of a second.
 
-    `against` is the mooring compared with the design that it came from.
+    `against` is a comparison of the mooring with its original design.
     """
     signed = signed_mooring(assessment)
     pages = (
@@ -74,7 +74,7 @@ def _page(shown: Sequence[Block]) -> ReportPart:
 
 
 def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
-    """The report of a design check; of several moorings a summary comes first."""
+    """Build the report of a design check, with a summary first if there are several moorings."""
     rows = [each.row for each in sections]
     if len(rows) == 1:
         name = sections[0].name

@@ -1,7 +1,7 @@
-"""A design check on a terminal: verdict, load cases, use, what is open, and what is not covered.
+"""Design check on a terminal: verdict, load cases, utilisations, open items, and exclusions.
 
-Of one mooring in which nothing fails it has `MOST_LINES` lines of 80 letters at most; of many
-moorings it is a matrix of their greatest use.
+A mooring without failures takes at most `MOST_LINES` lines of 80 characters. Several moorings
+appear as a matrix of maximum utilisations.
 """
 
 import re
@@ -40,7 +40,7 @@ from calm.report.open_items import (
 from calm.report.page_one import case_columns, shown_cases
 
 MOST_LINES = 40
-"""Lines of a mooring in which nothing fails."""
+"""Maximum number of lines of a mooring without failures."""
 _WIDTH = 80
 _FRAME = 7  # lines of the head, of what is beyond, around the items and below them
 _MOST_ITEMS = 12  # open items of a mooring that fails
@@ -49,7 +49,7 @@ _HALF = 0.5  # of the capacity: what is used more has a row
 
 
 def check_part(assessments: Sequence[Assessment]) -> ReportPart:
-    """Everything that a design check says in short; no state hangs on colour."""
+    """Summarise a design check; states are legible without colour."""
     if len(assessments) > 1:
         return ReportPart("", tuple(_of_many(assessments)))
     return ReportPart("", tuple(_of_one(assessments[0])))
@@ -71,7 +71,7 @@ def _of_one(assessment: Assessment) -> Iterator[blocks.Block]:
 
 
 def _head(assessment: Assessment) -> Line:
-    """Name of the mooring on the left, what it is on the right."""
+    """Format the name of the mooring on the left, and its kind on the right."""
     file = assessment.file
     given = file.document
     document = "" if given is None or not given.id else given.id
@@ -87,7 +87,7 @@ def _head(assessment: Assessment) -> Line:
 
 
 def _verdict(assessment: Assessment) -> Line:
-    """The verdict, and how much is open."""
+    """Format the verdict and the number of open items."""
     said = assessment.verdict.words.upper() + ", DRAFT" * assessment.draft
     told = counts_text(open_groups(assessment)) or "nothing is open"
     return (Span(_apart(said, told), STATES[assessment.verdict]),)
@@ -100,7 +100,7 @@ def _apart(left: str, right: str) -> str:
 
 
 def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
-    """The load cases; of a net also the greatest of its legs."""
+    """Yield the table of load cases; in a net, values are the maxima over its legs."""
     every = load_cases(assessment)
     cases, note = shown_cases(every)
     fallen = [one for one in cases if one.failure is not None]
@@ -121,7 +121,7 @@ def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
 
 
 def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
-    """A case in short: its environment is named once."""
+    """Describe a case in brief; later cases of the same environment do not repeat its name."""
     if case.situation in (STILL, STILL_LOW):
         return case.situation
     own = "design current" if case.environment == "own" else case.environment
@@ -133,7 +133,9 @@ def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
 
 
 def _checks(assessment: Assessment) -> Iterator[blocks.Block]:
-    """The rules with the greatest use, those that fail first; what is used less in one line."""
+    """Yield the checks with the largest utilisation, failures first, and summarise the rest in a
+    line.
+    """
     rows, rest = _rows([*assessment.every_finding()])
     if rows:
         yield blocks.table_of(
@@ -152,7 +154,7 @@ def _checks(assessment: Assessment) -> Iterator[blocks.Block]:
 
 
 def _below(rows: Sequence[Finding], rest: Sequence[Finding]) -> str:
-    """How much other checks use, and what the codes of cases stand for that no table names."""
+    """Summarise the utilisation of the remaining checks, and explain case codes of rows above."""
     most = max((one.utilisation or 0.0 for one in rest), default=None)
     told = [f"all other checks: {percent_text(most)} % or less"] if rest else []
     shown = {one.case[-1] for one in rows if one.case}
@@ -168,7 +170,7 @@ def _title(finding: Finding) -> str:
 
 
 def _rows(every: Sequence[Finding]) -> tuple[list[Finding], list[Finding]]:
-    """The findings with a row each, and the governing ones of all other rules with a use."""
+    """Select the findings to show in rows, and return the governing ones of other rules."""
     failed = [governing(each) for each in by_rule(_of_state(every, State.FAIL)).values()]
     leads = _without_repeats(governing_of_each_rule(every))
     used = [one for one in leads if one.utilisation is not None and one not in failed]
@@ -192,7 +194,7 @@ def _is_beyond(finding: Finding) -> bool:
 
 
 def _without_repeats(findings: Sequence[Finding]) -> list[Finding]:
-    """Without the load of a release where its strength says the same."""
+    """Omit the load of a release if its strength has the same values."""
     told = {(one.component, one.value, one.limit) for one in findings if one.rule == "strength"}
     return [
         one
@@ -226,7 +228,7 @@ def _in_short(item: OpenItem) -> OpenItem:
 
 
 def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> blocks.OpenItems:
-    """The items that have room; with `most`, as many of them whatever room they take."""
+    """Select the items that fit into `room` lines, or the first `most` items."""
     kept: list[OpenItem] = []
     for item in items:
         room -= len(wrap(f"{item.head} {item.text}", _WIDTH - 3))
@@ -254,14 +256,14 @@ def _height(block: blocks.Block) -> int:
 
 
 def beyond_text(findings: Sequence[Finding]) -> tuple[str, ...]:
-    """What no static check covers."""
+    """Exclusions of any static check."""
     waves = any(one.rule == "wave-slack" for one in findings)
     beyond = ["waves", "snap loads", "fatigue", "wear", "soil", "trawls", "hauling"][int(waves) :]
     return (f"Beyond a static check: {', '.join(beyond)}.",)
 
 
 def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
-    """A matrix of the greatest use, then what is open of the moorings that fail."""
+    """Yield a matrix of maximum utilisations, then the open items of the moorings that fail."""
     rows = [summary_row(each) for each in assessments]
     names, kept, codes = environments_of(rows)
     failing = [each for each in assessments if each.verdict is Conclusion.FAILS]

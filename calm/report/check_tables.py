@@ -1,4 +1,4 @@
-"""Tables of the design check: findings, the worst of many, and the verdict in words."""
+"""Tables of the design check: findings, worst findings, and the verdict in words."""
 
 import re
 from collections import Counter
@@ -24,7 +24,7 @@ Item = TypeVar("Item")
 
 
 def figure_of(finding: Finding, name: str) -> str:
-    """The value, limit or margin of a finding with its unit; nothing where it is unknown."""
+    """Format the value, limit or margin of a finding with its unit; "" if unknown."""
     value = getattr(finding, name)
     if value is None:
         return ""
@@ -40,13 +40,13 @@ FIGURES = (
 
 
 def place_of(finding: Finding) -> str:
-    """The environment, and what was changed in it."""
+    """Name the environment of a finding and its situation."""
     changed = "" if finding.situation == AS_GIVEN else f", {finding.situation}"
     return f"{finding.environment}{changed}"
 
 
 def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
-    """The worst finding of each rule on each component, the gravest first."""
+    """Select the most severe finding of each rule on each component, most severe first."""
     groups = grouped(findings, lambda each: (each.rule, each.place, each.missing))
     return sorted(map(worst_of, groups), key=attrgetter("rank"))
 
@@ -60,12 +60,12 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
 
 
 def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
-    """Return together the findings of one rule that say the same of several components."""
+    """Group findings of one rule that differ only in component and values."""
     return grouped(findings, lambda one: (one.rule, one.state, _wording(one)))
 
 
 def _wording(finding: Finding) -> str:
-    """Return what a finding says and advises, without its component and figures."""
+    """Text of a finding without its component and values."""
     text = f"{finding.message} {finding.remedy or ''}"
     if finding.component is not None:
         text = text.replace(finding.component, "")
@@ -73,9 +73,10 @@ def _wording(finding: Finding) -> str:
 
 
 def named(labels: Iterable[str], most: int = 3) -> str:
-    """Name labels, each once, such as ``glass 1 to 4, cable``.
+    """Join labels without repetition, such as ``glass 1 to 4, cable``.
 
-    Of more than `most` names, successive numbers as one, how many are left is said.
+    Consecutive numbers count as one name. If there are more than `most` names, the number of
+    omitted labels follows.
     """
     numbered: dict[str, list[int]] = {}
     for label in labels:
@@ -88,7 +89,7 @@ def named(labels: Iterable[str], most: int = 3) -> str:
 
 
 def _runs(stem: str, numbers: Iterable[int]) -> Iterator[tuple[str, int]]:
-    """Name each run of successive numbers, and count what it stands for."""
+    """Yield a label such as "glass 1 to 4" and the length of each run of consecutive numbers."""
     each = sorted(set(numbers))
     for _, group in groupby(enumerate(each), lambda pair: pair[1] - pair[0]):
         run = [number for _, number in group]
@@ -97,15 +98,15 @@ def _runs(stem: str, numbers: Iterable[int]) -> Iterator[tuple[str, int]]:
 
 
 def named_components(findings: Iterable[Finding]) -> str:
-    """Name the components of some findings."""
+    """Join the labels of the components of findings."""
     return named(one.component or "whole line" for one in findings)
 
 
 def counted_states(findings: Iterable[Finding]) -> Counter[State]:
-    """Return how many parts of one or several moorings each state is the worst of, rule by rule.
+    """Count parts by their worst state under each rule, over one or more moorings.
 
-    A missing figure of a component is counted once, and so is a cluster of which every float fails
-    or warns.
+    A missing value of a component counts once, and so does a cluster in which every float fails or
+    warns.
     """
     by_mooring = grouped(findings, attrgetter("mooring"))
     found = [one for each in by_mooring for one in grouped(worst_by_part(each), counted_as)]
@@ -113,12 +114,12 @@ def counted_states(findings: Iterable[Finding]) -> Counter[State]:
 
 
 GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
-"""States of what is to be mended."""
+"""States that require action."""
 
 
 def counted_as(finding: Finding) -> tuple[Hashable, ...]:
-    """What findings have in common that count as one: of equal pieces in one row of the file, such
-    as a cluster of floats, what is to be mended.
+    """Key of findings that count as one: those of equal pieces in one row of the file, such as a
+    cluster of floats, if they require action.
     """
     place = finding.place
     if finding.missing is not None or place is None or finding.state not in GRAVE:
@@ -128,7 +129,7 @@ def counted_as(finding: Finding) -> tuple[Hashable, ...]:
 
 
 def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:
-    """Limits with their defaults and the sources of those; departures come first."""
+    """Tabulate limits with their defaults and sources, changed limits first."""
     departs = Cell("departs", state=State.WARN)
     return table_of(
         title,
@@ -160,7 +161,7 @@ _RESULTS: dict[str, Callable[[LegResult], float | None]] = {
 
 
 def inventory_table(items: Sequence[InventoryItem]) -> Table:
-    """Return how many and how much of each component is needed, with room for the spares."""
+    """Tabulate the number and quantity of each component, with room for spares."""
     note = "Cut lengths are of wires, ropes and chains. Spares are filled in by hand."
     if any(item.dry_mass is None for item in items):
         note += " ≥ marks a lower bound, because masses in air are missing: plan no lift on it."
@@ -185,7 +186,7 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
 
 
 def _sum(name: str, items: Sequence[InventoryItem]) -> Cell:
-    """The sum of what is known, and how much is not; of masses that is the least there can be."""
+    """Sum the known values, and count the unknown ones; a sum of masses is a lower bound."""
     if name == "cut_length":
         items = [each for each in items if each.kind in FLEXIBLE_KINDS]
     known = [value for item in items if (value := getattr(item, name)) is not None]

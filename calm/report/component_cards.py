@@ -1,4 +1,4 @@
-"""Components of the catalogue as a list, as cards and as JSON, and what they lack."""
+"""Components of the catalogue as a list, as cards and as JSON, and their missing values."""
 
 import re
 from collections import Counter
@@ -24,7 +24,7 @@ _FIRST = ("name", "kind", "role")
 _LAST = ("note", "source", "sources", "searched", "date")
 _ELSEWHERE = ("prefer",)
 _AUTHOR = re.compile(r"[,;] (?![^()]*\))")
-"""What ends the name of who printed a figure: a comma that is not in brackets."""
+"""Separator after the name of the publisher in a source: a comma outside brackets."""
 _HEADING_OF_OTHERS = "other"
 
 
@@ -67,10 +67,10 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportP
 
 
 def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = None) -> ReportPart:
-    """Every figure that a definition gives, in the units people read, and where it comes from.
+    """Create the card of a definition: all values in display units, and their source.
 
-    What follows from the figures comes after them, then, where several definitions of the catalogue
-    describe the same thing, how far they are apart and which to use.
+    Derived values follow the specified ones. If several definitions of the catalogue describe the
+    same product, the card ends with their differences, and which one to use.
     """
     following = _following(datasheet(definition, catalogue), _per_metre(definition))
     pairs = Pairs((*_figures(definition), *following))
@@ -80,10 +80,10 @@ def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = 
 
 
 def to_documents(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> list[dict[str, Any]]:
-    """An object each: `id`, `family` and every field, SI or degrees, None if absent.
+    """Return JSON objects: `id`, `family` and every field (SI or degrees, None if absent).
 
-    `derived` has what follows from the figures, `same_thing` the ids that describe the same, the
-    one to use first.
+    `derived` contains derived values, `same_thing` the ids that describe the same product,
+    preferred one first.
     """
     return [
         {"id": identifier, "family": _family(catalogue, identifier)}
@@ -114,7 +114,7 @@ def _figures(definition: Defined) -> Iterator[tuple[str, str]]:
 
 
 def _following(sheet: Datasheet | None, per_metre: str) -> Iterator[tuple[str, str]]:
-    """Return what follows from the figures, for people."""
+    """Yield the derived values of a component, in display units."""
     if sheet is None:
         return
     yield _heading("net_buoyancy"), _text("net_buoyancy", sheet.net_buoyancy) + per_metre
@@ -129,7 +129,7 @@ def _following(sheet: Datasheet | None, per_metre: str) -> Iterator[tuple[str, s
 
 
 def _comparison(catalogue: Catalogue, same: Sequence[str]) -> blocks.Table:
-    """The definitions of one thing beside one another, and how far they are apart."""
+    """Compare the definitions of one product, and their range of values."""
     defined = {each: catalogue.get(each) for each in same}
     sheets = {
         identifier: sheet
@@ -182,7 +182,7 @@ def _say(definition: Defined, name: str) -> str:
 
 
 def _text(name: str, value: Any) -> str:
-    """A field in one line for people, quantities with their unit, what is nested in brackets."""
+    """Format a field in one line, with units; nested values are in brackets."""
     if isinstance(value, float) and name in QUANTITIES:
         return QUANTITIES[name].figure(value)
     if isinstance(value, EstimatedFigure):
@@ -198,7 +198,7 @@ def _text(name: str, value: Any) -> str:
 
 
 def in_words(missing: MissingFigures) -> str:
-    """Return what a component lacks, what was searched for in vain last."""
+    """Describe the missing values of a component, with unpublished ones last."""
     sought = [_heading(name) for name in missing.figures if name in missing.searched]
     open_yet = [_heading(name) for name in missing.figures if name not in missing.searched]
     parts = [f"gives no {', '.join(open_yet)}"] if open_yet else []
@@ -216,7 +216,7 @@ def summarised(missing: Sequence[MissingFigures]) -> str:
 def to_objects(
     findings: Sequence[CatalogueFinding], missing: Sequence[MissingFigures]
 ) -> list[dict[str, Any]]:
-    """Findings, then what is missing: `id`, `finding`, `message`, `missing` and `searched`."""
+    """List findings, then missing values: `id`, `finding`, `message`, `missing`, `searched`."""
     wrong = [(one.id, True, one.message, (), ()) for one in findings]
     lacking = [(one.id, False, in_words(one), one.figures, one.searched) for one in missing]
     return [

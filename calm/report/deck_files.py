@@ -22,14 +22,15 @@ Rows = Iterable[Sequence[object]]
 
 
 def deck_csvs(deck: Deck) -> dict[str, str]:
-    """The content of each file by its name: UTF-8, SI units in the header, empty where unknown."""
+    """Return the CSV text of each sheet by name (UTF-8, SI units, empty if unknown)."""
     return {f"{name}.csv": table_csv(*sheet) for name, sheet in deck_sheets(deck).items()}
 
 
 def deck_workbook(deck: Deck) -> bytes:
-    """The same sheets as one Excel workbook, units in the headings, ready to print.
+    """Write the sheets into one Excel workbook, with units in the headings, ready to print.
 
-    Texts are texts, whatever they begin with; the date of the workbook is `provenance.moment`.
+    Texts are stored as texts, even if they begin with a formula sign; the date of the workbook is
+    `provenance.moment`.
     """
     from xlsxwriter import Workbook
 
@@ -60,7 +61,7 @@ def deck_workbook(deck: Deck) -> bytes:
 
 
 def deck_sheets(deck: Deck) -> dict[str, tuple[Sequence[str], Rows]]:
-    """The head and the rows of each sheet by its name, in SI; None where unknown."""
+    """Header and rows of each sheet by name, in SI units; None if unknown."""
     stages = {f"deployment, {deck.order}": deck.lifts.deployment, "recovery": deck.lifts.recovery}
     lifts = [(stage, one) for stage, each in stages.items() for one in each]
     rows: dict[str, Sequence[Any]] = {
@@ -119,10 +120,11 @@ _COLUMNS = {
         condition=- remarks=item.remark
     """,
 }
-"""Of each sheet its columns: a heading, `=` and the attribute it shows where that has another name.
+"""Columns of each sheet: a heading, then `=` and the attribute if its name differs.
 
-A column of which nothing is shown, `-`, is filled in by hand; one without an attribute has what
-stands before each item."""
+A column with `-` is filled in by hand; a column without an attribute shows the object that precedes
+each item.
+"""
 
 
 _INDEX: dict[str, Callable[[Any], int]] = {
@@ -133,7 +135,7 @@ _INDEX: dict[str, Callable[[Any], int]] = {
     "deployment": lambda one: one[1].index,
     "recovery": lambda one: one[1].item.index,
 }
-"""Of each sheet that has a last column `leg` for a net, the piece that a row is of."""
+"""For each sheet with a last column `leg`, the function from a row to the index of its piece."""
 
 
 def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
@@ -151,9 +153,10 @@ def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
 
 
 def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report:
-    """Diagram, deployment log, lists, drop plan, and on a sheet of its own the recovery log.
+    """Build the report: diagram, deployment log, lists, drop plan, and the recovery log on a new
+    sheet.
 
-    `notes` is what else is to be said on the first sheet.
+    `notes` are added to the warnings on the first sheet.
     """
     parts: list[ReportPart] = [*provenance.document_part(deck.file)]
     if told := warned((*deck.notes, *notes)):

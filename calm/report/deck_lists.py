@@ -67,7 +67,7 @@ def cutting_part(deck: Deck) -> ReportPart:
 
 
 def _cut(cuts: Sequence[Cut]) -> tuple[Cell | str, ...]:
-    """The row of cuts that are alike."""
+    """Format the row of equal cuts."""
     cut, last, length = cuts[0], cuts[-1], QUANTITIES["length"]
     many = f"{len(cuts)} × " if len(cuts) > 1 else ""
     load = "" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
@@ -85,7 +85,7 @@ def _cut(cuts: Sequence[Cut]) -> tuple[Cell | str, ...]:
 
 
 def _marked(alike: Iterable[Mark], items: Mapping[str, DeckItem]) -> str:
-    """Return the places of the marks of like clamps, and what is clamped there."""
+    """List the positions of the marks for equal clamps, and the clamped items."""
     marks = [*alike]
     places = ", ".join(QUANTITIES["at"].format(mark.at) for mark in marks)
     marked = [items[mark.label] for mark in marks]
@@ -94,7 +94,7 @@ def _marked(alike: Iterable[Mark], items: Mapping[str, DeckItem]) -> str:
 
 
 def _length() -> Field:
-    """A column of lengths, empty for what has none."""
+    """Create a column of lengths, empty for items without a length."""
     shown = QUANTITIES["length"]
 
     def text(one: Any) -> str | None:
@@ -128,7 +128,7 @@ def hardware_part(deck: Deck) -> ReportPart:
 
 
 def shipping_part(deck: Deck) -> ReportPart:
-    """All that is shipped, and what the sums lack."""
+    """Build the shipping list, with the number of values missing in each sum."""
 
     def at_least(heading: str, name: str, value: str, missing: str) -> Field:
         shown = QUANTITIES[name]
@@ -188,7 +188,7 @@ def lifts_part(deck: Deck) -> ReportPart:
 
 
 def _stages(deck: Deck) -> blocks.Table:
-    """Each lift once, with what hangs below it on the way down and on the way up."""
+    """Tabulate each lift once, with the suspended load during deployment and during recovery."""
     joints = {one.label for one in deck.parts if one.is_joint}
     recovery = {one.label: one.hanging for one in deck.lifts.recovery}
     return table_of(
@@ -205,7 +205,7 @@ def _stages(deck: Deck) -> blocks.Table:
 
 
 def instruments_part(deck: Deck) -> ReportPart:
-    """Every instrument and release: where it hangs, and what the file says of it."""
+    """Tabulate every instrument and release: its depth, and its data in the file."""
     several, legs = len(deck.environments) > 1, leg_titles(deck.result)
     planned = any(one.item.planned_depth is not None for one in deck.instruments)
     rows: list[Any] = []

@@ -32,7 +32,7 @@ _LEAST = 9.0
 
 
 def deployment_part(deck: Deck) -> ReportPart:
-    """Return what is done before, the order over the side, and where the anchor went."""
+    """Build the deployment log: preparations, order over the side, and anchor position."""
     last = deck.order is Order.ANCHOR_LAST
     said = (
         ("Anchor last: the top" if last else "Anchor first: the lower end")
@@ -62,7 +62,7 @@ def deployment_part(deck: Deck) -> ReportPart:
 
 
 def recovery_part(deck: Deck) -> ReportPart:
-    """Return what is done at the release, and the order in which the line comes up."""
+    """Build the recovery log: events at the release, and the order of surfacing."""
     rise = deck.rise
     said = []
     if deck.result.several:
@@ -119,7 +119,7 @@ _FIRED = ("enabled\nUTC", "range", "command\nsent, UTC", "confirmed\nUTC")
 
 
 def _station(deck: Deck, day: str) -> Table:
-    """Return who was where in what weather; what the file does not say is written in by hand."""
+    """Create the station table; values that are not in the file are filled in by hand."""
     document = deck.file.document
     known = {
         "ship": document.ship if document else None,
@@ -136,7 +136,7 @@ def _station(deck: Deck, day: str) -> Table:
 
 
 def _deployed(deck: Deck) -> tuple[str, str, str]:
-    """Date, position and depth as deployed; empty where they are not known."""
+    """Date, position and depth as deployed; "" if unknown."""
     deployed = deck.file.deployed
     if deployed is None:
         return "", "", ""
@@ -146,8 +146,8 @@ def _deployed(deck: Deck) -> tuple[str, str, str]:
 
 
 def placed(items: Sequence[DeckItem], deck: Deck) -> str:
-    """Return where clamps sit: from the upper end of their piece, anchor first from the lower end
-    too.
+    """Describe clamp positions: from the upper end of their piece, for anchor-first deployment also
+    from the lower end.
     """
     places = [at for one in items for at in one.places]
     if not places:
@@ -176,7 +176,7 @@ def _piece(row: DeckRow) -> Cell:
 
 
 def _releases(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
-    """The releases with their codes, and what is checked of each: in boxes or in writing."""
+    """Tabulate the releases with their codes, and checks with boxes or room to write."""
     releases = deck.file.releases
     known = {release.serial for release in releases}
     rows = [(Cell(one.serial or ""), "\n".join(one.code_lines)) for one in releases]
@@ -232,7 +232,7 @@ def _over_the_side(deck: Deck) -> list[Table]:
 
 
 def _titled(title: str, deck: Deck, items: Sequence[DeckItem]) -> list[tuple[str, list[DeckItem]]]:
-    """Return what is listed of each leg under a title of its own."""
+    """Split a list by legs, each with its title."""
     legs = leg_titles(deck.result)
     return [
         (f"{title}: {legs[name]}" if name else title, own)
@@ -298,7 +298,9 @@ def _surfacing(deck: Deck) -> list[Table]:
 
 
 def _expected(items: Sequence[RecoveredItem]) -> Cell:
-    """Return when the first comes up, and until when the last has; or where they hang."""
+    """Format the time at which the first and the last of the items surface, or their depth if they
+    stay below.
+    """
     said = []
     for one in (items[0], items[-1]):
         if one.time is not None:

@@ -37,7 +37,7 @@ _NEAR_THE_END = 0.3  # of a column: where a break is looked for
 
 
 class Paper(StrEnum):
-    """Hold what the sheets are printed on."""
+    """Page size of the sheets."""
 
     A4 = "a4"
     A3 = "a3"
@@ -50,7 +50,7 @@ class Paper(StrEnum):
 
     @property
     def columns(self) -> int:
-        """Return how many columns stand side by side."""
+        """Number of columns side by side."""
         return 2 if self is Paper.A3 else 1
 
     @property
@@ -65,9 +65,9 @@ class Paper(StrEnum):
 
 @dataclass(frozen=True)
 class _PageColumn:
-    """A column of a page: its parts, what it comes from and leads to, and the leg it is of.
+    """Column of a page: its parts, its connections above and below, and its leg.
 
-    `above` and `below` are None where the line ends at the sea and on the seabed.
+    `above` and `below` are None if the line ends in the sea or on the seabed.
     """
 
     parts: tuple[PlacedPart, ...]
@@ -78,18 +78,18 @@ class _PageColumn:
 
     @property
     def end(self) -> float:
-        """Return where the parts end."""
+        """Lower edge of the last part."""
         return self.parts[-1].top + self.parts[-1].height
 
 
 _Stacks = tuple[tuple[tuple[float, _PageColumn], ...], ...]
-"""Columns in reading order, in each its legs with how far down they begin [pt]."""
+"""Columns in reading order, each with its legs and their vertical offsets [pt]."""
 
 
 class _Diagram:
-    """The pages of a diagram: its columns in reading order, and what each page has besides.
+    """Pages of a diagram: its columns in reading order, and the other contents of each page.
 
-    In a column stand one or several legs, each with how far it is moved down.
+    A column contains one or several legs, each with a vertical offset.
     """
 
     def __init__(self, deck: Deck, paper: Paper) -> None:
@@ -143,7 +143,7 @@ class _Diagram:
             lowest -= 2 * LEADING
 
     def _stacked(self, columns: Iterable[_PageColumn]) -> _Stacks:
-        """The columns, of legs as many in one as there is room for above the title block."""
+        """Stack the legs of a net in as few columns as fit above the title block."""
         found: list[list[tuple[float, _PageColumn]]] = []
         down = 0.0
         for one in columns:
@@ -156,7 +156,7 @@ class _Diagram:
         return tuple(map(tuple, found))
 
     def fill(self, page: Pen, number: int) -> None:
-        """Draw a page: its head, its columns, its title block, and the legend on the last one."""
+        """Draw a page: title, columns and title block, with the legend on the last page."""
         width = self.paper.size[0] - 2 * _MARGIN
         page.write(_MARGIN, _MARGIN + 0.4 * _TITLE, self.title, width, size=_TITLE, bold=True)
         first = number * self.paper.columns
@@ -187,7 +187,7 @@ class _Diagram:
             self._draw_continued(page, left, end, one.below)
 
     def _draw_continued(self, page: Pen, left: float, top: float, words: str) -> None:
-        """Draw where a line is parted: its two ends carry the same letter."""
+        """Draw the mark of an interrupted line; both ends carry the same letter."""
         x, text = left + self.column.line_at, left + self.column.text[0]
         page.line(x, top, x, top + _CONTINUED, stroke=INK, stroke_width=1.2, stroke_dasharray="2 2")
         page.draw(
@@ -214,7 +214,7 @@ class _Diagram:
             page.letters(x + 18.0, y, sign.symbol.value, size=FONT)
 
     def _draw_title_block(self, page: Pen, sheet: str) -> None:
-        """Fields in a frame, what is not known blank; `sheet` is such as 2 of 5."""
+        """Draw the framed fields, blank if unknown; `sheet` is a text such as "2 of 5"."""
         step, y = (self.paper.size[0] - 2 * _MARGIN) / _COLUMNS[self.paper], self.bottom
         for row in self.fields:
             height = _height(row)
@@ -231,11 +231,11 @@ class _Diagram:
 
 
 def diagram_pages(deck: Deck, paper: Paper) -> list[str]:
-    """The pages as SVG pictures at their own size, no text below 8 pt.
+    """Draw the pages as SVG pictures in final size, with no text below 8 pt.
 
-    Pages end above a junction where one is near their end, else between two pieces, else between
-    two clamps; where a line goes on, both ends carry the same letter. No text is cut: long ones
-    wrap. The same deck gives the same text.
+    Pages end above a junction if one is near the page end, else between two pieces, else between
+    two clamps. Where a line continues, both ends carry the same letter. Long texts wrap and are
+    never cut. The same deck gives the same SVG.
     """
     diagram = _Diagram(deck, paper)
     pages = [picture(*paper.size, diagram.title) for _ in range(diagram.count)]
@@ -245,7 +245,7 @@ def diagram_pages(deck: Deck, paper: Paper) -> list[str]:
 
 
 def diagram_svg(deck: Deck, paper: Paper) -> str:
-    """All pages of the diagram, one below the other, as one picture."""
+    """Draw all pages of the diagram below each other in one picture."""
     diagram, (width, height) = _Diagram(deck, paper), paper.size
     drawn = picture(width, height * diagram.count, diagram.title)
     for number in range(diagram.count):
@@ -263,8 +263,8 @@ def _columns(
 
     Parameters
     ----------
-    lowest : how far down a column may reach [pt]
-    marks : of the places where a line goes on
+    lowest : lower limit of a column [pt]
+    marks : letters of the interruptions of a line
     """
     afloat, (above, bottom) = line.type == "surface", ends_told(line)
     sea = _MAST - parts[0].height / 2 if afloat else _SKY + _SUBMERGED
@@ -281,7 +281,7 @@ def _columns(
 
 
 def _broken(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPart]]:
-    """Groups that fit a column, parted at a junction near its end where there is one."""
+    """Split the parts into groups that fit a column, at a junction near its end if possible."""
     rest = [*parts]
     while rest:
         heights = [*accumulate(one.height for one in rest)]
@@ -293,7 +293,9 @@ def _broken(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPar
 
 
 def _break(rest: Sequence[PlacedPart], heights: Sequence[float], fits: int, room: float) -> int:
-    """Before which part to part: a junction, else a piece, else a clamp, as low as can be."""
+    """Choose the part before which to break: a junction, else a piece, else a clamp, as low as
+    possible.
+    """
     least = (1.0 - _NEAR_THE_END) * room
     near = [each for each in range(fits, 0, -1) if each == fits or heights[each - 1] >= least]
     parts = {each: rest[each].part for each in near}
@@ -323,7 +325,7 @@ def _fields(deck: Deck, paper: Paper) -> list[_Fields]:
 
 
 def _known(deck: Deck) -> dict[str, str]:
-    """The anchor's weights, what floats the release after the worst break, and the verdict."""
+    """Texts of the anchor weights, the minimum back-up buoyancy, and the verdict."""
     anchors = [one for one in deck.assessment.inventory if one.role == "anchor"]
     if not deck.result.several:
         anchors = anchors[-1:] or [deck.assessment.inventory[-1]]

@@ -20,7 +20,7 @@ _SEA_ROW = 16.0
 
 
 def drawing_pages(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
-    """The mooring from the top to the anchor, a row a part, on as many sheets as it needs."""
+    """Yield the mooring drawing, top to anchor, one row per part, on one or more sheets."""
     if not signed.standing:
         return
     numbers = item_numbers(signed)
@@ -123,14 +123,14 @@ def _sheets(
 
 
 def _length(items: Sequence[DeckItem], given: str) -> str:
-    """The cut length of a row, or where it is clamped."""
+    """Cut length of a row, or the position of a clamp."""
     if items[0].on is not None:
         return place_text(items[0].places[0]).removesuffix(".00")
     return " ".join(word.removesuffix(".00") for word in given.split(" "))
 
 
 def _buoyancy(force: float) -> str:
-    """A net buoyancy with its sign; none where it rounds to nothing."""
+    """Format a net buoyancy with its sign; no sign if it rounds to zero."""
     text = load_text(force)
     return f"+{text}" if force > 0.0 and text.strip("0.") else text
 
@@ -148,7 +148,7 @@ def _end_row(picture: str, name: str, depth: str, cases: int) -> tuple[Cell, ...
 
 
 def _row(part: ShownPart, *, first: bool, last: bool) -> tuple[float, tuple[Cell, ...]]:
-    """The height of a row, and its cells; those of a junction are in small letters."""
+    """Return the height and cells of a row; junctions are set in small letters."""
     (row,) = part.rows
     told = f"{row.label}  {row.name}" if row.name else row.label
     lines = len(wrapped(told, _WORDS, 8.0))
@@ -167,7 +167,7 @@ def _row(part: ShownPart, *, first: bool, last: bool) -> tuple[float, tuple[Cell
 def _broken(
     heights: Sequence[float], breaks: Sequence[int], room: float
 ) -> Iterator[tuple[int, int]]:
-    """The rows of each sheet, parted above a junction where one is near the foot."""
+    """Yield the rows of each sheet; sheets end above a junction if one is near the foot."""
     begin = 0
     while begin < len(heights):
         end, used = begin, 0.0
@@ -182,5 +182,5 @@ def _broken(
 
 
 def run_of(numbers: Sequence[str]) -> str:
-    """The numbers of several items that follow one another."""
+    """Format the numbers of consecutive items as a range."""
     return numbers[0] if len(numbers) == 1 else f"{numbers[0]}–{numbers[-1]}"

@@ -1,7 +1,6 @@
-"""Explanation of a line: its weights, the causes of its knockdown, what a change does to it.
+"""Explanation of a line: its weights, the causes of its knockdown, and the effect of changes.
 
-The facts of a result, an explanation, a sizing and a comparison of two designs, as a person reads
-them.
+Formats the facts of a result, an explanation, a sizing, and a comparison of two designs.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
     from calm.checks.comparison import Compared, Comparison
 
 SMALLEST_SHARE = 0.005
-"""Of every whole; drags that cause less of all of them are summed up in one row."""
+"""Share of a total below which drag forces are summed in one row."""
 
 _SHARES = (
     "Shares: all drags grow together from zero to their full value, and each is charged with the "
@@ -40,7 +39,7 @@ _CHANGES = "Buoyancy is changed for everything buoyant, drag for everything; len
 
 
 def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
-    """How a mooring rises when freed, and its mass, each under its name."""
+    """Describe the rise of a mooring after release, and its mass, each with a title."""
     if result.several or result.towed:
         return ()
     items = inventory_of(result.leg.leg)
@@ -57,7 +56,7 @@ def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
 
 
 def _rise(result: LegResult) -> str:
-    """How a line rises; nothing of one at the surface, or without a solution."""
+    """Describe the rise of a line; "" for a surface mooring, or without a solution."""
     with suppress(NoEquilibrium):
         rise = recovery_of(result.leg, result)
         if rise.time_to_surface is None:
@@ -80,19 +79,19 @@ class _Shown(NamedTuple):
     scale: float = 1.0
 
     def decimals(self, whole: float) -> int:
-        """Return those of the quantity, more where three digits of the whole need them."""
+        """Decimals of the quantity, or more if three digits of the total require it."""
         usual = QUANTITIES[self.quantity].decimals if self.scale == 1.0 else 1
         if whole == 0.0:
             return usual
         return max(usual, min(2 - floor(log10(abs(whole * self.scale))), 4))
 
     def text(self, figures: Figures) -> str:
-        """The figure as it is."""
+        """Format the value."""
         value = getattr(figures, self.name)
         return f"{value * self.scale:z.{self.decimals(value)}f}"
 
     def growth(self, now: Figures, then: Figures | None) -> str:
-        """By how much it grows."""
+        """Format the increase of the value."""
         before, after = getattr(now, self.name), then and getattr(then, self.name)
         if after is None:
             return "-"
@@ -116,10 +115,10 @@ _ANCHOR = ("tension", "vertical", "horizontal", "required_weight")
 
 
 def explanation_part(explanation: Explanation) -> ReportPart:
-    """The shares of the drags and what a change would do.
+    """Report the shares of the drag forces, and the effect of changes.
 
-    Drags that cause next to nothing share a row; a JSON document has each of them. It fits 80
-    columns.
+    Drag forces with very small shares are combined in one row; the JSON document lists each. Fits
+    80 columns.
     """
     wholes = [
         f"{name} {_COLUMNS[name].text(explanation.figures)} m"
@@ -204,7 +203,7 @@ _ROWS = (
 
 
 def sizing_part(sizing: Sizing) -> ReportPart:
-    """Return what to change so that a target that can be met is met, and what else that changes."""
+    """Report the change that meets a target, and its other effects."""
     assert sizing.after is not None
     lines: list[blocks.Line] = []
     if sizing.before.failure is not None:
@@ -263,7 +262,7 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
 
 
 def _place_told(trial: Trial) -> str:
-    """The label of the part of a net whose depth and excursion are told."""
+    """Label of the part of a net whose depth and excursion are shown."""
     assert trial.result is not None
     parts = parts_of(trial.result.file.pieces)
     return next((part.label for part in parts if part.place == trial.place), parts[0].label)
@@ -299,7 +298,7 @@ def _blocks(comparison: Comparison) -> Iterator[Block]:
 def _figures(
     title: str, names: tuple[str, str], figures: Sequence[Compared], *, all_rows: bool = False
 ) -> Table:
-    """Figures side by side; of those that are not shown, how many stay as they are."""
+    """Tabulate values side by side, and count the unchanged ones."""
     rows = [_figure(one) for one in figures]
     shown = [row for row in rows if all_rows or row[2].text != row[3].text]
     same = len(rows) - len(shown)
@@ -334,7 +333,7 @@ def _figure(one: Compared) -> tuple[str, str, Cell, Cell, str]:
 
 
 def _text(value: float | str | None, quantity: Quantity | None, state: State | None) -> str:
-    """A figure; of a margin that is not known, how its rule judges."""
+    """Format a value; an unknown margin shows the state of its rule."""
     if isinstance(value, str):
         return value
     if value is None or quantity is None:

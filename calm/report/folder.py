@@ -20,14 +20,14 @@ from calm.report.provenance import moment
 from calm.whole_file import put
 
 REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inventory.csv")
-"""What a design check writes in the folder."""
+"""Files that a design check writes into the folder."""
 
 
 def check_folder(folder: Path) -> None:
-    """Refuse a folder in which nothing could be written, before the work for it is done.
+    """Reject a folder that cannot be written, before computing anything.
 
-    UsageError: it is no folder, or lies in none; it or the nearest one that exists may not be
-    written.
+    Raises UsageError if the path, or the nearest existing parent, is not a folder or is not
+    writable.
     """
     try:
         with contextlib.suppress(FileNotFoundError):
@@ -46,11 +46,11 @@ def check_folder(folder: Path) -> None:
 
 
 def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
-    """Write the files of a report as a set, making the folder where it is missing.
+    """Write the files of a report as a set, creating the folder if needed.
 
-    All are written under temporary names before the first takes its place. Where one cannot take
-    it, or the program is interrupted meanwhile, the report that was there stands again, whole.
-    UsageError: the system refuses; which file, and why. No temporary file is left behind.
+    All files are written under temporary names first, then renamed. If a rename fails or the
+    program is interrupted, the previous report is restored completely. No temporary file remains.
+    Raises UsageError with the file and the reason if the system rejects a file.
     """
     parts = {name: folder / f".{name}-{os.getpid()}.part" for name in files}
     kept = {name: folder / f".{name}-{os.getpid()}.old" for name in files}
@@ -98,9 +98,9 @@ def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) 
 
 
 def check_destination(path: Path) -> None:
-    """Refuse a file that could not be written, before the work for it is done.
+    """Reject a file that cannot be written, before computing anything.
 
-    UsageError: the folder is missing, or the file or its folder may not be written.
+    Raises UsageError if the folder does not exist, or if the file or its folder is not writable.
     """
     folder = os.path.dirname(os.path.realpath(path))
     if os.path.isdir(path):
@@ -112,10 +112,10 @@ def check_destination(path: Path) -> None:
 
 
 def write_file(path: Path, content: bytes) -> None:
-    """Write a file whole: a reader sees the old content or the new, never a part.
+    """Write a file atomically: a reader sees either the old content or the new.
 
-    A device or a pipe is written as it is, and a symbolic link keeps pointing where it did.
-    UsageError: the system refuses, e.g. because the disk is full; the old file is then untouched.
+    Devices and pipes are written directly, and symbolic links are preserved. Raises UsageError if
+    the system rejects the file, e.g. because the disk is full; the old file is then unchanged.
     """
     try:
         if os.path.exists(path) and not os.path.isfile(path):
@@ -127,15 +127,15 @@ def write_file(path: Path, content: bytes) -> None:
 
 
 def printed(report: Report, paper: str = "a4", leaves: Sequence[str] | None = None) -> bytes:
-    """Any report on pages; its texts reach the template as data, never as markup.
+    """Typeset a report as PDF; its texts are passed to the template as data, never as markup.
 
-    The same report gives the same bytes: the fonts are those of the package, and the only date is
-    that of SOURCE_DATE_EPOCH. A sign that the fonts lack shows as �.
+    Equal reports give equal bytes: fonts come from the package, and the only date is that of
+    SOURCE_DATE_EPOCH. Characters that the fonts lack appear as �.
 
     Parameters
     ----------
-    paper : a4, a3 (lying) or letter
-    leaves : its sections as `pdf_leaf` has them, where they are made already
+    paper : a4, a3 (landscape) or letter
+    leaves : sections already converted by `pdf_leaf`
     """
     leaves = leaves or [pdf_leaf(section) for section in report.sections]
     when = moment()
@@ -152,15 +152,15 @@ def printed(report: Report, paper: str = "a4", leaves: Sequence[str] | None = No
 
 
 def pdf_leaf(part: Report | Section) -> str:
-    """A report or a section as the template takes it."""
+    """Convert a report or a section to the JSON text that the template reads."""
     text = legible(json.dumps(part, default=_members, ensure_ascii=False))
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
 def _members(part: Any) -> dict[str, Any] | str:
-    """A part of the report with its kind, which the template goes by; of a section its parts.
+    """Convert a part of the report to a dictionary with its kind, for the template.
 
-    Of a cell that is nothing but its text it is the text.
+    A section is reduced to its printed members, and a cell with text only becomes that text.
     """
     if isinstance(part, Cell):
         text, *more = vars(part).values()

@@ -1,4 +1,4 @@
-"""Report of what was put onto fixed levels: the scales found, sections over time, words."""
+"""Report of gridded records: correlation scales, sections over time, and a description."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -19,7 +19,7 @@ from calm.report.read_card import card_blocks
 from calm.version import __version__
 
 MOST_DRAWN = 600
-"""Times of a section that are drawn; of more, every few."""
+"""Maximum number of times drawn in a section; longer records are subsampled."""
 _WIDTH, _HEIGHT, _SIZE = 7.4, 2.3, 7.0  # inches, inches, points of the letters
 _COLOURS = {"temperature": "RdYlBu_r", "salinity": "viridis", "u": "PuOr_r", "v": "PuOr_r"}
 _READ = (
@@ -40,8 +40,8 @@ def grid_report(
     Parameters
     ----------
     output : the gridded file
-    names : of each quantity in the file
-    cards : what was read from each of the files
+    names : name of each quantity in the file
+    cards : contents of each file read
     """
     figures: list[Figure] = []
     with open_result(output) as result:
@@ -65,7 +65,7 @@ def grid_report(
 def grid_document(
     fields: Mapping[str, GriddedQuantity], cards: Sequence[ReadCard]
 ) -> dict[str, Any]:
-    """Return the JSON object: scales of each quantity [m, s], and what was read from each file."""
+    """Return the JSON object: scales of each quantity [m, s], and the cards of the files."""
     return {
         "quantities": {
             name: {
@@ -81,12 +81,12 @@ def grid_document(
 
 
 def grid_part(fields: Mapping[str, GriddedQuantity]) -> ReportPart:
-    """Return what a terminal shows."""
+    """Report for a terminal."""
     return ReportPart("", (scales_table(fields),))
 
 
 def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
-    """Return the scales that each record has."""
+    """Tabulate the correlation scales of each quantity."""
 
     def widened(one: tuple[str, GriddedQuantity]) -> str:
         found = one[1].widened

@@ -16,7 +16,7 @@ _NOTE = (
 
 
 def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[blocks.Table]:
-    """The designs, by name, by their greatest probability; nothing where none was counted."""
+    """Tabulate the designs by decreasing maximum probability, if probabilities were computed."""
     designs = [(_likeliest(findings), name) for name, findings in named]
     designs.sort(key=lambda one: -(one[0][0].probability or 0.0) if one[0] else inf)
     if not any(found for found, _ in designs):
@@ -49,7 +49,7 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
 
 
 def _likeliest(findings: Sequence[Finding]) -> list[Finding]:
-    """Return the finding of each rule with the greatest probability, the greatest first."""
+    """Select the finding of each rule with the largest probability, largest first."""
     counted = by_rule(one for one in findings if one.probability is not None)
     groups = (counted[name] for name in RULES if name in counted)
     found = (max(group, key=lambda one: one.probability or 0.0) for group in groups)

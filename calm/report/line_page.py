@@ -1,4 +1,4 @@
-"""Page 3 of a design check: what every piece bears in all load cases, and what it may bear."""
+"""Page 3 of a design check: load and capacity of every piece over all load cases."""
 
 from collections.abc import Callable, Iterator, Sequence
 from math import inf
@@ -24,7 +24,7 @@ from calm.report.page_one import SignedMooring
 
 
 def line_page(signed: SignedMooring) -> Iterator[Block]:
-    """How loaded each piece is: cables and what hangs in them, hardware by type, the anchor."""
+    """Yield the loading of each piece: the main line, hardware by type, and the anchor."""
     if not signed.standing:
         return
     loads = piece_loads(signed.assessment, signed.standing)
@@ -59,7 +59,7 @@ def _known(value: float | None) -> float | None:
 
 
 def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
-    """A row of each cable, instrument, float, release and anchor; equal floats share one."""
+    """Tabulate each cable, instrument, float, release and anchor; equal floats share a row."""
     groups: list[list[PieceEnvelope]] = []
     for one in loads:
         last = groups[-1][-1] if groups else None
@@ -123,7 +123,7 @@ def _bar(finding: Finding | None) -> Cell | None:
 
 
 def _use(finding: Finding | None) -> Cell | None:
-    """The use of a load, with the sign of what is accepted, warned of, not known or fails."""
+    """Format the utilisation of a load, with a sign for accepted, warning, unknown or failed."""
     if finding is None:
         return None
     signs = {State.ACCEPTED: "○", State.UNKNOWN: "?", State.FAIL: "✗", State.WARN: "▲"}
@@ -158,7 +158,7 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
 
 
 def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
-    """What each case asks of the anchor, or of each anchor of a net the worst case."""
+    """Tabulate the anchor load of each case, or the most severe case of each anchor of a net."""
     rows = [
         (case, result) for case in signed.standing for result in case.results if result.leg.anchored
     ]

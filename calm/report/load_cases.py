@@ -1,7 +1,7 @@
-"""What a mooring bears in every load case: the cases, and the envelope of its pieces.
+"""Load cases of a mooring, and the envelope of loads on its pieces.
 
-A case is a situation of an environment; a net has a result of each of its legs in it. Its code
-stands behind the figures that it governs, as in findings.
+A load case is a situation of an environment; in a net, it has a result for each leg. Values are
+followed by the code of their governing case, as in findings.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -23,17 +23,17 @@ from calm.files.pieces import STAND_IN
 from calm.quantities import QUANTITIES, Quantity, say
 
 LOAD = Quantity("load", "load", "N", "Force on paper.", 2, "", "kN")
-"""Forces on paper: kN to 0.01, or what a person chooses."""
+"""Force in print: kN to 0.01, or the unit chosen by the user."""
 
 
 def load_text(value: float | None) -> str:
-    """A force on paper, with a true minus; a dash where it is not known."""
+    """Format a force for print, with a true minus; a dash if unknown."""
     text = LOAD.format(value)
     return "–" if text == "-" else text.replace("-", "−")
 
 
 def length_text(value: float | None) -> str:
-    """A cut length on paper, whole metres without decimals."""
+    """Format a cut length for print; whole metres have no decimals."""
     return QUANTITIES["length"].format(value).removesuffix(".00")
 
 
@@ -43,11 +43,11 @@ class LoadCase:
 
     Attributes
     ----------
-    code : as in findings, such as 1s
-    environment : its name
-    situation : what is changed in it
-    results : of each leg; none where it has no equilibrium
-    failure : why it has none
+    code : code as in findings, such as 1s
+    environment : name of the environment
+    situation : name of the situation
+    results : result of each leg; empty without equilibrium
+    failure : reason for having no equilibrium
     """
 
     code: str
@@ -58,7 +58,7 @@ class LoadCase:
 
     @property
     def as_given(self) -> bool:
-        """Whether nothing is changed in its environment."""
+        """Whether the environment is unchanged."""
         return self.situation == AS_GIVEN
 
     @property
@@ -90,29 +90,29 @@ class LoadCase:
 
     @property
     def knockdown(self) -> float:
-        """The greatest of all tops [m]; 0 where none has one."""
+        """Maximum knockdown of all tops [m]; 0 if none is known."""
         known = [one.top.knockdown for one in self.results]
         return max((one for one in known if one is not None and not isnan(one)), default=0.0)
 
     @property
     def offset(self) -> float:
-        """The greatest of all tops from the anchor [m]."""
+        """Maximum horizontal distance of all tops from the anchor [m]."""
         return max(hypot(one.top.x, one.top.y) for one in self.results)
 
     @cached_property
     def tension(self) -> tuple[float, str]:
-        """The greatest, and the piece that bears it."""
+        """Maximum tension, and the piece that carries it."""
         return max((row.tension, row.label) for row in self._pieces())
 
     @cached_property
     def factor(self) -> tuple[float, str] | None:
-        """The least safety factor, and the piece that has it; None where none is known."""
+        """Minimum safety factor, and its piece; None if none is known."""
         known = ((row.safety_factor, row.label) for row in self._pieces())
         return min((one for one in known if not isnan(one[0])), default=None)
 
     @cached_property
     def strength(self) -> tuple[float, str] | None:
-        """The greatest tension over what a piece may bear, and the piece."""
+        """Maximum ratio of tension to allowable load, and its piece."""
         shares = []
         for result in self.results:
             leg = estimated(result.leg)
@@ -135,7 +135,7 @@ class LoadCase:
 
     @cached_property
     def tilt(self) -> tuple[float, str] | None:
-        """The greatest of an instrument, and the instrument."""
+        """Maximum tilt of an instrument, and the instrument."""
         tilts = (
             (row.tilt, label)
             for label, row in self.rows.items()
@@ -166,7 +166,7 @@ def load_cases(assessment: Assessment) -> list[LoadCase]:
 
 
 def worst_of_each_environment(cases: Sequence[LoadCase]) -> list[LoadCase]:
-    """Of each environment the case with the deepest top; still water stays."""
+    """Select the case with the deepest top of each environment; still water is kept."""
     kept: dict[str, LoadCase] = {}
     for one in cases:
         key = one.code if one.code.startswith("0") else one.environment
@@ -177,16 +177,16 @@ def worst_of_each_environment(cases: Sequence[LoadCase]) -> list[LoadCase]:
 
 @dataclass(frozen=True)
 class PieceEnvelope:
-    """What a piece bears in all cases, and what it may bear.
+    """Loads on a piece in all cases, and its capacity.
 
     Attributes
     ----------
-    number : in the line, from 1
-    row : the piece in the first case
-    tension, case : the greatest [N], and the case
-    least, tilt : tension [N] and tilt [degrees]
-    standing, launch : the finding on its strength; None where it is not judged
-    launch_tension, rise_tension : the greatest [N]; None where not known
+    number : number in the line, from 1
+    row : row of the piece in the first case
+    tension, case : maximum tension [N], and its case
+    least, tilt : minimum tension [N] and maximum tilt [degrees]
+    standing, launch : strength finding in equilibrium and during launch; None if not judged
+    launch_tension, rise_tension : maximum tension [N]; None if unknown
     """
 
     number: int
@@ -233,7 +233,7 @@ def _at(figures: np.ndarray, index: int) -> float | None:
 
 
 def found_on(assessment: Assessment, rule: str) -> Mapping[str, Finding]:
-    """Of each component, by its label, what governs of the findings of a rule."""
+    """Map component labels to the governing finding of a rule."""
     groups: dict[str, list[Finding]] = {}
     for one in assessment.every_finding():
         if one.rule == rule and one.component is not None:
@@ -242,7 +242,7 @@ def found_on(assessment: Assessment, rule: str) -> Mapping[str, Finding]:
 
 
 def capacity_text(finding: Finding | None) -> str:
-    """The load that a piece may bear, with the sign of an estimate; ? where no load is known."""
+    """Format the allowable load of a piece, with the sign of an estimate; ? if no load is known."""
     if finding is None:
         return "–"
     sign = "≈\u00a0" if finding.state is State.ESTIMATED else ""

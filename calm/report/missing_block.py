@@ -18,10 +18,11 @@ _WIDTH = 100
 
 
 def missing_block(findings: Iterable[Finding]) -> str:
-    """The `components:` section of a mooring file with the missing keys of each component id.
+    """Create the `components:` section of a mooring file with the missing keys of each component
+    id.
 
-    Comments name the pieces and the rules that need a figure, and its class estimate if there is
-    one. A comment alone if nothing is missing, or nothing can be judged.
+    Comments name the pieces and the rules that need a value, and its class estimate if there is
+    one. If nothing is missing, or nothing can be checked, the text is a comment only.
     """
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]

@@ -44,14 +44,14 @@ def motion_report(
     notes: Sequence[str],
     cards: Sequence[ReadCard] = (),
 ) -> blocks.Report:
-    """Return the report: one page of the whole deployment, and the details.
+    """Build the report, with one page on the whole deployment before the details.
 
     Parameters
     ----------
-    series : of the sensors
-    time : (n,)
-    notes : what was said of the input
-    cards : what was read from each file
+    series : series of the sensors
+    time : times (n,)
+    notes : notes on the input
+    cards : contents of each file read
     """
     bare = [one for one in series if not np.isfinite(one.measured).any()]
     sensors = [one for one in series if np.isfinite(one.measured).any()]
@@ -85,7 +85,7 @@ def motion_report(
 
 
 MOST_PANELS = 12
-"""Sensors that are drawn; of more, those that are hidden come first."""
+"""Maximum number of sensors drawn; withheld sensors have priority."""
 
 
 def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple[str, ...]:
@@ -157,7 +157,7 @@ _DOUBTED = "A question mark: another cause is nearly as likely; see above."
 
 
 def health_table(study: MotionEstimate) -> Table:
-    """Return what is wrong with each sensor: a dash where nothing is."""
+    """Tabulate the faults of each sensor; a dash if there are none."""
     found: dict[str, dict[str, str]] = {label: {} for label in study.sensors}
     faults = [*study.faults(of_line=False)]
     for one in faults:
@@ -178,7 +178,7 @@ def health_table(study: MotionEstimate) -> Table:
 
 
 def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
-    """Return what is wrong with sensors: clocks [s], gains as factors, all else [m]."""
+    """Return the JSON of sensor faults: clocks in [s], gains as factors, all others in [m]."""
     said = []
     for one in diagnosis:
         unit = 3600.0 if one.kind == "clock" else 1.0
@@ -207,7 +207,7 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
 
 
 def sensors_table(study: MotionEstimate) -> Table:
-    """Return how sensors in use agree with the currents alone, and with what is estimated."""
+    """Tabulate the agreement of sensors with the currents alone, and with the estimate."""
     rows = [(alone, label) for label, alone in (study.plain or study.sensors).items()]
     alone = blocks.of_first(
         _figure("alone: bias", "bias"), _figure("rms", "rms"),
@@ -249,11 +249,11 @@ def _said(value: float, decimals: int = 2) -> str:
 def motion_document(
     study: MotionEstimate, name: str, cards: Sequence[ReadCard] = ()
 ) -> dict[str, Any]:
-    """The JSON object: factors with their intervals of 95 %, and how well depths agree [m].
+    """Return the JSON object: factors with 95 % intervals, and depth errors [m].
 
-    `sensors` has for each sensor that was used the agreement of what is estimated, and as `plain`
-    that of the currents alone; `held_out` those that were hidden; `read` what was read from each
-    file.
+    `sensors` lists for each sensor in use its agreement with the estimate, and as `plain` its
+    agreement with the currents alone; `held_out` lists withheld sensors; `read` describes the input
+    files.
     """
     sensors = [
         {"label": label, **_agreement(fit), "offset": float(offset)}
@@ -304,7 +304,7 @@ _BY_CURRENTS, _MEASURED = Stroke("#d55e00", 0.8, (3.0, 1.5)), Stroke("#111111", 
 
 
 def overview_figure(series: Sequence[SensorSeries]) -> str:
-    """Depths of all instruments over time, with their bands: where and when the line went down."""
+    """Draw the depths of all instruments over time, with their uncertainty bands."""
     page = Graph(_WIDTH, 260.0, "Depths of all instruments", _SIZE)
     place = (_LEFT, 6.0, _WIDTH - _LEFT - _RIGHT, 260.0 - 6.0 - _BELOW)
     _draw_depths(page, place, series, lambda one: [(one.estimated, _line_of(one))], numbered=True)

@@ -1,6 +1,6 @@
-"""What is open of a mooring, cause by cause, and its verdict in a sentence.
+"""Open items of a mooring, grouped by cause, and its verdict in a sentence.
 
-Components of which the same is said share an item, and what governs them tells its figures.
+Components with the same finding share an item, which shows the governing values.
 """
 
 import re
@@ -25,7 +25,7 @@ from calm.report.check_tables import grouped, joined, named_components
 from calm.report.load_cases import LOAD
 
 OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED)
-"""States of what is open, in the order in which it is listed."""
+"""States that count as open, in the order of the list."""
 
 _DIFFERENCES = ("planned-depth", "as-deployed")
 """Rules whose values are differences, which their messages explain."""
@@ -34,8 +34,8 @@ _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight"
 
 
 def plain(text: str) -> str:
-    """A sentence as people read it on paper: keys of a file are words, and figures keep their
-    units.
+    """Format a sentence for print: keys of the file become words, and values do not break from
+    their units.
     """
     told = re.sub(r"`([^`]*)`", lambda key: key[1].replace("_", " ").replace(":", ""), text)
     told = re.sub(r"\b(\d+) N\b", lambda force: LOAD.say(float(force[1])), told)
@@ -44,31 +44,31 @@ def plain(text: str) -> str:
 
 
 def short(text: str, most: int) -> str:
-    """A text, cut where it is longer than a cell has room for."""
+    """Shorten a text to at most `most` characters."""
     return text if len(text) <= most else f"{text[: most - 1].rstrip()}…"
 
 
 def quantity_of(finding: Finding) -> Quantity | None:
-    """The quantity of a finding's figures as papers show it; None of a rule without figures."""
+    """Quantity of the values of a finding, as printed; None for a rule without values."""
     name = RULES[finding.rule].quantity
     return LOAD if name == "tension" else QUANTITIES.get(name)
 
 
 def figure_text(finding: Finding, value: float | None) -> str:
-    """A figure of a finding with its unit; nothing where there is none."""
+    """Format a value of a finding with its unit; "" if there is none."""
     quantity = quantity_of(finding)
     return "" if value is None or quantity is None else plain(quantity.say(value))
 
 
 def limit_text(finding: Finding) -> str:
-    """The limit of a finding with the sign of how it is to be kept."""
+    """Format the limit of a finding with ≤ or ≥."""
     sign = {"<=": "≤\u00a0", ">=": "≥\u00a0"}.get(finding.sense or "", "")
     text = figure_text(finding, finding.limit)
     return sign + text if text else ""
 
 
 def percent_text(utilisation: float | None) -> str:
-    """A utilisation in percent, rounded up; a dash where there is none."""
+    """Format a utilisation in percent, rounded up, or a dash for None."""
     if utilisation is None:
         return "–"
     percent = percent_used(utilisation)
@@ -82,17 +82,17 @@ def where_text(finding: Finding) -> str:
 
 
 def open_groups(assessment: Assessment) -> list[list[Finding]]:
-    """Findings that are open, those of one cause together, the gravest first.
+    """Group the open findings by cause, most severe first.
 
-    A cause is what is said alike of several components; an estimate of one component; an
-    acceptance; a rule without data.
+    Findings have a common cause if they differ only in component and values; estimates, if they
+    concern one component; acceptances, if they have the same reason; and rules without data.
     """
     use = {one.label: one.use for one in assessment.inventory}
     return groups_of(assessment.every_finding(), use)
 
 
 def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[Finding]]:
-    """The same of findings, and the component ids of pieces and clamps by their labels."""
+    """Group open findings by cause; `use` maps labels of pieces and clamps to component ids."""
 
     def cause(finding: Finding) -> Hashable:
         if finding.state is State.ACCEPTED and finding.accept is not None:
@@ -144,7 +144,7 @@ def verdict_of(findings: Iterable[Finding], use: Mapping[str, str]) -> Span:
 
     Parameters
     ----------
-    use : component ids of pieces and clamps by their labels
+    use : component ids of pieces and clamps by label
     """
     found = [*findings]
     conclusion = conclusion_of(found)
@@ -176,7 +176,7 @@ def _item(group: Sequence[Finding], number: int) -> OpenItem:
 
 
 def _head(group: Sequence[Finding], worst: Finding) -> str:
-    """What is open, of what, and its use where that is known."""
+    """Heading of an open item: rule, components, and utilisation if known."""
     labels = list(dict.fromkeys(one.component or "" for one in group))
     of = f", {short(named_components(_once(group)), 90)}" if labels != [""] else ""
     if worst.missing is not None:
@@ -192,7 +192,7 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
 
 
 def _told(group: Sequence[Finding], worst: Finding) -> str:
-    """What was found, against what, and what is to be done or why it is accepted."""
+    """Describe an open item: value, limit, and the remedy or the reason for acceptance."""
     found, limit = figure_text(worst, worst.value), limit_text(worst)
     where = f" ({worst.case})" if worst.case else ""
     figures = f"{found}{where}, {limit} allowed." if limit else ""
@@ -214,7 +214,7 @@ def _told(group: Sequence[Finding], worst: Finding) -> str:
 
 
 def advice(finding: Finding) -> str:
-    """What is to be done about a finding, in short."""
+    """Recommended action for a finding, in brief."""
     if finding.state in (State.PASS, State.NOT_JUDGED):
         return ""
     if finding.accept is not None:
@@ -234,8 +234,9 @@ def _capital(text: str) -> str:
 
 
 def draft(assessment: Assessment) -> bool:
-    """Whether a report may not be signed: it lacks its number, revision or date, or rests on an
-    acceptance of an example."""
+    """Whether a report must not be signed, because it lacks its number, revision or date, or relies
+    on an acceptance of an example.
+    """
     document = assessment.file.document
     given = document is not None and all((document.id, document.revision, document.date))
     return assessment.draft or not given

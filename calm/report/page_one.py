@@ -1,4 +1,4 @@
-"""Page one of a design check: what an engineer signs."""
+"""Page one of a design check, for the engineer's signature."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -52,7 +52,7 @@ MARKS = {
     State.FAIL: "✗", State.UNKNOWN: "?", State.WARN: "▲", State.ESTIMATED: "≈", State.ACCEPTED: "○",
     State.NOT_JUDGED: "–", State.PASS: "✓",
 }  # fmt: skip
-"""Signs of the states on paper."""
+"""Signs of the states in print."""
 _HALF = 0.4999  # of the capacity: what is used more is shown on page one
 _LONGEST = 30  # letters of a name in a table of page one
 
@@ -67,12 +67,12 @@ _FIGURE_WIDTH, _WIDTH = 281.0, 510.0
 
 @dataclass(frozen=True)
 class SignedMooring:
-    """A mooring as its papers show it.
+    """Mooring with all data for its printed report.
 
     Attributes
     ----------
-    assessment, cases : what is judged, and in which cases
-    items : what is open, with numbers
+    assessment, cases : assessment of the mooring, and its load cases
+    items : numbered open items
     sha256 : of the inputs
     """
 
@@ -88,7 +88,7 @@ class SignedMooring:
 
     @property
     def document(self) -> str:
-        """Number and revision; nothing where none is given."""
+        """Document number and revision; "" if there is none."""
         given = self.assessment.file.document
         if given is None or not given.id:
             return ""
@@ -101,7 +101,7 @@ class SignedMooring:
         return f"DRAFT, {said.words}" if draft(self.assessment) else verdict_words(said)
 
     def running(self) -> Running:
-        """What stands at the head and the foot of every page."""
+        """Running header and footer of every page."""
         given = self.assessment.file.document
         date = (given.date if given else None) or provenance.date() or ""
         own = [given.institution if given else None, f"CALM {__version__}"]
@@ -147,7 +147,7 @@ def verdict_box(signed: SignedMooring) -> Prose:
 
 @dataclass(frozen=True)
 class _Figure:
-    """A column of the load cases: what it shows of a case, a value or one with its component."""
+    """Column of the load cases: a function from a case to a value, with its component if known."""
 
     heading: str
     of: Callable[[LoadCase], float | tuple[float, str] | None]
@@ -156,12 +156,12 @@ class _Figure:
     short: str | None = None
 
     def value(self, case: LoadCase) -> tuple[float, str] | None:
-        """Return the figure of a case, and where it is."""
+        """Value in a case, and the component concerned."""
         found = self.of(case) if case.results else None
         return found if found is None or isinstance(found, tuple) else (found, "")
 
     def field(self, lead: float) -> blocks.Field:
-        """The column, in which what leads is bold."""
+        """Create the column; cells equal to `lead` are bold."""
 
         def show(case: LoadCase) -> Cell:
             found = self.value(case)
@@ -199,13 +199,13 @@ def _figures() -> tuple[_Figure, ...]:
 
 
 def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
-    """The figures of load cases, of those that any has, without what governs."""
+    """Columns of load cases that have a value in any case, without bold cells."""
     known = [one for one in _figures() if any(one.value(case) for case in cases)]
     return [figure.field(nan) for figure in known]
 
 
 def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
-    """The cases that have room in a table, and what is said of those that have not."""
+    """Select the cases that fit a table, and describe the omitted ones."""
     cases, note = [*cases], ""
     if len(cases) > MOST_CASES:
         cases = worst_of_each_environment(cases)
@@ -218,7 +218,7 @@ def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
 
 
 def cases_table(signed: SignedMooring) -> Table:
-    """The load cases, what governs in bold, and where that is in the last row."""
+    """Tabulate the load cases; governing values are bold, their components in the last row."""
     cases, note = shown_cases(signed.cases)
 
     def named(case: LoadCase) -> str:
@@ -245,8 +245,9 @@ def cases_table(signed: SignedMooring) -> Table:
 
 
 def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
-    """What governs each rule that has a use, the greatest first; of the release only what its
-    strength does not tell."""
+    """Governing finding of each rule that has a utilisation, largest first; `release-load` is
+    omitted if it repeats `strength`.
+    """
     found = [one for one in governing_of_each_rule(findings) if one.utilisation is not None]
     figures = {(one.component, one.value, one.limit) for one in found if one.rule == "strength"}
     told = [
@@ -257,7 +258,7 @@ def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
 
 
 def governing_table(signed: SignedMooring) -> Table:
-    """The checks that use most of what is there, with bars."""
+    """Tabulate the checks with the largest utilisation, with bars."""
     rows = governing_rows(signed.assessment.every_finding())
     over, half = (sum((one.utilisation or 0.0) > share for one in rows) for share in (1.0, _HALF))
     kept = rows[: max(over, min(MOST_CHECKS, half))] or rows[:3]
@@ -278,7 +279,7 @@ def governing_table(signed: SignedMooring) -> Table:
 
 
 def check_fields(longest: int) -> tuple[blocks.Field, ...]:
-    """Columns of findings with a bar; names of at most so many letters."""
+    """Columns of findings with a bar; labels are cut to `longest` characters."""
     return (
         words("", lambda one: Cell(state=one.state), 0.0),
         words("Check", lambda one: RULES[one.rule].title, 1.15),
@@ -291,7 +292,7 @@ def check_fields(longest: int) -> tuple[blocks.Field, ...]:
 
 
 def sign_off(signed: SignedMooring) -> SignOff:
-    """The revisions, the last one first, and boxes to sign in."""
+    """Create the revisions, latest first, and the signature boxes."""
     given = signed.assessment.file.document
 
     def field(name: str) -> str:
@@ -355,8 +356,9 @@ def _round(value: float) -> str:
 
 
 def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
-    """What is named beside the line: floats, instruments, releases, anchors, and the lines between
-    them, as long as they have room."""
+    """Select the labels next to the line: floats, instruments, releases and anchors, and the lines
+    between them if there is room.
+    """
     tags: dict[str | None, str] = {}
     for (_, label), tag in item_tags(signed).items():
         if not tag.startswith(MARKS[State.NOT_JUDGED]):
@@ -395,7 +397,7 @@ def afloat(result: LegResult) -> bool:
 def drawn_parts(
     result: LegResult, items: Sequence[DeckItem], cells: Cells
 ) -> tuple[ShownPart, ...]:
-    """The parts of a leg as they are drawn: glass as so many balls, runs of names in short."""
+    """Parts of a leg as drawn: glass floats by the number of balls, runs of names shortened."""
     roles = {one.label: one.role for one in items}
     found = []
     for part in parts_of(result.file, items, items, cells, surface=afloat(result)):

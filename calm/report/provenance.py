@@ -29,7 +29,7 @@ _LIBRARIES = ("numpy", "pydantic", "jinja2", "typst")
 
 
 def made_by() -> str:
-    """Name and version of CALM, of Python, and of the libraries that compute and draw."""
+    """Name the versions of CALM, Python, and the libraries for computation and drawing."""
     there = (name for name in _LIBRARIES if find_spec(name))  # a web page has no typst
     libraries = (f"{name} {version(name)}" for name in there)
     return ", ".join((f"calm {__version__}", f"python {platform.python_version()}", *libraries))
@@ -39,9 +39,9 @@ _LATEST = 253_402_300_799  # the last second of the year 9999
 
 
 def moment() -> datetime | None:
-    """The time that SOURCE_DATE_EPOCH gives, in UTC; None without it: a report has no other date.
+    """Time given by SOURCE_DATE_EPOCH, in UTC; None if unset. Reports contain no other date.
 
-    UsageError: it is no number of seconds that a calendar has.
+    Raises UsageError if it is not a number of seconds within the range of the calendar.
     """
     text = os.environ.get("SOURCE_DATE_EPOCH")
     if not text:
@@ -58,12 +58,12 @@ def date() -> str | None:
 
 
 def report_of(title: str, subtitle: str, *parts: ReportPart, name: str = "") -> Report:
-    """A report of one thing, on the day of `date`; its section has a name where that is another."""
+    """Create a report with one section, dated by `date` and called `name` or `title`."""
     return Report(title, subtitle, (), (blocks.Section(name or title, parts),), date())
 
 
 def source_text(file: MooringFile) -> str | None:
-    """The mooring file as it stands; None where it can no longer be read."""
+    """Read the text of the mooring file; None if it can no longer be read."""
     try:
         return read_text(Path(file.path))
     except InputError:
@@ -76,11 +76,11 @@ def file_name(file: MooringFile) -> str:
 
 
 def input_hash(files: Sequence[MooringFile]) -> str:
-    """SHA-256 of the inputs, in hexadecimal digits, as read in each of the environments.
+    """SHA-256 of the inputs in hexadecimal digits, over all environments.
 
-    It covers the text of the mooring file, and as JSON with sorted keys the components with every
-    figure of the catalogue, the settings, and each environment with its currents: what came from a
-    file of currents, too. Where the files lie does not count.
+    The hash covers the text of the mooring file and, as JSON with sorted keys, the components with
+    all catalogue values, the settings, and each environment with its currents, including those from
+    a current file. The location of the files is irrelevant.
     """
     digest = hashlib.sha256((source_text(files[0]) or "").encode("utf-8", "replace"))
     line = canonical(files[0].pieces)
@@ -94,7 +94,7 @@ def input_hash(files: Sequence[MooringFile]) -> str:
 
 
 def canonical(value: Any) -> str:
-    """JSON with sorted keys and no blanks; models and records become objects."""
+    """Serialise as JSON with sorted keys and no blanks, with models and records as objects."""
     return json.dumps(
         value, sort_keys=True, separators=(",", ":"),
         default=lambda one: one.model_dump() if isinstance(one, BaseModel) else vars(one),
@@ -115,23 +115,23 @@ UNSEEN = (
     "weather, and no factor on a static tension is a substitute for analysing them.",
     f"Nor does it judge {'; '.join(_BESIDE)}.",
 )
-"""What is printed in every report."""
+"""Exclusions printed in every report."""
 
 BY_WAVES = ("waves", "fatigue by waves")
-"""What is judged where environments give their `waves:`."""
+"""Effects that are checked if environments have `waves:`."""
 
 UNJUDGED = (
     *BY_WAVES, "snap loads", "fatigue by vortices", "creep, corrosion and wear",
     "the jerk and the swing of a launch", "hauling and lifts on recovery", *_BESIDE,
 )  # fmt: skip
-"""What no rule judges, in the JSON of a check."""
+"""Effects that no rule checks, for the JSON of a design check."""
 
 NOT_JUDGED = ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),))
 """The part of every report that says so."""
 
 
 def unseen(findings: Iterable[Finding]) -> tuple[str, ...]:
-    """Return what is printed beside the findings of a design check."""
+    """Exclusions printed next to the findings of a design check."""
     if not any(each.rule == "wave-slack" for each in findings):
         return UNSEEN
     static, no_margin, beside = UNSEEN
@@ -146,7 +146,9 @@ _MOST_LEVELS = 40
 
 
 def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
-    """Depth, density and the greatest current of each environment, and where it is."""
+    """Tabulate the depth, density and maximum current of each environment, with the depth of the
+    latter.
+    """
     rows = []
     for name, water in waters:
         speed = np.hypot(water.u, water.v)
@@ -169,7 +171,7 @@ def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
 
 
 def current_listing(name: str, water: Water) -> Listing:
-    """The current as computed with, level by level; of many levels, some at equal steps."""
+    """List the computed current by level, or at most `_MOST_LEVELS` evenly chosen levels."""
     count = len(water.level)
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_LEVELS)).round().astype(int))
     lines = [f"{'depth m':>10} {'speed m/s':>10} {'toward °':>10} {'upward m/s':>11}"]
@@ -183,14 +185,14 @@ def current_listing(name: str, water: Water) -> Listing:
 
 
 def document_part(file: MooringFile) -> tuple[ReportPart, ...]:
-    """The title block and the history of revisions; nothing where a file gives no document."""
+    """Title block and revision history; empty if the file has no `document`."""
     if file.document is None:
         return ()
     return (ReportPart("Document", (blocks.Pairs(tuple(title_pairs(file))),)), *history_part(file))
 
 
 def history_part(file: MooringFile) -> tuple[ReportPart, ...]:
-    """The history of revisions; nothing where a file gives none."""
+    """Revision history; empty if the file has none."""
     if file.document is None or not file.document.history:
         return ()
     first = words("revision", share=0.0), words("date", share=0.0)
@@ -199,7 +201,7 @@ def history_part(file: MooringFile) -> tuple[ReportPart, ...]:
 
 
 def title_pairs(file: MooringFile) -> list[tuple[str, str]]:
-    """Return what is known of the names under which a mooring goes, and where it is."""
+    """Identification of a mooring for the title block: document data, position and water depth."""
     document = file.document
     names = ("revision", "date", "project", "ship", "cruise", "author", "checked", "approved")
     pairs = [("mooring", file.name)]
@@ -214,7 +216,7 @@ def title_pairs(file: MooringFile) -> list[tuple[str, str]]:
 
 
 def position_text(position: Position) -> str:
-    """A position as ships write it: degrees and minutes to a thousandth, some 2 m."""
+    """Format a position in nautical form: degrees and minutes to a thousandth, about 2 m."""
     latitude = degrees_text(position.latitude, "NS", 2)
     return f"{latitude}, {degrees_text((position.longitude + 180.0) % 360.0 - 180.0, 'EW', 3)}"
 
@@ -224,9 +226,9 @@ def degrees_text(degrees: float, sides: str, digits: int) -> str:
 
     Parameters
     ----------
-    degrees : of latitude or longitude
-    sides : letters of a positive and of a negative angle
-    digits : of the whole degrees, at least
+    degrees : latitude or longitude [degrees]
+    sides : letters for positive and negative angles
+    digits : minimum number of digits of the whole degrees
     """
     whole, minutes = divmod(round(abs(degrees) * 60_000), 60_000)
     return f"{whole:0{digits}d}° {minutes / 1000:06.3f}′ {sides[degrees < 0.0]}"

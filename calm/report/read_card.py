@@ -1,4 +1,4 @@
-"""What was read from files, for a terminal and for reports: a list of names and values a file."""
+"""Summary of the contents read from files, for a terminal and for reports."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -8,7 +8,7 @@ from calm.report.blocks import Block, Heading, Pairs
 
 
 def card_blocks(cards: Iterable[Mapping[str, Any]]) -> tuple[Block, ...]:
-    """Return each file's card, as `calm.records.card.ReadCard.to_dict` gives it."""
+    """Convert the cards of `calm.records.card.ReadCard.to_dict` to blocks, file by file."""
     return tuple(
         block for card in cards for block in (Heading(str(card["file"])), Pairs(card_rows(card)))
     )

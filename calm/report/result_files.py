@@ -27,16 +27,16 @@ from calm.records.delimited import table_csv
 
 
 def header() -> tuple[str, ...]:
-    """The first row of CSV: names, with the unit in brackets where there is one."""
+    """Header of the CSV: column names, with units in brackets."""
     return ("mooring", "part", *(one.header for one in Components.columns(Output.CSV)))
 
 
 def to_csv(results: Sequence[Result]) -> str:
-    """The components of one mooring or tow, or of several, as CSV text (UTF-8, comma, point, LF).
+    """Write the components of one or several moorings or tows as CSV (UTF-8, comma, point, LF).
 
-    `part` is ``component`` or ``clamp``; the rows of clamped instruments follow the piece they sit
-    on, with equal figures for both ends and no length. A number that is unknown is left empty. With
-    a net among them the last column is the leg.
+    `part` is ``component`` or ``clamp``. The row of a clamped instrument follows the piece that
+    carries it, with equal values for both ends and no length. Unknown numbers are empty. If a net
+    is among the results, the last column is the leg.
     """
     rows = [row for result in results for row in _rows(result)]
     more = shown_in(OF_ROWS, Output.CSV)
@@ -66,9 +66,10 @@ _ACCURACY: dict[str, tuple[str, str, Attributes]] = {
 
 
 def result_netcdf(result: Result) -> bytes:
-    """The file of one mooring, tow or net, figures of 64 bits; what is unknown is NaN.
+    """Create the NetCDF file of one mooring, tow or net, in double precision; unknown values are
+    NaN.
 
-    A net has its ends leg by leg, and the nodes of its shape one leg after the other.
+    Ends of a net are listed by leg, and the shape nodes of its legs are concatenated.
     """
     file, pieces, clamps = result.file, result.components, result.clamps
     place = () if file.position is None else (file.position.latitude, file.position.longitude)
@@ -119,7 +120,7 @@ def result_netcdf(result: Result) -> bytes:
 def _table_variables(
     dimension: str, table: Components | Clamps, beside: str
 ) -> list[netcdf.Variable]:
-    """The columns of a table; `beside` are the coordinates that go with them."""
+    """Create the variables of a table; `beside` names their coordinates."""
     columns = table.columns(Output.NETCDF)
     figures = _floats({one.variable: getattr(table, one.name) for one in columns})
     return numbers((dimension,), terms(columns), beside, figures)
@@ -134,11 +135,10 @@ UNITS = {"length": "m", "force": "N", "angle": "deg", "mass": "kg", "speed": "m/
 
 
 def to_json(documents: list[dict[str, Any]]) -> str:
-    """Return JSON text: one document as an object, several as an array in the order given.
+    """Create JSON text, with one document as an object, several as an array in the order given.
 
-    Results, which name the `calm` that made them, say their units. A number that is not finite
-    becomes null, since JSON has none. The text is plain ASCII, so that no terminal or pipe can
-    spoil it.
+    Results, which have a key `calm`, also get their units. Numbers that are not finite become null.
+    The text is plain ASCII, so that no terminal or pipe can corrupt it.
     """
     told = [{**each, "units": UNITS} if "calm" in each else each for each in documents]
     content = told[0] if len(told) == 1 else told
@@ -155,5 +155,5 @@ def _finite(value: Any) -> Any:
 
 
 def members(value: object, *names: str) -> dict[str, Any]:
-    """Return what a document tells of an object: some of its attributes by their names."""
+    """Return the named attributes of an object as a dictionary."""
     return {name: getattr(value, name) for name in names}

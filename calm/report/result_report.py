@@ -21,7 +21,7 @@ from calm.report.sheet import leg_title, net_part, quality_of, summary_of, table
 
 
 def result_report(result: Result, uncertain: Uncertain | None = None) -> blocks.Report:
-    """Schematic, table, drawing and inputs of one result, and how sure its figures are."""
+    """Build the report of one result: schematic, table, drawing, inputs and uncertainty."""
     file = result.file
     limits: tuple[ReportPart, ...] = ()
     if result.several:
@@ -60,9 +60,9 @@ _ENDS = ("5 %", "50 %", "95 %")
 
 
 def uncertainty_part(uncertain: Uncertain) -> ReportPart:
-    """The line's ends and pieces at 5, 50 and 95 %, and what their spread comes from.
+    """Report the 5th, 50th and 95th percentiles for ends and pieces, and the causes of the spread.
 
-    It fits 80 columns.
+    Fits 80 columns.
     """
     each = ", ".join(f"{count} {status}" for status, count in uncertain.failures.items())
     said = f"{uncertain.failed} of {uncertain.samples} samples have no equilibrium ({each})"
@@ -78,7 +78,7 @@ def uncertainty_part(uncertain: Uncertain) -> ReportPart:
 
 
 def drawn_text(uncertainty: Uncertainty) -> str:
-    """Return what is drawn, and how far: ``current ±10 %, cable drag −15 to +30 %``."""
+    """Describe the sampled inputs and their spread: ``current ±10 %, cable drag −15 to +30 %``."""
     said = []
     for name in type(uncertainty).model_fields:
         spread: Spread = getattr(uncertainty, name)

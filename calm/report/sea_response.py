@@ -1,4 +1,4 @@
-"""Report of what waves do to a mooring."""
+"""Report of the response of a mooring to waves."""
 
 from collections.abc import Callable, Sequence
 from math import isnan
@@ -45,7 +45,7 @@ def sea_response_report(analysis: WaveAnalysis) -> blocks.Report:
 
 
 def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
-    """Return the pieces in the sea, or in the highest of several seas with a line of each."""
+    """Report the pieces in the (highest) sea state, and several sea states in a line each."""
     states, highest = analysis.states, _highest(analysis)
     title = f"Hs {highest.sea.significant_height:.1f} m, Tp {highest.sea.peak_period:.1f} s"
     told, several = Prose(tuple(_told(analysis, highest))), len(states) > 1

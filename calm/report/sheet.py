@@ -1,6 +1,6 @@
-"""Words about a result: the table of its line, its marks, and what is said around it.
+"""Text output of a result: the table of the line, its marks, and the summary.
 
-Of a net they are the table of its legs, its nodes, and what its ends bear.
+For a net: the table of its legs, its nodes, and its end loads.
 """
 
 import math
@@ -43,14 +43,14 @@ _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 def result_part(
     result: Result, facts: Sequence[tuple[str, str]] = (), *, verbose: bool = False
 ) -> ReportPart:
-    """A result in short: it fits 80 columns, where long labels wrap.
+    """Report a result in brief for 80 columns, in which long labels wrap.
 
-    A figure beyond its limit carries ``!`` and one near it ``~``, so that nothing hangs on colour.
+    Values beyond a limit carry ``!`` and values close to one ``~``, so that colour is not needed.
 
     Parameters
     ----------
-    facts : more about the line, after its summary
-    verbose : say how good the solution is, and how it was reached
+    facts : further facts on the line, after its summary
+    verbose : include the accuracy and convergence of the solution
     """
     if result.several:
         return net_part(result, verbose=verbose)
@@ -63,7 +63,7 @@ def result_part(
 
 
 def title_of(result: LegResult) -> str:
-    """Name and kind of what is solved."""
+    """Name of the mooring or tow, its kind and water depth or speed."""
     if (tow := result.file.tow) is not None:
         return f"{result.name}: tow at {say('speed', tow.speed)} towards {tow.toward:.0f}°"
     depth = say("depth", result.file.environment.depth)
@@ -97,7 +97,7 @@ def quality_of(result: LegResult) -> Prose:
 
 
 def _travel(profiler: ProfilerTravel) -> str:
-    """Return the way of a profiler: its stops, and where its wire leans most."""
+    """Describe the range of a profiler: its stops, and the maximum wire angle."""
     upper, lower, worst = (
         f"{say('depth', place.depth)} ({say('tension', place.tension)}, {say('tilt', place.tilt)})"
         for place in (profiler.upper, profiler.lower, profiler.worst)
@@ -132,7 +132,7 @@ def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
 
 
 def _line_text(result: LegResult) -> str:
-    """How long the line is, and where it is loaded most."""
+    """Describe the length of the line, its maximum tension and minimum safety factor."""
     rows = result.components
     told = f"{say('depth', sum(row.length for row in rows))} under load"
     if result.leg.anchored:
@@ -149,7 +149,7 @@ def _line_text(result: LegResult) -> str:
 
 
 def _anchor_text(result: LegResult) -> str:
-    """What the anchor weighs and is to weigh, and how it is pulled."""
+    """Describe the weight of the anchor, the required weight, and the anchor load."""
     anchor, share = result.anchor_load, ""
     if anchor.weight > 0.0:
         share = f" ({percent_used(anchor.required_weight / anchor.weight):.0f} %)"
@@ -164,7 +164,7 @@ def _anchor_text(result: LegResult) -> str:
 
 
 def _tow_summary(result: LegResult) -> Iterator[tuple[str, str]]:
-    """The loads at the ship, and where the body is."""
+    """Yield the loads at the ship, and the position of the body."""
     point, body = result.tow_point, result.body
     assert point is not None and body is not None
     at_ship, at_body = (
@@ -181,7 +181,7 @@ def _tow_summary(result: LegResult) -> Iterator[tuple[str, str]]:
 
 
 def _strumming(result: LegResult) -> tuple[str, ...]:
-    """Return how fast cables vibrate and what that makes, or would make, of their drag."""
+    """Describe the frequency of strumming, and its present or possible effect on drag."""
     strumming, band = result.strumming, result.strumming_band
     if strumming is not None:
         together = isinstance(result.file.solver.strumming, BourgetMarichalKeys)
@@ -195,7 +195,7 @@ def _strumming(result: LegResult) -> tuple[str, ...]:
 
 
 def _with(result: LegResult, band: StrummingBand) -> str:
-    """Return what the line would do with more drag on its cables."""
+    """Describe the effect of increased cable drag on the top or the body."""
     if band.status != Status.CONVERGED.label:
         return band.status
     assert band.depth is not None
@@ -211,7 +211,7 @@ def _with(result: LegResult, band: StrummingBand) -> str:
 
 
 def _level(result: LegResult, depth: float) -> str:
-    """Return how deep the body is, or how high it flies."""
+    """Depth of the body, or its height in air."""
     tow = result.file.tow
     if tow is not None and result.file.environment.fluid == "air":
         return f"{say('depth', depth + tow.height)} below the tow point"
@@ -262,7 +262,7 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
 
 
 def tilt_state(component: Component, tilt: float) -> State | None:
-    """Return how a tilt [deg] is marked: beyond `max_tilt` the component is not to be trusted."""
+    """State of a tilt [deg]: above `max_tilt` the data of the component are unreliable."""
     if component.max_tilt is not None and tilt > component.max_tilt:
         return State.FAIL
     if component.warn_tilt is not None and tilt > component.warn_tilt:
@@ -271,11 +271,10 @@ def tilt_state(component: Component, tilt: float) -> State | None:
 
 
 def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
-    """Return how a safety factor is marked: too small, or the piece bears more than its working
-    load.
+    """State of a safety factor: fail if it is too small, or if the working load is exceeded.
 
-    The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
-    mooring, for a synthetic cable, or for steel. What is not known, NaN, is not marked.
+    The required factor on the breaking load is `checks.safety_factor` for a surface mooring, a
+    synthetic cable, or steel. Unknown factors (NaN) are not marked.
     """
     # a leg of several shown as a whole is not asked what it is meant for
     alone = not (result.several or result.towed)
@@ -301,11 +300,11 @@ def _cells(
 
 
 def net_part(result: Result, *, verbose: bool = True) -> ReportPart:
-    """A net in short: a table of the pieces leg by leg, its nodes, its anchors and held ends.
+    """Report a net in brief: its pieces by leg, its nodes, anchors and held ends.
 
     Parameters
     ----------
-    verbose : say how good the solution is, and how it was reached
+    verbose : include the accuracy and convergence of the solution
     """
     depth = say("depth", result.file.environment.depth)
     count = len(result.legs)
@@ -317,7 +316,7 @@ def net_part(result: Result, *, verbose: bool = True) -> ReportPart:
 
 
 def leg_title(leg: LegResult) -> str:
-    """Name of a leg and what holds its ends."""
+    """Name of a leg and of its end connections."""
     top = "at the surface" if leg.type == "surface" else end_text(leg.leg.top)
     return f"{leg.name}: {top} to {end_text(leg.leg.bottom)}"
 
@@ -328,7 +327,7 @@ def leg_titles(result: Result) -> dict[str, str]:
 
 
 def ends_told(line: LegResult) -> tuple[str | None, str | None]:
-    """Return what a leg comes from and leads to; None where that is the sea or the seabed."""
+    """Describe the upper and lower connections of a leg; None for a free top or an anchor."""
     top, bottom = line.leg.top, line.leg.bottom
     return (
         None if top.free else f"from {end_text(top)}",
@@ -337,7 +336,7 @@ def ends_told(line: LegResult) -> tuple[str | None, str | None]:
 
 
 def end_text(end: EndKeys) -> str:
-    """Return what holds an end of a leg, in words."""
+    """Name the connection of a leg's end."""
     if end.join is not None:
         return f"node {end.join}"
     if end.held is not None:
@@ -363,7 +362,7 @@ def _ends(result: Result) -> Iterator[Table | Prose]:
 
 
 def _fields(rows: Sequence[Any]) -> Iterator[Field]:
-    """The columns of nodes or ends, without those that no row has."""
+    """Yield the columns of nodes or ends, omitting empty ones."""
     columns = shown_in(columns_of(type(rows[0])), Output.NET_TABLE)
     for one in sorted(columns, key=lambda one: one.place):
         known = any(getattr(row, one.name) is not None for row in rows)
@@ -372,7 +371,7 @@ def _fields(rows: Sequence[Any]) -> Iterator[Field]:
 
 
 def _convergence(result: Result) -> str:
-    """Return how the net was solved and how good that is."""
+    """Describe the convergence of the solution of a net, and its accuracy."""
     accuracy = result.accuracy
     left = max((node.imbalance for node in result.nodes), default=0.0)
     return (

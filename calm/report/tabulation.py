@@ -1,4 +1,4 @@
-"""A tow at many speeds: a table with a row for each, JSON, CSV and a picture."""
+"""Tow at many speeds, as table, JSON, CSV and plot."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from calm.case import Design, Result
 
 FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
-"""What a row tells of a result: depth and layback of the body, tension and angle at the ship."""
+"""Values of a row: depth and layback of the body, tension and angle at the ship."""
 
 _HEADINGS = {"body_tension": "tension\nat body"}
 _NOTE = "Depth and layback: of the body. Tension and angle: at the tow point, from the horizontal."
@@ -44,12 +44,12 @@ class TabulationRow:
 
     @property
     def result(self) -> Result | None:
-        """The equilibrium, where there is one."""
+        """Equilibrium, or None."""
         return None if isinstance(self.outcome, NoEquilibrium) else self.outcome
 
     @property
     def figures(self) -> dict[str, float | None]:
-        """`FIGURES` by name, None where unknown."""
+        """Values of `FIGURES` by name; None if unknown."""
         result = self.result
         if result is None:
             return dict.fromkeys(FIGURES)
@@ -83,7 +83,7 @@ class Tabulation:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Return what holds for every row that has an equilibrium."""
+        """Warnings that are common to all rows with an equilibrium."""
         warnings = [row.result.warnings for row in self.rows if row.result is not None]
         first = warnings[0] if warnings else ()
         return tuple(text for text in first if all(text in each for each in warnings))
@@ -133,10 +133,10 @@ def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
 
 
 def tabulation_part(tabulation: Tabulation) -> ReportPart:
-    """A line for each row; it fits 80 columns.
+    """Report one line per row, within 80 columns.
 
-    A row without equilibrium shows its status, one with warnings of its own a mark; warnings that
-    all rows share stand below.
+    A row without equilibrium shows its status, a row with its own warnings a mark; warnings common
+    to all rows follow the table.
     """
     speed = QUANTITIES["speed"]
     names = [name for name in FIGURES if name != "frequency" or tabulation.strumming]

@@ -1,4 +1,4 @@
-"""Blocks of a report on a terminal: tables without rules; nothing hangs on colour alone."""
+"""Report blocks on a terminal: tables without rules; colour is never essential."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -22,21 +22,21 @@ _STYLES = {
     State.PASS: "green", State.NOT_JUDGED: "", State.ACCEPTED: "", State.ESTIMATED: "green",
     State.WARN: "yellow", State.UNKNOWN: "bold", State.FAIL: "bold red",
 }  # fmt: skip
-"""How a state looks; its word or its mark shows it without colour."""
+"""Style of each state; a word or a mark shows it without colour."""
 _QUIET = "dim"
 _WARNED = _STYLES[State.FAIL]
 
 
 def shown(part: ReportPart, *, plain: bool = False) -> RenderableType:
-    """A part for a rich console, or with the signs of ASCII alone where it is to be plain.
+    """Convert a part for a rich console, with ASCII signs only if `plain`.
 
-    Its figures are left to what draws them there.
+    Figures are not included.
     """
     return Group(*_Printer(plain).part(part))
 
 
 class _Printer:
-    """Prints blocks with all signs, or with those of ASCII."""
+    """Printer of blocks, with all signs or ASCII signs only."""
 
     def __init__(self, plain: bool) -> None:
         self._sign = in_ascii if plain else str
@@ -151,7 +151,7 @@ class _Printer:
         return said
 
     def _text(self, text: str, style: str = "") -> Text:
-        """A text as it is: never markup, and nothing in it that steers a terminal."""
+        """Create a text without markup or terminal control sequences."""
         return _Words(self._sign(printable(text)), style=style)
 
 
@@ -201,16 +201,16 @@ class LongTable:
 
     Parameters
     ----------
-    table : its columns, and no rows yet
-    rows : what it is to have
-    gap : blanks between columns
+    table : table with columns but without rows
+    rows : rows to add
+    gap : number of blanks between columns
     """
 
     def __init__(self, table: table.Table, rows: Sequence[Row], gap: int) -> None:
         self._table, self._rows, self._gap = table, rows, gap
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """The lines, or the table of rich where a cell needs several."""
+        """Render plain lines, or a rich table if cells need several lines."""
         headings: list[list[Text]] = [
             list(column.header.split("\n")) if isinstance(column.header, Text) else []
             for column in self._table.columns

@@ -1,4 +1,4 @@
-"""Report of a verification: tables for people, a document for programs."""
+"""Report of a verification: tables for display, and a JSON document."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -21,12 +21,12 @@ _SMALL = 1e-3
 
 
 def verification_document(findings: Findings) -> dict[str, Any]:
-    """The JSON object: `calm`, how many figures verify and were `checked`, how many are `out`.
+    """Return the JSON object: `calm`, number of values `checked`, and number that is `out`.
 
-    `kinds` has the number of figures of each kind; those by construction are not `checked`.
-    `cases` has an object each: `source`, `name`, `kind`, `expected`, `got`, `difference`,
-    `tolerance`, `unit`, `why` (the reason for the tolerance), `within`, and `reason` where nothing
-    was got.
+    `kinds` counts the values of each kind; values that agree by construction are not counted in
+    `checked`. `cases` has one object per value: `source`, `name`, `kind`, `expected`, `got`,
+    `difference`, `tolerance`, `unit`, `why` (the reason for the tolerance), `within`, and `reason`
+    if no value was computed.
     """
     cases = [_case(source, outcome) for source, outcomes in findings for outcome in outcomes]
     kinds = by_kind(outcome.case for _, outcomes in findings for outcome in outcomes)
@@ -46,16 +46,16 @@ def by_kind(cases: Iterable[Case]) -> dict[Kind, int]:
 
 
 def verification_part(findings: Findings) -> ReportPart:
-    """A table for each source and kind, what is out marked with ``!``."""
+    """Build a table for each source and kind; values out of tolerance are marked with ``!``."""
     of_sources = (block for source, outcomes in findings for block in _of_source(source, outcomes))
     return ReportPart("", (*of_sources, _sum(findings)))
 
 
 def figures(outcome: CaseOutcome) -> tuple[str, ...]:
-    """The text of `COLUMNS`.
+    """Format the row of an outcome, in the order of `COLUMNS`.
 
-    What was got, and the difference, have one digit more than the tolerance, two where that many
-    are printed: what lies beyond is rounding, which differs between machines.
+    The computed value and the difference have one digit more than the tolerance, or two if the
+    expected value has that many. Further digits are rounding errors that differ between machines.
     """
     case = outcome.case
     expected = f"{case.expected:.12g}"

@@ -1,4 +1,4 @@
-"""A batch result in xarray: `dataset.calm`, from when this module is imported; a profile drawn."""
+"""Accessor `dataset.calm` of batch results in xarray, registered when this module is imported."""
 
 from __future__ import annotations
 
@@ -20,10 +20,9 @@ if TYPE_CHECKING:
 
 @xr.register_dataset_accessor("calm")  # type: ignore[no-untyped-call]
 class BatchAccessor:
-    """Give what a batch result has for a part of the line, by its label in the mooring file.
+    """Access batch results for a part of the line by its label in the mooring file.
 
-    ``top`` is the first component, even where another part is labelled so. Nothing is loaded
-    before it is asked for.
+    ``top`` is the first component, even if another part has that label. Data are loaded lazily.
 
     >>> dataset.calm.knockdown("adcp").max()  # doctest: +SKIP
     """
@@ -32,31 +31,31 @@ class BatchAccessor:
         self._dataset = dataset
 
     def depth(self, label: str) -> xr.DataArray:
-        """(time) depth of a clamp, or of the upper end of a component [m].
+        """Depth (time) of a clamp, or of the upper end of a component [m].
 
-        UsageError: no part of the line is called so, here and below.
+        UsageError, here and below, if the line has no part of that label.
         """
         return self._of(label, "depth", "depth_top")
 
     def knockdown(self, label: str) -> xr.DataArray:
-        """(time) how much deeper than in still water [m]."""
+        """Knockdown (time) relative to still water [m]."""
         return self._of(label, "knockdown", "knockdown")
 
     def tilt(self, label: str) -> xr.DataArray:
-        """(time) of a component, or of the line at a clamp, from the vertical [degrees]."""
+        """Tilt (time) of a component, or of the line at a clamp, from the vertical [degrees]."""
         return self._of(label, "tilt", "tilt")
 
     def tension(self, label: str) -> xr.DataArray:
-        """(time) at a clamp, or the greater of those at both ends of a component [N]."""
+        """Tension (time) at a clamp, or the larger end tension of a component [N]."""
         upper, lower = (self._of(label, "tension", f"tension_{end}") for end in ("top", "bottom"))
         greater: xr.DataArray = upper.where(upper >= lower, lower)
         return greater
 
     def plot_shape(self, *, time: str | np.datetime64, ax: Axes | None = None) -> Axes:
-        """Draw the line from the side, in the profile nearest to a time, on axes of matplotlib.
+        """Draw the side view of the line in the profile nearest to a time, on matplotlib axes.
 
-        Without `ax` the axes are those of a new figure. UsageError: the profile has no equilibrium,
-        or matplotlib is not installed.
+        Without `ax`, a new figure is created. Raises UsageError if the profile has no equilibrium,
+        or if matplotlib is not installed.
         """
         axes = plot_elevation(shape_picture(self._dataset, time), ax)
         moment = when(_nearest(self._dataset, time)["time"].values)
@@ -66,7 +65,7 @@ class BatchAccessor:
         return axes
 
     def _of(self, label: str, quantity: str, of_component: str) -> xr.DataArray:
-        """Return what a variable has for a component, or that of the same quantity for a clamp."""
+        """Variable of a component, or the same quantity of a clamp."""
         prefix, index = place_of(self._dataset, label)
         variable = f"{prefix}{quantity}" if prefix else of_component
         dimension = "clamp" if prefix else "component"

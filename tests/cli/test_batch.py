@@ -185,7 +185,7 @@ def test_a_tow_and_an_input_as_output_are_refused(calm, write_mooring, record, f
     assert (done.code, "is a tow" in done.err) == (2, True)
     done = calm("batch", write_mooring(), "--currents", record, "-o", record)
     assert done.code == 2
-    assert "it is kept" in done.err
+    assert "was not overwritten" in done.err
 
 
 def test_links_that_lead_nowhere_are_refused(calm, write_mooring, record, folder):

@@ -228,7 +228,7 @@ def test_what_was_interpolated_never_counts(calm, depths):
     wrong[:, 1] += 200.0
     write_values("v.nc", wrong, flags=flags)
     result, run = gridded(calm, "v.nc", "--flags", "1,2")
-    assert "temperature: 60 values are left out because of their flag" in run.err
+    assert "temperature: 60 values excluded because of their flag" in run.err
     assert "temperature: middle has no good value" in run.err
     off = result["temperature"].values - profile(result["depth"].values)
     assert np.abs(off[result["temperature_qc"].values == 8]).max() < 0.02
@@ -316,7 +316,7 @@ def test_bad_inputs_are_refused(calm, depths, folder):
         calm, "depths.nc", "v.nc", "twin.nc"
     )
     run = calm("grid", "depths.nc", "v.nc", "-o", "depths.nc", "--levels", "100,200")
-    assert run.code == 2 and "it is kept" in run.err
+    assert run.code == 2 and "was not overwritten" in run.err
     assert "v.nc holds 4 instruments" in refused(calm, "depths.nc", "upper=v.nc")
     assert not (folder / "out.nc").exists()
 

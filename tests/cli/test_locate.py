@@ -90,12 +90,12 @@ def test_it_is_compared_with_the_plan(calm, ranges, write_mooring, folder):
     assert "m.yaml: 111 m towards 180° of the planned position" in done.err
     assert "3.3 m less deep than planned" in done.err
     assert "far from the planned" not in done.err
-    assert "--sound-speed is not used: ranges in metres are taken as they are" in done.err
+    assert "--sound-speed is ignored because the ranges are already in metres" in done.err
     done = located("latitude: 48.4 deg, longitude: -5.2 deg", depth=1500)
     assert done.code == 1
     assert "deployed" not in (folder / "m.yaml").read_text()
-    assert "m.yaml is not written: the depth, 1997 m, is far from the planned 1500 m; " in done.err
-    assert "; the place is 11.1 km from the planned position. --accept" in done.err
+    assert "m.yaml was not changed: the depth, 1997 m, is far from the planned 1500 m; " in done.err
+    assert "; the place is 11.1 km from the planned position. Use --accept" in done.err
     assert "that is far from the planned position" in done.err
     done = located("latitude: -5.2 deg, longitude: 48.3 deg")
     assert done.code == 2
@@ -150,7 +150,7 @@ def test_of_two_places_the_one_near_the_plan_is_taken(calm, ranges, write_moorin
 
     done, document, updated = written()
     assert (done.code, updated) == (1, False)
-    assert "m.yaml is not written: two places fit; say with --near LAT,LON" in done.err
+    assert "m.yaml was not changed: two places fit; say with --near LAT,LON" in done.err
     assert document["second"]["distance"] == pytest.approx(2000.0, rel=0.01)
     assert written("--accept")[2]
     for position, side in (("48 18.5 N", 1.0), ("48°17.5'N", -1.0)):
@@ -252,7 +252,8 @@ def test_what_scatters_more_than_ranging_does_is_not_written(calm, ranges, write
     write_mooring("m.yaml")
     done = calm("locate", ranges("\n".join(made) + "\n"), "--update", "m.yaml")
     assert done.code == 1
-    assert re.search(r"not written: the ranges scatter by \d+ m, more than ranging does", done.err)
+    scattered = r"was not changed: the ranges scatter by \d+ m, more than ranging does"
+    assert re.search(scattered, done.err)
     assert "deployed" not in (folder / "m.yaml").read_text()
 
 

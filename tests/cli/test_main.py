@@ -71,7 +71,7 @@ def test_help_of_every_command_shows_an_example(calm, command):
         (["run", "m.yaml", "--enviroment", "x"], "--environment"),
         (["catalog", "shwo", "x"], '"show"'),
         (["catalog", "list", "--kind", "rope"], "chain"),
-        (["schema", "m.yaml"], "too many words: m.yaml"),
+        (["schema", "m.yaml"], "unexpected argument: m.yaml"),
     ],
 )
 def test_wrong_usage_is_one_line_with_the_nearest(calm, words, told):

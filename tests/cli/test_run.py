@@ -264,7 +264,7 @@ def test_files_that_ask_for_different_units_are_shown_in_si_and_it_is_said(calm,
             file.write(f"units: {{force: {unit}}}\n")
     done = calm("run", "a.yaml", "b.yaml")
     assert done.code == 0
-    assert "the files ask for different units; SI is shown: choose with --units" in done.err
+    assert "the files set different units; results are in SI (use --units to choose)" in done.err
     assert "kgf" not in done.out
     alone = calm("run", "a.yaml")
     assert "kgf" in alone.out

@@ -100,7 +100,7 @@ def test_a_broken_file_is_told_as_ever(calm, broken):
 def test_the_mooring_file_is_not_overwritten(calm, write_mooring):
     done = calm("size", write_mooring(), *TARGET, "--json", "m.yaml")
     assert done.code == 2
-    assert "m.yaml is a mooring file; it is kept" in done.err
+    assert "m.yaml is a mooring file and was not overwritten" in done.err
 
 
 def test_tows_are_refused(calm, folder):

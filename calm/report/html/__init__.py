@@ -1,4 +1,4 @@
-"""A report as one HTML page that needs no other file and no network."""
+"""A report as a self-contained HTML page, without other files or network access."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ if TYPE_CHECKING:
 
 _LONG_WORD = re.compile(r"(\S{20,})")
 _STEPS = re.compile(r"[^_./-]{1,10}[_./-]*|[_./-]+")
-"""Where a long word may break: after a sign between words, else at every tenth sign."""
+"""Positions where a long word may break: after a separator, else every ten characters."""
 
 
 def leaf(section: Section, number: int) -> str:
-    """Return what the page shows of a section, the `number`th from 1."""
+    """Render section number `number` (from 1) as HTML."""
     template = _environment().get_template("parts.html.jinja")
     shown: str = template.module.parts(section.parts, f"m{number}")  # type: ignore[attr-defined]
     return shown
 
 
 def page(report: Report, leaves: Sequence[str] | None = None) -> str:
-    """Any report as a page, the section of each mooring in order.
+    """Render a report as a page, with the section of each mooring in order.
 
-    Every text is escaped; one that is no Unicode shows question marks. The page asks for nothing:
-    style, script and drawings stand in it. It is whole without its script, which sorts and chooses
-    among the checks. `leaves` are the sections as `leaf` has them, where they are made already.
+    All texts are escaped, and invalid Unicode becomes question marks. Style, script and drawings
+    are embedded. The page is complete without its script, which sorts and filters the checks.
+    `leaves` are sections already rendered by `leaf`.
     """
     leaves = leaves or [leaf(section, at) for at, section in enumerate(report.sections, 1)]
     template = _environment().get_template("page.html.jinja")
@@ -45,7 +45,7 @@ def page(report: Report, leaves: Sequence[str] | None = None) -> str:
 
 
 def fragment(part: ReportPart) -> str:
-    """A part as a notebook shows it: without the style of a page, and what fits its width."""
+    """Render a part for a notebook: without page style, and limited to its width."""
     blocks = tuple(one.narrow() if isinstance(one, Table) else one for one in part.blocks)
     template = _environment().get_template("parts.html.jinja")
     shown: str = template.module.parts([replace(part, blocks=blocks)], "n")  # type: ignore[attr-defined]
@@ -87,7 +87,7 @@ def _breakable(text: str) -> str:
 
 
 def _kinds(columns: Sequence[Column]) -> list[str]:
-    """The attribute of every cell of a column: figures, or words, the more the wider it is."""
+    """Class attributes of the cells of each column: numbers, or text by width."""
     from markupsafe import Markup
 
     def kind(column: Column) -> str:
