@@ -51,7 +51,7 @@ async def screen(file: Path, size: tuple[int, int], keys: tuple[str, ...]) -> st
 
 
 def main() -> int:
-    """Draw all, or compare them with what there is; the exit code."""
+    """Draw all pictures, or compare them with the existing files; return the exit code."""
     os.environ.pop("NO_COLOR", None)
     stale = []
     with tempfile.TemporaryDirectory() as state:

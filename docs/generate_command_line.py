@@ -36,7 +36,7 @@ def commands(parent: App, words: tuple[str, ...] = ()) -> Iterator[tuple[str, ..
 
 
 def help_of(words: tuple[str, ...]) -> str:
-    """What `calm WORDS --help` prints on a page of 80 columns."""
+    """Output of `calm WORDS --help` on a page of 80 columns."""
     os.environ.update(COLUMNS="80", NO_COLOR="1", TERM="dumb")
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
@@ -75,7 +75,7 @@ def manual() -> str:
 
 
 def roff(text: str) -> str:
-    """Text that man prints as it is: no frames, hyphens as typed, no line read as a request."""
+    """Escape text for man: no frames, hyphens as typed, no line read as a request."""
     lines = (line.strip("│╭╮╰╯─").rstrip() for line in text.splitlines())
     escaped = (line.replace("\\", "\\e").replace("-", "\\-") for line in lines)
     return "\n".join(f"\\&{line}" if line[:1] in (".", "'") else line for line in escaped)

@@ -59,7 +59,7 @@ async def frames(folder: Path) -> list[str]:
 
 
 def animated(pictures: list[str]) -> str:
-    """One SVG that shows the pictures one after the other, for ever, and fetches nothing."""
+    """Combine the pictures into a self-contained SVG that shows them in an endless loop."""
     total = SECONDS * len(pictures)
     share = 100.0 / len(pictures)
     size = re.search(r'viewBox="([^"]*)"', pictures[0])
@@ -84,7 +84,7 @@ def animated(pictures: list[str]) -> str:
 
 
 def _alone(picture: str, number: int) -> str:
-    """What is inside a picture, without fonts to fetch, its names apart from the others'."""
+    """Content of a picture, without web fonts and with unique names."""
     picture = re.sub(r"\s*@font-face \{.*?\}", "", picture, flags=re.DOTALL)
     picture = re.sub(r"\s*<!-- Generated .*?-->", "", picture)
     picture = re.sub(r"terminal-\d+", f"t{number}", picture)
@@ -94,12 +94,12 @@ def _alone(picture: str, number: int) -> str:
 
 
 def words(svg: str) -> list[str]:
-    """What a recording says, without the signs of its frames, pictures and scroll bars."""
+    """Text of a recording, without the signs of its frames, pictures and scroll bars."""
     return re.findall(r"[\w.+-]+", " ".join(re.findall(r"<text[^>]*>([^<]*)</text>", svg)))
 
 
 def main() -> int:
-    """Record, or compare what is said with what was recorded; the exit code."""
+    """Record, or compare the text with the previous recording; return the exit code."""
     with tempfile.TemporaryDirectory() as name:
         os.environ.update(XDG_STATE_HOME=f"{name}/state", XDG_CONFIG_HOME=f"{name}/configuration")
         os.environ.pop("NO_COLOR", None)

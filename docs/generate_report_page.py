@@ -2,8 +2,8 @@
 
 python docs/generate_report_page.py
 
-The extra `dev` brings what draws it. The bytes depend on the versions of the libraries, so nothing
-compares them.
+The extra `dev` installs the packages that draw it. The bytes depend on
+the versions of the libraries, so they are not compared.
 """
 
 import subprocess

@@ -19,12 +19,12 @@ def table() -> str:
         f"| `{name}` | {text.judges} | {text.limit} | {text.source} |"
         for name, text in RULES.items()
     ]
-    heads = ["| rule | what is judged | limit | source |", "| --- | --- | --- | --- |"]
+    heads = ["| rule | judged | limit | source |", "| --- | --- | --- | --- |"]
     return "\n".join([*heads, *rows]) + "\n"
 
 
 def page() -> str:
-    """The text of the page with the table in its place."""
+    """Text of the page with the new table inserted."""
     text = PAGE.read_text(encoding="utf-8")
     before, _, rest = text.partition(BEGIN)
     _, _, after = rest.partition(END)

@@ -96,13 +96,13 @@ def contents() -> str:
 
 
 def anchor(title: str) -> str:
-    """Where a heading is on the page, as GitHub names it."""
+    """Anchor of a heading, in GitHub's form."""
     kept = (sign for sign in title.lower() if sign.isalnum() or sign in " -")
     return "".join(kept).replace(" ", "-")
 
 
 def section(source: Source) -> str:
-    """A source: where its figures come from, its picture."""
+    """Section of a source: origin of its figures, and its picture."""
     figures_of_it = f"../reference/verification-figures.md#{anchor(source.title)}"
     parts = [f"## {source.title}", source.text, f"[The figures]({figures_of_it})"]
     if source.picture:
@@ -138,7 +138,7 @@ def table(outcomes: list[CaseOutcome]) -> Iterator[str]:
 
 
 def draw_cdms_1() -> Figure:
-    """Shape and tensions of CDMS-1 with what the programs print."""
+    """Shape and tensions of CDMS-1, with the results of the programs."""
     figure = Figure(figsize=(9, 5), layout="constrained")
     shape, tension = figure.subplots(1, 2, sharey=True)
     answer = solved_moorings.solved_cdms_1()
@@ -200,7 +200,7 @@ def draw_convergence() -> Figure:
 
 
 def finish(axes: Axes, steps: np.ndarray, errors: np.ndarray) -> None:
-    """Scales and labels of errors by angle step, and a line of second order beside them."""
+    """Scales and labels of errors by angle step, with a line of second order."""
     axes.plot(steps, 2.0 * errors[0] * (steps / steps[0]) ** 2, **ORDER_TWO)
     axes.set(xscale="log", yscale="log", xlabel="angle step [°]", ylabel="error [m]")
     axes.set_xticks(steps, [f"{step:g}" for step in steps], minor=False)

@@ -1,4 +1,4 @@
-"""Build the manual as a site that needs no network: pages, the made ones too, and a zip of it.
+"""Build the manual as an offline site: written pages, generated pages, and a zip file.
 
 python docs/make_site.py [-o FOLDER]
 
@@ -31,7 +31,7 @@ DOCS = Path(__file__).resolve().parent
 
 
 def stage(folder: Path) -> None:
-    """Copy what is written by hand to where the made pages join it."""
+    """Copy the hand-written pages to the folder of the generated pages."""
     shutil.copytree(
         DOCS, folder, ignore=shutil.ignore_patterns("*.py", "__pycache__", "*.nc", "_site*")
     )
@@ -58,7 +58,7 @@ def make(folder: Path) -> None:
 
 
 def build(target: Path) -> None:
-    """Make the site in the folder `target`, and the zip beside it; exit 1 where Sphinx warns."""
+    """Build the site in `target`, and the zip next to it; exit 1 if Sphinx warns."""
     with tempfile.TemporaryDirectory() as work:
         sources, site = Path(work) / "sources", Path(work) / "site"
         stage(sources)
@@ -66,7 +66,7 @@ def build(target: Path) -> None:
         options = ["-b", "html", "-W", "--keep-going", "-q", "-j", "2"]
         sphinx = [sys.executable, "-m", "sphinx", *options, sources, site]
         if subprocess.run(sphinx, check=False).returncode:
-            sys.exit("the site is not built: mend what is named above")
+            sys.exit("the site was not built: correct the errors listed above")
         write_page(site / "try")
         if wrong := sorted(dead_ends(site)):
             sys.exit("\n".join(wrong))
@@ -79,7 +79,7 @@ def build(target: Path) -> None:
 
 
 def dead_ends(site: Path) -> Iterator[str]:
-    """Links of the site that lead nowhere inside it, and what a page would fetch from outside."""
+    """Broken links inside the site, and external resources of its pages."""
     ids = {page: set(_ID.findall(page.read_text("utf-8"))) for page in site.rglob("*.html")}
     for page in ids:
         for tag, address in _LINK.findall(page.read_text("utf-8")):

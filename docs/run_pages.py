@@ -1,8 +1,8 @@
-"""Run the tutorials and the how-to pages as a reader would, and hold their outputs to what comes.
+"""Run the commands of the tutorials and how-to pages, and update or compare their outputs.
 
 python docs/run_pages.py                     # write outputs and pictures into all pages
 python docs/run_pages.py PAGE...             # into these
-python docs/run_pages.py --check [PAGE...]   # exit 1 where a page shows something else
+python docs/run_pages.py --check [PAGE...]   # exit 1 if a page shows another output
 
 A page runs from top to bottom in a folder with nothing but `lines/` and `docs/field/` of the
 checkout:
@@ -41,12 +41,12 @@ RUNS = "<!-- runs -->"
 
 
 class PageError(Exception):
-    """What a page says and what comes differ."""
+    """The output on a page differs from the output of its commands."""
 
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced block, what the comment above it orders, and where its text stands in the page."""
+    """A fenced block, the order in the comment above it, and the position of its text."""
 
     language: str
     text: str
@@ -73,12 +73,12 @@ def blocks(page: str) -> list[Block]:
 
 
 def run(block: Block, folder: Path) -> str:
-    """What a block prints.
+    """Run a block and return its output.
 
     Raises
     ------
     PageError
-        It ends with another exit code than the page says.
+        The exit code differs from the one on the page.
     """
     command = ["bash", "-euo", "pipefail", "-c", block.text]
     if block.language == "python":
@@ -99,7 +99,7 @@ def run(block: Block, folder: Path) -> str:
 
 
 def edit(block: Block, file: Path) -> None:
-    """Change lines of a file as a diff says.
+    """Apply a diff block to a file.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def edit(block: Block, file: Path) -> None:
 
 
 def agrees(shown: str, printed: str) -> bool:
-    """Whether what a page shows, with its elisions, is what was printed."""
+    """Whether the output on a page, with its elisions, agrees with the printed output."""
     # "(?s:.*)" for a line that is an elision, ".*" for one within a line
     lines = [
         "(?:.*\n)*"
@@ -128,7 +128,7 @@ def agrees(shown: str, printed: str) -> bool:
 
 
 def renewed(shown: str, printed: str) -> str:
-    """What to show now: the lines that begin as those shown did, or everything printed."""
+    """New output to show: the lines that begin like the lines shown before, or all lines."""
     if ELISION not in shown:
         return printed
     rest, now = printed.splitlines(keepends=True), []
@@ -145,7 +145,7 @@ def renewed(shown: str, printed: str) -> str:
 
 
 def stem(line: str) -> str:
-    """What a line begins with, up to its first figure."""
+    """Start of a line, up to its first number."""
     return re.split(r"[\d…]", line)[0].rstrip()
 
 
@@ -191,7 +191,7 @@ def follow(page: Path, *, check: bool) -> None:
 
 
 def keep_pictures(page: Path, text: str, folder: Path, *, check: bool) -> None:
-    """Put the pictures that the commands have made beside the page.
+    """Copy the pictures made by the commands to the folder of the page.
 
     Raises
     ------

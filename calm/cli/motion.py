@@ -33,6 +33,7 @@ def motion(
     match: str = "label",
     fit: str | None = None,
     hold_out: str | None = None,
+    without: str | None = None,
     cross_validate: bool = False,
     correct: str | None = None,
     prior: Path | None = None,
@@ -73,6 +74,8 @@ def motion(
     hold_out
         Labels of sensors, separated by commas, to hide everywhere; the result
         at these is compared with interpolation between the others.
+    without
+        Labels of sensors, separated by commas, to leave out altogether.
     cross_validate
         Hide each sensor in turn, and compare.
     correct
@@ -151,6 +154,7 @@ def motion(
     recovery = RecoveredMooring(
         mooring, pressures, currents, match, _separated(fit), _separated(hold_out),
         cross_validate, _separated(correct), sea_level, flags, apart, turned, prior,
+        _separated(without),
     )  # fmt: skip
     for card in recovery.cards:
         narrate_card(card)

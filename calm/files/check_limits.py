@@ -26,7 +26,7 @@ _SHARE = definition.QuantityField("number", at_least=0, at_most=1)
 _SPEED = definition.QuantityField("speed", at_least=0)
 _LEAST_TENSION = definition.QuantityField("force", at_least=0)
 
-THIS_PROGRAM = "a default of this program"
+THIS_PROGRAM = "a default of CALM"
 THE_DESIGN = "the design"
 
 

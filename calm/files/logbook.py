@@ -135,12 +135,26 @@ class ReleaseKeys(definition.Model):
         return (self.codes,) if isinstance(self.codes, str) else self.codes or ()
 
 
+class ClockCheck(definition.Model):
+    """The clock of an instrument against the true time, after recovery."""
+
+    checked: Moment = described("time of the check", "2028-03-02T10:40")
+    late: Annotated[float, definition.QuantityField("time")] = described(
+        "delay of the clock; negative if it was ahead", "12 s"
+    )
+
+
 class DeployedItem(definition.Model):
     """A piece or a clamp as deployed; a cable was cut to `length` [m]."""
 
     label: Text = described("label of the piece or clamp in results", "wire-jacketed-8")
     serial: Text | None = optional("serial number; a list of as many as `count`", 12345)
     length: definition.PositiveLength = optional("length to which a cable was cut", "480 m")
+    clock: ClockCheck | None = optional(
+        "delay of an instrument's clock when it was checked; the delay grows evenly from the "
+        "deployment on",
+        {"checked": "2028-03-02T10:40", "late": "12 s"},
+    )
     remark: Text | None = optional("any remark", "one terminal remade")
 
 

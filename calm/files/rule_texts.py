@@ -44,8 +44,8 @@ RULES = {
     "current": RuleText("Current", "speed",
         "the strongest current of all environments; the levels of each profile",
         "a warning below 0.2 m/s, below 0.9 of the strongest current of the record that "
-        "an environment is taken from, below a fiftieth of that of another environment, "
-        "or where a tenth of the depth and 25 m at either end have no level",
+        "an environment is taken from, below a fiftieth of another environment's strongest "
+        "current, or if the levels leave out a tenth of the depth and 25 m at either end",
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 of its speed, 0.2 "
         "m/s at 7 m/s",
         "the profiles of a record are the current"),
@@ -57,13 +57,13 @@ RULES = {
         "Constant coefficients hold up to 2e5; beyond it, the drag of smooth shapes falls",
         "the profiles of a record are solved with one law of drag"),
     "environment": RuleText("Environment", "",
-        "values of an environment that are possible but probably mistakes: directions in radians, "
-        "a level opposite to both its neighbours, a current that increases down to the seabed or "
-        "exceeds any in deep water, an implausible density, tides of more than 20 m, wind of more "
-        "than 75 m/s; levels of a storm below half of the ordinary current; no `wind` although a "
-        "float at the surface has a `wind_area`",
+        "possible but unusual values of an environment: directions that look like radians, a level "
+        "opposite to both its neighbours, a current that increases down to the seabed or exceeds "
+        "any current of deep water, a density that no sea has, tides of more than 20 m, wind of "
+        "more than 75 m/s; levels of a storm weaker than half of the ordinary current; no `wind` "
+        "although a surface float has a `wind_area`",
         "a warning",
-        "Defaults of this program: ranges of the sea, and common input errors",
+        "Defaults of CALM: ranges found at sea, and common typing errors",
         "environments are compared with each other, by `calm check`"),
     "missing": RuleText("Missing figures", "",
         "figures that rules need and a component lacks: one finding for each component id "
@@ -101,8 +101,8 @@ RULES = {
         "every piece, compared with the cables above and below it",
         "half of their strength, if sources give both, for a piece with more than half of its "
         "allowable load: a warning",
-        "A default of this program: half the strength of the adjacent cables",
-        "the strengths of pieces side by side do not change with the current"),
+        "A default of CALM: half the strength of the adjacent cables",
+        "the strengths of adjacent pieces do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",
         "every instrument, release and clamp",
         "its own `max_tilt`, and `maximum_tilt` if given; a warning from its `warn_tilt`",
@@ -110,20 +110,20 @@ RULES = {
         "20°, release 45°, sediment trap 10°",
         figures=("max_tilt",)),
     "depth-rating": RuleText("Depth rating", "depth",
-        "depth in the current; for a surface float only if it has a rating",
+        "depth in the current; for a surface float, only if its rating is specified",
         "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
         "Rating given by the manufacturer, less a margin for a stronger current than expected",
         figures=("depth_rating",)),
     "top-depth": RuleText("Depth of the top", "depth",
         "minimum depth of the top of a subsurface line, also at low water",
         "`minimum_top_depth`: a failure; by default 10 m: a warning",
-        "A default of this program: clear of waves, hulls and nets"),
+        "A default of CALM: clear of waves, hulls and nets"),
     "planned-depth": RuleText("Planned depth", "depth",
         "distance of every piece and clamp with a `planned_depth`, or with a depth in its label, "
         "from that depth in still water",
         "the larger of `planned_depth_warning`, 10 m, and 2 % of the planned depth: a warning; "
         "`planned_depth_limit`, 10 % of the planned depth: a failure; not checked without one",
-        "A default of this program: an instrument at another depth than planned measures "
+        "A default of CALM: an instrument at another depth than planned measures "
         "other water, or a length or the water depth is wrong",
         _ONCE),
     "stretch": RuleText("Stretch", "length",
@@ -131,7 +131,7 @@ RULES = {
         "unknown if published stiffnesses of such ropes mean a stretch of more than 2 % of the "
         "water depth; a warning if it is measured under more than its working load, or "
         "a fifth of its breaking load",
-        "A default of this program: soundings have a similar error; ropes are measured under "
+        "A default of CALM: soundings have a similar error; ropes are measured under "
         "a small load"),
     "fish-bite": RuleText("Fish bite", "depth",
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
@@ -212,33 +212,34 @@ RULES = {
         "the error of a sounding, 1 m and 2.3 % of the depth: a warning",
         "IHO S-44, order 2: the error of a sounding, 95 %",
         _ONCE),
-    "figures": RuleText("Figures of components", "",
-        "figures of pieces and clamps that are impossible for their size and material: lift, "
+    "figures": RuleText("Figures of components",
+        "",
+        "figures of pieces and clamps that are impossible for their size and material: buoyancy, "
         "mass, density, stiffness, strength, depth rating, coefficients of drag",
         "a failure; a warning if `warn_tilt` exceeds `max_tilt`, for an instrument that floats and "
-        "for a `wind_area` out of proportion; unknown if the line overrides a figure by a more "
-        "favourable one without a `source`, and for a `material` that is unknown or differs from "
+        "for a `wind_area` out of proportion; unknown if the line replaces a value by a more "
+        "favourable value without a `source`, and for a `material` that is unknown or contradicts "
         "the `name`",
         "The rules of `calm catalog check`",
         _ONCE),
     "release-present": RuleText("Release", "",
         "whether a piece of a subsurface line has `role: release`, and whether it frees the line",
-        "unknown if none has, or if it is clamped or named a shackle, swivel, rope or the "
-        "like; a failure if nothing above it floats; a warning for a single one in more than 100 m "
-        "of water (none is named double, dual, twin or pair), for less than 1 m between it and the "
-        "anchor, and if a float is below it",
-        "Defaults of this program: a line that is recovered has a release",
+        "unknown without such a piece, or if it is clamped or has the name of a shackle, swivel, "
+        "rope or the like; a failure without buoyancy above it; a warning for a single release in "
+        "more than 100 m of water (no name has double, dual, twin or pair), for less than 1 m "
+        "between release and anchor, and for a float below it",
+        "Defaults of CALM: a line that is recovered has a release",
         _ONCE),
     "hardware": RuleText("Hardware", "",
         "whether any piece of the line has `role: connector`",
-        "a warning if none has",
-        "A default of this program: connectors have weight, drag and a strength",
+        "a warning if no piece has `role: connector`",
+        "A default of CALM: connectors have weight, drag and a strength",
         _ONCE),
     "joints": RuleText("Joints", "",
-        "whether a piece with `role: connector` joins every two different pieces (wire, chain, "
-        "rigid pieces), except spliced ropes and wires with a `termination`",
-        "one warning for all joints of the line; none for a line without any hardware",
-        "A default of this program: a shackle that is not listed is neither bought nor checked",
+        "whether a piece with `role: connector` joins every two adjacent pieces of different kinds "
+        "(wire, chain, rigid); ropes, which are spliced, and wires with a `termination` are exempt",
+        "a warning, one for all joints of the line; not for a line without any hardware",
+        "A default of CALM: a shackle that is not listed is neither bought nor judged",
         _ONCE),
     "clamp-place": RuleText("Places of the clamps", "",
         "clamps on a cable or chain that overlap, or extend beyond its end",
@@ -246,18 +247,18 @@ RULES = {
         "Two parts cannot be in the same place",
         _ONCE),
     "serials-and-dates": RuleText("Serial numbers and dates", "",
-        "labels of several rows, but for connectors; serial numbers of several items of one "
-        "component; codes of a release that is not in the line, or of two; batteries that end "
-        "before the deployment or the calibration, calibrations after the deployment; a document "
-        "that is not its latest revision, revisions out of order",
+        "labels that several rows share, except connectors; serial numbers that several items of "
+        "one component share; codes of a release that is not in the line, or that two releases "
+        "share; batteries that end before the deployment or the calibration, calibrations after "
+        "the deployment; a document that is not its latest revision, revisions out of order",
         "a warning",
-        "A default of this program: sheets and labels must be consistent",
+        "A default of CALM: sheets and labels must not contradict each other",
         _ONCE),
     "swivel": RuleText("Swivel", "",
         "steel wire that ends at a float with no chain or rope between",
         "a swivel between them or at its other end, or wire that is `torque_balanced` by that key "
         "or, without it, by its name, material or note: otherwise a warning",
-        "A default of this program: wire that twists under load kinks when it is unloaded",
+        "A default of CALM: wire that twists under load kinks when it is unloaded",
         _ONCE),
     "metals": RuleText("Dissimilar metals", "potential",
         "adjacent pieces, and clamps with `insulated: false` on their pieces, if both have a metal "
@@ -267,8 +268,8 @@ RULES = {
         "surroundings (Pantaenius)",
         _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "tension",
-        "net buoyancy of the part that remains connected to the release after the worst break or "
-        "loss of a float considered (below)",
+        "minimum net buoyancy of the part that remains connected to the release, over all breaks "
+        "and losses of a float considered (below)",
         "`backup_margin`, 0.1 of the weight lifted, or its drag at `minimum_rise_speed` if that is "
         "more; not judged for a float that alone brings up a line, at most 50 m above the release; "
         "a warning for a surface mooring without floats below its buoy",
@@ -285,18 +286,18 @@ RULES = {
     "launch-speed": RuleText("Speed at touchdown", "speed",
         "speed of the anchor at touchdown",
         "2.5 m/s: a warning",
-        "A default of this program: a faster anchor may bury itself or break equipment on it",
+        "A default of CALM: a faster anchor may bury itself or break equipment on it",
         _ONCE, figures=("kt",)),
     "recovery": RuleText("Rise", "speed",
-        "speed of the rise without the anchor, of a line with a release or below the surface",
+        "rise speed without the anchor, for a line with a release or below the surface",
         "`minimum_rise_speed`, 0.3 m/s; a warning below 0.7 m/s and above 3 m/s",
-        "Defaults of this program: below 0.3 m/s a rise is uncertain, below 0.7 m/s it is slow; "
-        "above 3 m/s floats jump and the line forms loops",
+        "Defaults of CALM: below 0.3 m/s a rise is uncertain, below 0.7 m/s it is slow; "
+        "above 3 m/s floats breach and the line may loop",
         _ONCE),
     "tangling": RuleText("Tangling", "",
-        "whether a part overtakes the parts ahead of it in the fall or the rise",
+        "whether a part overtakes the parts ahead during the fall or the rise",
         "a warning",
-        "A default of this program: no part overtakes those ahead of it",
+        "A default of CALM: no part overtakes the parts ahead",
         _ONCE),
 }  # fmt: skip
 """All rules by id, in the order of the report."""

@@ -1,20 +1,14 @@
-"""Unknowns common to a whole record: factors on the line, the datum, and where its sensors hang.
+"""Unknowns common to a whole record: factors on the line, the datum, and offsets of its sensors.
 
-The normal prior of an offset, a metre, cannot believe in a clamp that sits ten metres lower: it
-would bend the factors and the datum instead. So every way the sensors may hang is a normal prior of
-its own: all as the file says, or one or two of them elsewhere, throughout or from the time on at
-which their record says so most clearly. The pressures weigh these ways, and the mean and the
-covariance of the mixture are taken. Where two sensors cannot tell which of them it is, the
-covariance is as wide as that. A sensor may drift instead: its error grows over the record, or
-settles early in it.
+And the law by which faults of sensors are weighed: slips, drifts and steps of all sensors alike,
+by what many times say of them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import chain, combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,22 +26,15 @@ REACH = 5.0
 class Common:
     """Hold what is common to the whole record, as far as it is known.
 
-    The q columns of the covariance are the logarithms of the factors, the datum [m], the offsets
-    of the sensors [m], and how far down the line they have moved [m].
+    The q columns of the covariance are the logarithms of the factors, the datum [m] and the offsets
+    of the sensors [m].
 
     Attributes
     ----------
     factors : names of the estimated factors and their values
     datum : what is added to the depths of the line [m]
     offset : (s,) of the sensors [m]
-    moved : (s,) how far below its place in the file a sensor hangs, along the line at rest [m]
-    since : (s,) the first time at which it does; NaT where it never does
-    until : (s,) the time up to which it drifts by `moved`, no clamp having slipped; NaT of others
     covariance : (q, q)
-    scale : of the errors of the currents, on those of `calm.motion.common_unknowns`
-    gap : (g, g) error of the logarithm of the factor on a group of levels whose currents are taken
-        from the others, another group left out besides; see `calm.motion.line_response.gap_errors`
-    widened : factor on the deviations of depths, where the pressures miss by more than all errors
     worst : share of the knockdown that the line itself may be wrong by, after all else
     law : of currents that nobody measured; None of measured ones
     """
@@ -55,15 +42,9 @@ class Common:
     factors: Mapping[str, float]
     datum: float
     offset: Floats
-    moved: Floats
-    since: NDArray[np.datetime64]
     covariance: Floats
-    scale: float
-    gap: Floats
-    widened: float = 1.0
     worst: float = 0.07
     law: SpeedLaw | None = None
-    until: NDArray[np.datetime64] | None = None
 
     @property
     def inferred(self) -> bool:
@@ -74,55 +55,79 @@ class Common:
     def value(self) -> Floats:
         """Return (q,) as the columns of the covariance stand."""
         logs = np.log(list(self.factors.values()))
-        return np.concatenate([logs, [self.datum], self.offset, self.moved])
-
-    @property
-    def unmoved(self) -> tuple[Floats, Floats]:
-        """Return mean and covariance of all but the moves."""
-        fixed = len(self.value) - len(self.moved)
-        return self.value[:fixed], self.covariance[:fixed, :fixed]
+        return np.concatenate([logs, [self.datum], self.offset])
 
     def at(self, value: Floats) -> Common:
-        """Return the same with other values (q,) of its unknowns, or (q - s,) without moves."""
-        count, sensors = len(self.factors), len(self.offset)
+        """Return the same with other values (q,) of its unknowns."""
+        count = len(self.factors)
         factors = np.exp(np.clip(value[:count], -FURTHEST, FURTHEST)).tolist()
-        moved = value[count + 1 + sensors :]
         return replace(
             self,
             factors=dict(zip(self.factors, factors, strict=True)),
             datum=float(value[count]),
-            offset=value[count + 1 : count + 1 + sensors],
-            moved=moved if len(moved) else self.moved,
+            offset=value[count + 1 :],
         )
 
-    def fall(
-        self, time: NDArray[np.datetime64], depth: Floats, still: Floats, point: Integers
-    ) -> Floats:
-        """Return (n, s) change of the depth of each sensor with how far it has moved; 0 before it
-        has.
 
-        Parameters
-        ----------
-        time : (n,)
-        depth, still : (n, p), (p,) of the points, at these times and in still water [m]
-        point : (s,) where the sensors are by the file
-        """
-        result = np.zeros((len(time), len(point)))
-        for j, (one, since) in enumerate(zip(point.tolist(), self.since, strict=True)):
-            if np.isnat(since):
-                continue
-            if self.until is not None and not np.isnat(self.until[j]):
-                result[:, j] = np.clip((time - since) / (self.until[j] - since), 0.0, 1.0)
-                continue
-            below = still - still[one]
-            upper = int(np.where(below <= -REACH, below, -np.inf).argmax())
-            lower = int(np.where(below >= REACH, below, np.inf).argmin())
-            upper = upper if below[upper] <= -REACH else one
-            lower = lower if below[lower] >= REACH else one
-            apart = still[lower] - still[upper]
-            share = (depth[:, lower] - depth[:, upper]) / apart if apart > 0.0 else 1.0
-            result[:, j] = np.where(time >= since, share, 0.0)
-        return result
+def common_beforehand(
+    factors: Mapping[str, float], datum: float, sensors: int, mean: float = 0.0
+) -> Common:
+    """Return what is common where all sensors hang as the file says, with what is expected of it.
+
+    Parameters
+    ----------
+    factors : their values
+    datum : standard deviation of what is added to the depths of the line [m]
+    sensors : how many there are
+    mean : of what is added to the depths of the line [m]
+    """
+    known = [FACTORS[name][1] for name in factors]
+    spread = [*known, datum, *[OFFSET] * sensors]
+    return Common(factors, mean, np.zeros(sensors), np.diag(np.square(spread)))
+
+
+def fixed_slopes(common: Floats) -> Floats:
+    """Return (n, s, q) slopes with factors, datum and offsets by (n, s, f) those with factors."""
+    n, s, _ = common.shape
+    offsets = np.broadcast_to(np.eye(s), (n, s, s))
+    return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)
+
+
+def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
+    """Return (n, s) change of the depth of each sensor with how far it has moved down the line.
+
+    Parameters
+    ----------
+    depth, still : (n, p), (p,) of the points, at these times and in still water [m]
+    point : (s,) where the sensors are by the file
+    """
+    result = np.zeros((len(depth), len(point)))
+    for j, one in enumerate(point.tolist()):
+        below = still - still[one]
+        upper = int(np.where(below <= -REACH, below, -np.inf).argmax())
+        lower = int(np.where(below >= REACH, below, np.inf).argmin())
+        upper = upper if below[upper] <= -REACH else one
+        lower = lower if below[lower] >= REACH else one
+        apart = still[lower] - still[upper]
+        result[:, j] = (depth[:, lower] - depth[:, upper]) / apart if apart > 0.0 else 1.0
+    return result
+
+
+LONGEST_MEMORY = 25
+"""Times over which errors that repeat are looked for."""
+
+
+def repeated(pull: Floats) -> float:
+    """Return how many times that follow each other have the same error, by its autocorrelation."""
+    one = pull - pull.mean()
+    whole = float(one @ one)
+    total, chance = 1.0, 2.0 / np.sqrt(max(len(one), 1))
+    for lag in range(1, min(LONGEST_MEMORY, len(one) // 4)):
+        share = float(one[lag:] @ one[:-lag]) / whole if whole > 0.0 else 0.0
+        if share < chance:
+            break
+        total += 2.0 * share
+    return total
 
 
 FEWEST = 4
@@ -142,10 +147,9 @@ class LinearLaw:
     time, share : (n,) times, and the share of the record that is over by then
     known : (n, s) whether there is a reading
     raw, left : (n, s) measured less computed depths where the unknowns are 0, and as they are [m]
-    expected, currents : (n, s, s) covariance of `left`, and that part of it which is the currents'
+    expected : (n, s, s) covariance of `left`
     fixed : (n, s, q) slopes with factors, datum and offsets
     fall : (n, s) change of the depth of each sensor with how far it has moved throughout
-    bent : (n, s, s) covariance of the errors of the line itself, of a share of 1
     """
 
     time: NDArray[np.datetime64]
@@ -154,10 +158,8 @@ class LinearLaw:
     raw: Floats
     left: Floats
     expected: Floats
-    currents: Floats
     fixed: Floats
     fall: Floats
-    bent: Floats
 
     @cached_property
     def inverse(self) -> Floats:
@@ -222,127 +224,75 @@ def first_time(law: LinearLaw, mean: Floats, covariance: Floats) -> Integers:
     Parameters
     ----------
     law : what the times say
-    mean, covariance : (q,), (q, q) of the unknowns beforehand, without moves
+    mean, covariance : (q,), (q, q) of the unknowns beforehand
     """
-    fall, count = law.fall, len(law.time)
+    count = len(law.time)
     if not count:
-        return np.full(fall.shape[1], NEVER)
-    before = np.linalg.inv(covariance)
-    inverse = np.linalg.inv(law.normal(law.fixed) + before)
-    pull = law.pulls(law.fixed, law.raw).sum(axis=0)
-    left = law.raw - law.fixed @ (inverse @ (pull + before @ mean))
-    heavy = law.weight[:, None, None] * law.inverse
-    pulls = (heavy @ left[:, :, None])[:, :, 0]
-    crossed = law.fixed.transpose(0, 2, 1) @ heavy
-    single = np.einsum("nss->ns", heavy)
-
-    def gained(own: Floats, cross: Floats, alone: Floats, wide: float) -> Floats:
-        size = np.maximum(alone - np.einsum("nqs,qr,nrs->ns", cross, inverse, cross), 0.0)
-        gain: Floats = 0.5 * own**2 / (size + wide**-2) - 0.5 * np.log1p(wide**2 * size)
-        return gain
-
-    steps = _from_there_on(fall * pulls), _from_there_on(crossed * fall[:, None, :])
-    gain = gained(*steps, _from_there_on(fall**2 * single), ELSEWHERE)
-    gain[1:] += np.log(SLIPPED / count)
-    gain[0] += np.log(MISPLACED)
+        return np.full(law.fall.shape[1], NEVER)
+    gained = Gains(law, mean, covariance)
+    sensors = np.eye(law.fall.shape[1])
+    steps = np.stack([gained.steps(law.fall * one, ELSEWHERE) for one in sensors], axis=1)
+    steps[1:] += np.log(SLIPPED / count)
+    steps[0] += np.log(MISPLACED)
     after = _from_there_on(law.known.astype(float))
     can = (after >= FEWEST) & (after[:1] - after >= FEWEST)
     can[0] = after[0] >= FEWEST
-    gain = np.where(can, gain, -np.inf)
-    first: Integers = np.where(can.any(axis=0), gain.argmax(axis=0), NEVER)
-    best = gain.max(axis=0) + np.where(first > 0, np.log(count), 0.0)  # of a slip at any time
+    steps = np.where(can, steps, -np.inf)
+    first: Integers = np.where(can.any(axis=0), steps.argmax(axis=0), NEVER)
+    best = steps.max(axis=0) + np.where(first > 0, np.log(count), 0.0)  # of a slip at any time
     for code, part in RAMPS.items():
         ramp = np.minimum(law.share / part, 1.0)[:, None]
-        own, cross = (ramp * pulls).sum(axis=0), (crossed * ramp[:, :, None]).sum(axis=0)
-        alone = (ramp**2 * single).sum(axis=0)
         chance, wide = chance_of(code, count)
-        drift = gained(own[None], cross[None], alone[None], wide)[0]
-        better = (drift + chance > best) & (after[0] >= 2 * FEWEST)
-        first, best = np.where(better, code, first), np.where(better, drift + chance, best)
+        drift = np.array([gained.whole(ramp * one, wide) for one in sensors]) + chance
+        better = (drift > best) & (after[0] >= 2 * FEWEST)
+        first, best = np.where(better, code, first), np.where(better, drift, best)
     return first
 
 
-def fits(law: LinearLaw, mean: Floats, covariance: Floats) -> Iterator[tuple[bool, Floats, float]]:
-    """Yield the best fits where no sensor hangs elsewhere, and then where one does.
+def common_step(law: LinearLaw, mean: Floats, covariance: Floats) -> int:
+    """Return the time from which on all sensors are most likely deeper or shallower alike.
 
-    A slip that is taken for errors of the currents makes these so large, and the times that show
-    it so light, that it is never found: so the errors are sought beside each of these.
-
-    Parameters
-    ----------
-    law, mean, covariance : as of `first_time`
-
-    Yields
-    ------
-    Whether one does; (n, s) what is left [m]; the logarithm of how likely this is besides.
+    `NEVER` where too few times are on either side.
     """
-    count, sensors, fixed = law.fixed.shape
-    first = first_time(law, mean, covariance)
-    move = moves(first, law.fall, law.share)
-    for sensor in (None, *np.flatnonzero(first != NEVER).tolist()):
-        seen, spread, odds = law.fixed, covariance, 0.0
-        if sensor is not None:
-            alone = move * (np.arange(sensors) == sensor)
-            seen = np.concatenate([seen, alone[:, :, None]], axis=2)
-            spread = np.pad(spread, (0, 1))
-            odds, wide = chance_of(int(first[sensor]), count)
-            spread[fixed, fixed] = wide**2
-        before = np.linalg.inv(spread)
-        matrix, pull = law.normal(seen) + before, law.pulls(seen, law.raw)
-        found = np.linalg.solve(matrix, pull.sum(axis=0) + before[:, :fixed] @ mean)
-        off = found - np.pad(mean, (0, len(found) - fixed))
-        odds -= 0.5 * (off @ before @ off + np.linalg.slogdet(matrix @ spread)[1])
-        rest = np.where(law.known, law.raw - seen @ found, 0.0)
-        yield sensor is not None, rest, float(odds)
+    count = len(law.time)
+    if count < 2 * FEWEST:
+        return NEVER
+    steps = Gains(law, mean, covariance).steps(np.ones_like(law.fall), ELSEWHERE)
+    return FEWEST + int(np.argmax(steps[FEWEST : count - FEWEST + 1]))
 
 
-def hanging_sensors(
-    normal: Floats, pull: Floats, mean: Floats, covariance: Floats, first: Integers,
-    times: int, alike: float,
-) -> tuple[Floats, Floats]:  # fmt: skip
-    """Return mean (q,) and covariance (q, q) over all ways the sensors may hang.
+class Gains:
+    """How much likelier the readings are with one more unknown beside those of the record."""
 
-    Parameters
-    ----------
-    normal, pull : (q, q), (q,) information of the record on the unknowns, moves included
-    mean, covariance : (q,), (q, q) beforehand, where every sensor hangs as the file says
-    first : (s,) of `first_time`
-    times : number of times at which a clamp may slip
-    alike : by how much less than `normal` says the record tells where a sensor hangs
-    """
-    sensors, count = len(first), len(mean)
-    offset, moved = count - 2 * sensors, count - sensors
-    told = []
-    possible = np.flatnonzero(first != NEVER).tolist()
-    for way in chain.from_iterable(combinations(possible, size) for size in range(3)):
-        spread = covariance.copy()
-        chance = 0.0
-        for sensor in way:
-            likely, wide = chance_of(int(first[sensor]), times)
-            spread[moved + sensor, moved + sensor] = wide**2
-            chance += likely
-            if not first[sensor]:  # its zero may be wrong as well as its place
-                spread[offset + sensor, offset + sensor] += ELSEWHERE**2
-        free = np.flatnonzero(np.diag(spread) > 0.0)
-        part = np.ix_(free, free)
-        before = np.linalg.inv(spread[part])
-        centre = before @ mean[free]
-        known = np.linalg.inv(normal[part] / alike + before)
-        drawn = pull[free] / alike + centre
-        log = chance + 0.5 * (drawn @ known @ drawn - mean[free] @ centre)
-        log += 0.5 * (np.linalg.slogdet(known)[1] + np.linalg.slogdet(before)[1])
-        found, whole = np.zeros(count), np.zeros((count, count))
-        whole[part] = np.linalg.inv(normal[part] + before)
-        found[free] = whole[part] @ (pull[free] + centre)
-        told.append((log, found, whole))
-    weights = np.exp([log - max(one[0] for one in told) for log, *_ in told])
-    weights /= weights.sum()
-    centre = np.sum([w * one[1] for w, one in zip(weights, told, strict=True)], axis=0)
-    spread = np.zeros((count, count))
-    for weight, (_, found, whole) in zip(weights, told, strict=True):
-        off = found - centre
-        spread += weight * (whole + np.outer(off, off))
-    return centre, spread
+    def __init__(self, law: LinearLaw, mean: Floats, covariance: Floats) -> None:
+        before = np.linalg.inv(covariance)
+        self.inverse = np.linalg.inv(law.normal(law.fixed) + before)
+        pull = law.pulls(law.fixed, law.raw).sum(axis=0)
+        left = law.raw - law.fixed @ (self.inverse @ (pull + before @ mean))
+        self.heavy = law.weight[:, None, None] * law.inverse
+        self.pull = (self.heavy @ left[:, :, None])[:, :, 0]
+        self.fixed = law.fixed
+
+    def _parts(self, column: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return (n,), (n, q), (n,) what each time says of the size of a column (n, s)."""
+        own = (self.heavy @ column[:, :, None])[:, :, 0]
+        crossed = np.einsum("nsq,ns->nq", self.fixed, own)
+        return (column * self.pull).sum(axis=1), crossed, (column * own).sum(axis=1)
+
+    def _gain(self, own: Floats, cross: Floats, alone: Floats, wide: float) -> Floats:
+        size = np.maximum(alone - np.einsum("nq,qr,nr->n", cross, self.inverse, cross), 0.0)
+        gain: Floats = 0.5 * own**2 / (size + wide**-2) - 0.5 * np.log1p(wide**2 * size)
+        return gain
+
+    def steps(self, column: Floats, wide: float) -> Floats:
+        """Return (n,) logarithms of a column that begins at each time, of a deviation `wide`."""
+        own, cross, alone = (_from_there_on(part) for part in self._parts(column))
+        return self._gain(own, cross, alone, wide)
+
+    def whole(self, column: Floats, wide: float) -> float:
+        """Return the logarithm of a column throughout."""
+        own, cross, alone = (part.sum(axis=0, keepdims=True) for part in self._parts(column))
+        return float(self._gain(own, cross, alone, wide)[0])
 
 
 def _from_there_on(values: Floats) -> Floats:
@@ -353,24 +303,6 @@ def _from_there_on(values: Floats) -> Floats:
 
 NORMAL = 1.4826
 """Standard deviation of a normal law over the median of its size."""
-CURRENT = 0.05
-"""Of the factor on the whole current at one time."""
-SHEAR = 0.05
-"""Of the factor that grows from -1 at the lowest level to 1 at the highest."""
-LEVEL: Mapping[int, float] = {0: 0.05, 1: 0.05, 2: 0.07, 3: 0.15, 4: 0.30, 8: 0.20}
-"""Of the factor on a single level, by its quality flag."""
-STEADY = 0.01
-"""What a weak current is wrong by besides [m/s]."""
-GAP = 0.25
-"""Of the factor on a level whose current is taken from its neighbours, where the record does not
-say how alike these are."""
-LARGEST = 0.5
-"""Of the factor on a single level, at most."""
-FALSE: Mapping[int, float] = {0: 0.01, 1: 0.01, 2: 0.03, 3: 0.10, 4: 0.30, 8: 0.10}
-"""Probability that a current is false in direction or size, by its quality flag."""
-WORSE, ALL_WORSE = 3.0, 0.01
-"""All currents of a time are so many times worse than this, and the probability that they are."""
-
 FACTORS: Mapping[str, tuple[float, float]] = {
     "cable_drag": (0.0, 0.15),
     "rigid_drag": (0.0, 0.15),
@@ -385,6 +317,10 @@ OFFSET = 1.0
 ELSEWHERE, MISPLACED, SLIPPED = 20.0, 0.01, 0.01
 """How far from its place in the file a sensor is that is not there [m], and the probabilities that
 it is so from the beginning, and that its clamp slips during the record."""
+MOVED = 0.01
+"""Probability that the whole mooring is moved to another depth during the record."""
+FALSE: Mapping[int, float] = {0: 0.01, 1: 0.01, 2: 0.03, 3: 0.10, 4: 0.30, 8: 0.10}
+"""Probability that a current is false in direction or size, by its quality flag."""
 DRIFT, DRIFTS = 5.0, 0.01
 """Of what a sensor drifts by over the record [m], and the probability that it does."""
 TIDE = 1.0

@@ -21,9 +21,17 @@ from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels,
 from calm.files.pieces import clamps_down
 from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
-from calm.motion.line_response import Forward, LineResponse, forwards_of, labels_of, points
+from calm.motion.line_response import (
+    Forward,
+    LineResponse,
+    filled,
+    forwards_of,
+    labels_of,
+    points,
+)
 from calm.motion.matching import serials_of
-from calm.motion.measurements import MooringMeasurements, by_neighbours, level_names
+from calm.motion.measured_currents import CurrentSmoother
+from calm.motion.measurements import FREE, MooringMeasurements, by_neighbours, level_names
 from calm.motion.unknown_currents import unknown_state
 from calm.physics.line import Floats
 from calm.records.card import ReadCard
@@ -186,11 +194,15 @@ BLOCK = 512
 
 @dataclass(frozen=True)
 class Task:
-    """Hold what is to be estimated: `measured` has the sensors that are used."""
+    """Hold what is to be estimated: `measured` has the sensors that are used.
+
+    `smoother` has estimated the record as a whole, where currents were measured.
+    """
 
     mooring: Design
     measured: MooringMeasurements
     common: Common
+    smoother: CurrentSmoother | None = None
 
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
         """Return some of the times: the line in the most likely currents, and what is known
@@ -201,39 +213,48 @@ class Task:
         The profiles with the depths that were estimated, and `clamp_depth_sd`, `depth_sd`,
         `residual`, and of measured currents `current_factor`, `current_doubt`, `plain_depth`.
         """
-        one = self.measured.at(slice(start, stop))
-        moments = LineResponse(one, *self.forwards)
-        law = self.common.law
-        state = None if law is None else unknown_state(moments, self.common)
-        beside = self._neighbours[0][start:stop], self._neighbours[1][start:stop]
-        found = estimated(moments, self.common, state, beside)
-        likely = moments.forward.solve(found.likely.level, found.likely.u, found.likely.v)
+        times, smoother = slice(start, stop), self.smoother
+        one = self.measured.at(times)
+        if smoother is None:
+            moments = LineResponse(one, *self.forwards)
+            state = unknown_state(moments, self.common)
+            beside = self._neighbours[0][times], self._neighbours[1][times]
+            found = estimated(moments, self.common, state, beside)
+            forward, offset = moments.forward, self.common.offset
+            depth, deviation, way = found.depth, found.deviation, found.likely
+            surface = self.common.datum + found.sea
+        else:
+            forward, offset = smoother.best, smoother.offset[times]
+            depth, deviation, way = (
+                smoother.depth[times],
+                smoother.deviation[times],
+                smoother.way(times),
+            )
+            surface = smoother.surface[times]
+        likely = forward.solve(way.level, way.u, way.v)
         clamps = likely.clamp_depth.shape[1]
-        shift = found.depth - points(likely)
-        surface = (self.common.datum + found.sea)[:, None]
-        down = found.depth - surface - moments.forward.still
+        shift = depth - points(likely)
+        down = depth - surface[:, None] - forward.still
         profiles = likely.with_columns(
-            clamp_depth=found.depth[:, :clamps],
-            depth_top=found.depth[:, clamps:],
+            clamp_depth=depth[:, :clamps],
+            depth_top=depth[:, clamps:],
             clamp_knockdown=down[:, :clamps] + 0.0 * likely.clamp_knockdown,
             knockdown=down[:, clamps:] + 0.0 * likely.knockdown,
             top_depth=likely.top_depth + shift[:, clamps],
         )
-        if one.false is not None:
-            lost = one.false & (likely.status == STATUSES.index("no-current"))
-            status = np.where(lost, STATUSES.index("implausible-current"), likely.status)
-            profiles = profiles.with_columns(status=status.astype(np.int8))
-        known = np.where(likely.status == 0, 1.0, np.nan)
-        deviation = found.deviation * self.common.widened * known[:, None]
+        if smoother is not None:
+            profiles = without_current(profiles, smoother.lost[times], one.false)
+        known = np.where(profiles.status == 0, 1.0, np.nan)
+        deviation = deviation * known[:, None]
         columns = {
             "clamp_depth_sd": deviation[:, :clamps],
             "depth_sd": deviation[:, clamps:],
-            "residual": one.depth - self.common.offset - found.depth[:, one.point],
+            "residual": one.depth - offset - depth[:, one.point],
         }
-        if law is None:
+        if smoother is not None:
             columns |= {
-                "current_factor": found.current * known,
-                "current_doubt": found.doubt * known[:, None],
+                "current_factor": smoother.current_factor[times] * known,
+                "current_doubt": smoother.doubt[times] * known[:, None],
                 "plain_depth": plain(self._alone, one)[:, one.point],
             }
         return profiles, columns
@@ -251,15 +272,51 @@ class Task:
         return Forward(self.mooring, {})
 
 
+def without_current(
+    profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
+) -> Profiles:
+    """Return profiles without the times (n,) that are far from any current, false ones apart."""
+    status = np.where(lost, STATUSES.index("no-current"), profiles.status)
+    if false is not None:
+        status = np.where(lost & false, STATUSES.index("implausible-current"), status)
+    columns = {
+        name: np.where(lost.reshape(-1, *[1] * (each.ndim - 1)), np.nan, each)
+        for name, each in vars(profiles).items()
+        if isinstance(each, np.ndarray) and each.dtype.kind == "f" and len(each) == len(lost)
+    }
+    return profiles.with_columns(**columns, status=status.astype(np.int8))
+
+
 def plain(forward: Forward, one: MooringMeasurements) -> Floats:
     """Return (n, p) depths of the points by the currents alone, nothing fitted [m]."""
-    moments = LineResponse(one, forward, {})
     depth = np.tile(forward.still, (len(one.time), 1))
     for _ in range(2):
-        level = moments.levels(np.nan_to_num(depth))
-        u, v, _ = moments.read(level)
+        level = hung_levels(one, np.nan_to_num(depth))
+        known = np.isfinite(one.u) & np.isfinite(one.v) & np.isfinite(level)
+        u, v = (filled(level, each, known) for each in (one.u, one.v))
         depth = forward.depths(level, u, v)
     return depth
+
+
+APART = 1e-6
+"""Between levels of instruments that hang in one place [m]."""
+
+
+def hung_levels(one: MooringMeasurements, depths: Floats) -> Floats:
+    """Return (n, k) depths of the levels, of those that hang by the depths of the points (n, p).
+
+    A current whose sensor is used hangs where that was measured.
+    """
+    level = one.level_depth.copy()
+    for k, (point, sensor) in enumerate(zip(one.level_point, one.level_sensor, strict=True)):
+        if point == FREE:
+            continue
+        level[:, k] = depths[:, point]
+        if sensor != FREE:
+            known = np.isfinite(one.depth[:, sensor])
+            level[known, k] = one.depth[known, sensor]
+    apart: Floats = np.maximum(level, 0.0) + APART * np.arange(level.shape[1])
+    return apart
 
 
 class MeasuredRecord(Record):

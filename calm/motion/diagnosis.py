@@ -14,15 +14,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.motion import common_unknowns
-from calm.motion.common_unknowns import DATUM, ROBUST, LinearLaw
+from calm.motion.common_unknowns import (
+    DATUM,
+    NEVER,
+    ROBUST,
+    LinearLaw,
+    common_beforehand,
+    fixed_slopes,
+    repeated,
+)
 from calm.motion.correction import Task
-from calm.motion.estimate import measured_state
 from calm.motion.line_response import LineResponse
 from calm.motion.measurements import chosen_times, interpolated
 from calm.motion.remarks import ALL, LIKELY, NO_TIME, Fault
 from calm.motion.suspects import Suspect, line_suspects
 from calm.motion.unknown_currents import SEABED, unknown_state
-from calm.motion.whole_record import common_beforehand, linear_law, repeated
 from calm.physics.line import Floats
 
 LIKELY_ALONE = 1000.0
@@ -36,11 +42,11 @@ GAIN, GAINS, ALL_GAINS = 0.02, 0.01, 0.001
 EXCHANGED = 0.01
 """Probability that two labels are exchanged."""
 LEAST = {
-    "clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5, "exchanged": 0.0,
-    "currents": 0.1, "speed": 0.15, "slows": 0.2, "buoyancy": 0.06, "length": 0.004, "drag": 0.3,
-    "fouling": 0.2,
+    "moved": 3.0, "clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5,
+    "exchanged": 0.0, "currents": 0.1, "speed": 0.15, "slows": 0.2, "buoyancy": 0.06,
+    "length": 0.004, "drag": 0.3, "fouling": 0.2,
 }  # fmt: skip
-"""What is named, at least: h (and as many steps of the record), 1, m, m, m; then logarithms."""
+"""What is named, at least: m; h (and as many steps of the record), 1, m, m, m; then logarithms."""
 RIVALS = 3
 """Other explanations that are named, at most."""
 FINEST = 0.02
@@ -84,16 +90,32 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 
     And what may be wrong with the line and its currents, with what it does to them.
     """
-    common = task.common
-    alone = common.inferred
-    times = chosen_times(task.measured, alone)
+    times = chosen_times(task.measured, task.smoother is None)
     if not len(times):
         return None, []
-    moments = LineResponse(task.measured.at(times), *task.forwards)
-    fixed = replace(common, covariance=np.zeros_like(common.covariance))
-    here = unknown_state(moments, fixed) if alone else measured_state(moments, fixed)
-    law = linear_law(moments, common, here, task.measured.time[[0, -1]])
-    return law, [] if alone else list(line_suspects(task, moments, here.way, here.at))
+    if task.smoother is not None:
+        law, way, moments = task.smoother.by_meters(times, task.smoother.factor)
+        at = moments.linear(way, np.zeros((len(times), moments.groups)))
+        return law, list(line_suspects(task, moments, way, at))
+    common, part = task.common, task.measured.at(times)
+    moments = LineResponse(part, *task.forwards)
+    here = unknown_state(moments, replace(common, covariance=np.zeros_like(common.covariance)))
+    good = np.isfinite(here.at.depth).all(axis=1)
+    time, depth = part.time[good], here.at.depth[good]
+    known = np.isfinite(part.depth[good])
+    left = np.where(known, here.found.innovation[good], 0.0)
+    fixed = fixed_slopes(here.at.common[good][:, part.point])
+    span = task.measured.time[[0, -1]]
+    return LinearLaw(
+        time,
+        (time - span[0]) / max(span[1] - span[0], np.timedelta64(1, "ns")),
+        known,
+        np.where(known, left + fixed @ common.value, 0.0),
+        left,
+        here.found.expected[good],
+        fixed,
+        common_unknowns.fall(depth, moments.forward.still, part.point),
+    ), []
 
 
 class Diagnosis:
@@ -104,8 +126,8 @@ class Diagnosis:
         self.label, self.law = task.measured.label, law
         self.measured = task.measured
         depth = float(task.mooring.water.depth) * (SEABED if task.common.inferred else DATUM)
-        known = common_beforehand(task.common.factors, depth, task.measured, task.common.gap)
-        _, self.spread = known.unmoved
+        factors, sensors = task.common.factors, len(self.label)
+        self.spread = common_beforehand(factors, depth, sensors).covariance
         self.white = np.linalg.inv(np.linalg.cholesky(law.expected))
         self.seen = self.white @ law.fixed
         self.alone = task.common.inferred
@@ -290,6 +312,16 @@ class Diagnosis:
                     until = since + common_unknowns.RAMPS[code] * span
                 fault = Fault(label, kind, since=since, until=until)
                 yield Suspect(fault, column, wide, chance, none)
+        start = (
+            NEVER
+            if self.alone
+            else common_unknowns.common_step(rest, np.zeros(len(self.spread)), self.spread)
+        )
+        if start != NEVER and len(self.label) > 1 and (ALL, "moved") not in had:
+            step = np.where(np.arange(len(law.time)) >= start, 1.0, 0.0)[:, None] + none
+            fault = Fault(ALL, "moved", since=law.time[start])
+            chance = float(np.log(common_unknowns.MOVED / len(law.time)))
+            yield Suspect(fault, step, common_unknowns.ELSEWHERE, chance, none)
         yield from (one for one in self.causes if (one.fault.label, one.fault.kind) not in had)
         for label, mine in self._whose():
             if (label, "gain") not in had and not self.alone:

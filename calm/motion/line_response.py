@@ -1,8 +1,7 @@
 """The line at each time of a block as its currents say, and how it changes with what is unknown.
 
-Every time is estimated for itself. Unknown are the logarithm of a factor on the current of each
-group of levels, the height of the sea, and what is common to the record, whose values and
-covariance are given. A current that is missing at a level comes from its neighbours.
+Unknown are the logarithm of a factor on the current of each group of levels, and what is common to
+the record, whose values are given.
 """
 
 from __future__ import annotations
@@ -10,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,85 +16,27 @@ from numpy.typing import NDArray
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Design
 from calm.files.pieces import clamps_down
-from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.currents_law import Linear, ReadCurrents
-from calm.motion.measurements import FREE, MooringMeasurements
+from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats, Integers, Line
 
 STEP = 0.05
 """Of the logarithms by which the derivatives are found."""
-APART = 1e-6
-"""Between levels of instruments that hang in one place [m]."""
+UNMEASURED = 1e4
+"""Deviation of what a sensor that measured nothing at a time would read [m]."""
 
 
 class LineResponse:
     """The times of a block, with a mooring to ask."""
 
     def __init__(
-        self, measured: MooringMeasurements, forward: Forward, shifted: Mapping[str, Forward]
-    ) -> None:
+        self, measured: MooringMeasurements, forward: Forward, shifted: Mapping[str, Forward],
+        group: Integers | None = None,
+    ) -> None:  # fmt: skip
         self.measured, self.forward, self.shifted = measured, forward, shifted
-        self.group = measured.group
+        self.group = measured.group if group is None else group
         self.groups = int(self.group.max()) + 1 if len(self.group) else 0
-
-    # --- currents
-
-    def levels(self, depths: Floats) -> Floats:
-        """Return (n, k) depths of the levels, of those that hang by the depths of the points.
-
-        A current whose sensor is used hangs where that was measured.
-        """
-        one = self.measured
-        level = one.level_depth.copy()
-        for k, (point, sensor) in enumerate(zip(one.level_point, one.level_sensor, strict=True)):
-            if point == FREE:
-                continue
-            level[:, k] = depths[:, point]
-            if sensor != FREE:
-                known = np.isfinite(one.depth[:, sensor])
-                level[known, k] = one.depth[known, sensor]
-        apart: Floats = np.maximum(level, 0.0) + APART * np.arange(level.shape[1])
-        return apart
-
-    def read(
-        self, level: Floats, without: tuple[int, ...] = ()
-    ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-        """Return (n, k) u and v [m/s] at these levels, and whether each was measured.
-
-        Groups that are left out are taken from the others, as is what was not measured.
-        """
-        one = self.measured
-        known = np.isfinite(one.u) & np.isfinite(one.v) & np.isfinite(level)
-        known &= ~np.isin(self.group, without)
-        return filled(level, one.u, known), filled(level, one.v, known), known
-
-    def way(self, level: Floats, common: Common, without: tuple[int, ...] = ()) -> ReadCurrents:
-        """Return the currents at these levels with their errors; some groups taken from the others.
-
-        Parameters
-        ----------
-        level : (n, k) depths [m]
-        common : what is common to the record
-        without : groups whose currents are taken from the others
-        """
-        if common.law is not None:
-            return common.law.read(level)
-        u, v, known = self.read(level, without)
-        speed = np.maximum(np.hypot(u, v), 1e-3)
-        own = np.hypot(
-            by_flag(common_unknowns.LEVEL, self.measured.flag),
-            common_unknowns.STEADY / speed,
-        )
-        gap = common.gap[:, [*without]].max(axis=1) if without else np.diag(common.gap)
-        own = np.minimum(np.where(known, own, gap[self.group]), common_unknowns.LARGEST)
-        spread = np.zeros((len(u), self.groups, self.groups))
-        place = np.linspace(-1.0, 1.0, self.groups) if self.groups > 1 else np.zeros(1)
-        spread += common_unknowns.CURRENT**2 + common_unknowns.SHEAR**2 * np.outer(place, place)
-        for g in range(self.groups):
-            mine = own[:, self.group == g]
-            spread[:, g, g] += (mine**2).mean(axis=1)
-        return ReadCurrents(level, u, v, common.scale**2 * spread)
 
     def depths(self, way: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
         """Return (n, p) depths of the points with factors on the currents.
@@ -116,12 +56,6 @@ class LineResponse:
         own = [self.depths(way, logs + ahead) for ahead in STEP * np.eye(self.groups)]
         common = [self.depths(way, logs, forward) for forward in self.shifted.values()]
         return Linear(logs, there, _slopes(own, there), _slopes(common, there))
-
-
-def by_flag(values: Mapping[int, float], flag: NDArray[np.int8]) -> Floats:
-    """Return a figure for every flag; one that is not known counts as bad, 4."""
-    table = np.array([values.get(number, values[4]) for number in range(256)])
-    return table[flag.astype(np.uint8)]
 
 
 def _slopes(ahead: Sequence[Floats], there: Floats) -> Floats:
@@ -223,23 +157,23 @@ def instruments_of(mooring: Design) -> list[int]:
 
 SPAN, LOCAL = 0.25, 0.3
 """Share of the line over which the errors of its knockdown are alike, and what a point is wrong by
-for itself where currents are inferred, as floats and clamps bend the line there."""
+for itself, as floats and clamps bend the line there."""
 
 
-def own_errors(depth: Floats, still: Floats, inferred: bool) -> Floats:
+def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
     """Return (n, p, p) covariance of the errors of the line at its points, of a share of 1 [m²].
 
-    With measured currents a point is wrong by a share of its own knockdown, alike over a quarter of
-    the line. Where they are inferred, which takes up what is so, the knockdown of each stretch is
-    wrong by such a share, a point by all that is below it, so that between two sensors the error is
-    smooth, and by a lesser share of its own knockdown.
+    While the law of the currents is learnt, a point is wrong by a share of its own knockdown, alike
+    over a quarter of the line. Beside a law that is learnt, which takes up what is so, the
+    knockdown of each stretch is wrong by such a share, a point by all that is below it, so that
+    between two sensors the error is smooth, and by a lesser share of its own knockdown.
 
     Parameters
     ----------
     depth, still : (n, p), (p,) of the points, and in still water [m]; of NaN they are 0
-    inferred : whether the currents are
+    learnt : whether the law of the currents is
     """
-    if not inferred:
+    if not learnt:
         own = np.maximum(np.nan_to_num(depth - still), 0.0)
         span = max(SPAN * float(np.ptp(still)), 1.0)
         errors = own[:, :, None] * np.exp(-np.abs(still[:, None] - still) / span) * own[:, None, :]
@@ -255,10 +189,6 @@ def own_errors(depth: Floats, still: Floats, inferred: bool) -> Floats:
     errors += LOCAL**2 * down[:, :, None] * alike * down[:, None, :]
     ordered: Floats = errors[:, back[:, None], back]
     return ordered
-
-
-FEWEST = 20
-"""Times from which the errors of what is taken from neighbours are known."""
 
 
 def filled(depth: Floats, value: Floats, known: NDArray[np.bool_]) -> Floats:
@@ -281,56 +211,4 @@ def filled(depth: Floats, value: Floats, known: NDArray[np.bool_]) -> Floats:
             result[i, ~there] = np.interp(
                 depth[i, ~there], depth[i, there][order], value[i, there][order]
             )
-    return result
-
-
-def gap_errors(level: Floats, u: Floats, v: Floats, group: Integers) -> Floats:
-    """Return (g, g) how far the speeds of a group of levels are from those that the others give.
-
-    The median size of the logarithm of their ratio, as the deviation of a normal law, over the half
-    of the times with the stronger current: of the group of a row, left out with that of a column.
-    `calm.motion.common_unknowns.GAP` where too few times say.
-
-    Parameters
-    ----------
-    level, u, v : (n, k) depths [m] and currents [m/s]
-    group : (k,) of each level
-    """
-    count = int(group.max()) + 1 if len(group) else 0
-    errors = np.full((count, count), common_unknowns.GAP)
-    whole = np.isfinite(u) & np.isfinite(v) & np.isfinite(level)
-    times = np.flatnonzero(whole.all(axis=1))
-    if len(times) < FEWEST:
-        return errors
-    for one, other in product(range(count), repeat=2):
-        mine, known = group == one, ~np.isin(group, (one, other))
-        if known.any():
-            known = np.broadcast_to(known, (len(times), len(group)))
-            taken = [filled(level[times], each[times], known)[:, mine] for each in (u, v)]
-            here, there = (
-                np.hypot(east, north).mean(axis=1) + common_unknowns.STEADY
-                for east, north in ((u[times][:, mine], v[times][:, mine]), taken)
-            )
-            off = np.abs(np.log(there / here))[here + there >= np.median(here + there)]
-            errors[one, other] = common_unknowns.NORMAL * np.median(off)
-    least: Floats = np.maximum(errors, common_unknowns.LEVEL[1])
-    return least
-
-
-def between(one: MooringMeasurements, depth: Floats, still: Floats) -> Floats:
-    """Return (n, p) depths with what the sensors measure beside them, linear by the height in still
-    water.
-
-    Parameters
-    ----------
-    depth : (n, p) of the points as far as they are known [m]
-    still : (p,) in still water
-    """
-    order = np.argsort(still[one.point], kind="stable")
-    result = depth.copy()
-    for i, row in enumerate(one.depth):
-        known = order[np.isfinite(row[order])]
-        if len(known):
-            points = one.point[known]
-            result[i] += np.interp(still, still[points], row[known] - depth[i, points])
     return result

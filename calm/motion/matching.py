@@ -5,16 +5,20 @@ It is found by label, serial number, or order down the line.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calm.case import Design
 from calm.errors import UsageError, nearest
 from calm.files.pieces import clamps_down
 from calm.motion import line_response
-from calm.motion.measurements import MooringMeasurements
+from calm.motion.measurements import CurrentMeasurements, MooringMeasurements
 from calm.physics.line import Floats
-from calm.records.instrument_series import Identity
+from calm.records import cf_files
+from calm.records.current_terms import parse_time
+from calm.records.instrument_series import Identity, who_along
 
 
 @dataclass(frozen=True)
@@ -63,6 +67,103 @@ def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeas
         point=measured.point[kept],
         depth=measured.depth[:, kept],
     )
+
+
+@dataclass(frozen=True)
+class Clock:
+    """How far the clock of an instrument is behind: nothing at first, more and more evenly.
+
+    Attributes
+    ----------
+    since, checked : when it was set, and when it was compared
+    late : how far it was behind then [s]
+    """
+
+    since: np.datetime64
+    checked: np.datetime64
+    late: float
+
+    def true_times(self, time: NDArray[np.datetime64]) -> NDArray[np.datetime64]:
+        """Return the true times of readings (n,) by this clock."""
+        share = (time - self.since) / (self.checked - self.since)
+        late = np.round(self.late * 1e9 * np.maximum(share, 0.0)).astype("m8[ns]")
+        true: NDArray[np.datetime64] = time + late
+        return true
+
+    @property
+    def sentence(self) -> str:
+        """Return what is said of it."""
+        way = "behind" if self.late > 0.0 else "ahead"
+        when = np.datetime_as_string(self.checked, "m")
+        return f"its clock was {abs(self.late):g} s {way} at {when}; its times are put right"
+
+
+def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:
+    """Return the measured clocks of what was deployed, by label.
+
+    Parameters
+    ----------
+    first : time of a record, from which they run where the deployment has no date
+
+    Raises
+    ------
+    UsageError
+        A clock was checked before it was deployed.
+    """
+    deployed = mooring.file.deployed
+    found = {}
+    for item in () if deployed is None else deployed.items:
+        if item.clock is None or deployed is None:
+            continue
+        since = first if deployed.date is None else parse_time(deployed.date)
+        checked = parse_time(item.clock.checked)
+        if checked <= since:
+            raise UsageError(
+                f"deployed: the clock of `{item.label}` was checked at {item.clock.checked}, which "
+                "is not after the deployment"
+            )
+        found[item.label] = Clock(since, checked, item.clock.late)
+    return found
+
+
+def hung_currents(
+    one: CurrentMeasurements, path: Path, line: LinePlaces, seabed: float
+) -> tuple[CurrentMeasurements, list[str]]:
+    """Return currents whose instruments are on the line by serial number or nominal depth, moving
+    with it, and what is said of these.
+
+    Levels with labels stay as they are, and so do those of a file that names no instrument: of a
+    profiler, whose depths are its own.
+    """
+    if any(one.label) or path.is_dir() or not cf_files.holds_arrays(path):
+        return one, []
+    with cf_files.opened(path) as dataset:
+        levels = one.u.shape[1]
+        along: list[str | None] = [
+            str(dim) for dim, size in dataset.sizes.items() if size == levels > 1
+        ]
+        who: Sequence[Identity] = ()
+        if levels == 1:
+            along.append(None)
+        for dim in along:
+            who = who_along(dataset, dim, seabed, path.name)
+            if any(each.serial or each.label for each in who):
+                break
+        else:
+            return one, []
+    place = np.array([each.nominal for each in who])
+    own = np.nanmedian(np.where(np.isfinite(one.depth), one.depth, np.nan), axis=0)
+    if len(who) != levels or not np.nanmax(np.abs(own - place), initial=0.0) < CERTAIN:
+        return one, []
+    try:
+        points, said = points_of(who, line)
+    except UsageError:
+        return one, []
+    label = tuple(line.label[points[i]] if i in points else "" for i in range(levels))
+    hung = np.array([bool(each) for each in label])
+    moved = replace(one, label=label, depth=np.where(hung, np.nan, one.depth))
+    named = ", ".join(each for each in label if each)
+    return moved, [*said, f"{one.source}: the currents of {named} move with the line"]
 
 
 CERTAIN = 2.0

@@ -49,6 +49,7 @@ class MooringMeasurements:
     flag : (n, k) quality flags of the current; 0 where it has none
     tide : (n,) height of the sea surface above its mean [m]; None where not known
     false : (n,) whether a current that cannot be was left out; None where none was
+    sunk : (n,) how much deeper the whole mooring is than at first [m]; None where it never moved
     """
 
     time: NDArray[np.datetime64]
@@ -62,6 +63,18 @@ class MooringMeasurements:
     flag: NDArray[np.int8]
     tide: Floats | None = None
     false: NDArray[np.bool_] | None = None
+    sunk: Floats | None = None
+
+    @property
+    def surface(self) -> Floats:
+        """Return (n,) what is added to all depths: the tide, and how far all has sunk [m]."""
+        none = np.zeros(len(self.time))
+        return none + (0.0 if self.tide is None else self.tide) + self.moved
+
+    @property
+    def moved(self) -> Floats:
+        """Return (n,) how much deeper the whole mooring is than at first [m]."""
+        return np.zeros(len(self.time)) if self.sunk is None else self.sunk
 
     @property
     def level_sensor(self) -> Integers:
@@ -78,7 +91,7 @@ class MooringMeasurements:
 
     def at(self, times: slice | Integers) -> MooringMeasurements:
         """Return what was measured at some of the times."""
-        columns = ("time", "depth", "level_depth", "u", "v", "flag", "tide", "false")
+        columns = ("time", "depth", "level_depth", "u", "v", "flag", "tide", "false", "sunk")
         known = {name: getattr(self, name) for name in columns}
         return replace(self, **{name: one[times] for name, one in known.items() if one is not None})
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -24,14 +24,22 @@ from calm.motion.correction import BLOCK, MeasuredRecord, Task, motion_layout, s
 from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import FACTORS, instruments_of
 from calm.motion.matching import without
-from calm.motion.measurements import CurrentMeasurements, joined, read_currents
+from calm.motion.measurements import (
+    CurrentMeasurements,
+    MooringMeasurements,
+    joined,
+    read_currents,
+)
 from calm.motion.remarks import ALL, Fault
 from calm.motion.study import MotionEstimate, cross_validated, judged, prepare, several
-from calm.motion.suspects import distances_of, torn
+from calm.motion.suspects import common_step, distances_of, torn
 from calm.records.instrument_series import split_label
 
 if TYPE_CHECKING:
+    from pandas import DataFrame
     from xarray import Dataset
+
+    Given: TypeAlias = str | Path | Dataset | DataFrame
 
 
 _MATCHES = ("label", "height", "depth")
@@ -39,6 +47,43 @@ CORRECTABLE = ("clock", "gain", "offset", "drift", "air")
 """What can be taken off what a sensor reads: of `calm.motion.remarks.Fault`, and the air."""
 GAP = np.timedelta64(2, "h")
 """Longest time between two values that are interpolated, where nothing else is asked for."""
+
+
+def by_clocks(
+    one: CurrentMeasurements, clocks: Mapping[str, matching.Clock]
+) -> CurrentMeasurements:
+    """Return currents at their true times, where the one clock of their file was checked."""
+    found = [clocks[label] for label in one.label if label in clocks]
+    return replace(one, time=found[0].true_times(one.time)) if found else one
+
+
+RARE = 0.1
+"""Share of the times below which it is said that few have two sensors."""
+
+
+def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
+    """Return a sentence where few times have two sensors.
+
+    UsageError: none has, and no current was measured.
+    """
+    if len(measured.label) < 2:
+        return []
+    count = np.isfinite(measured.depth).sum(axis=1)
+    several, some = int((count >= 2).sum()), int((count >= 1).sum())
+    if several >= RARE * some:
+        return []
+    said = f"{several} of {some} times have the pressures of two sensors or more"
+    if not several and not currents:
+        spans = [
+            f"{label} {' to '.join(np.datetime_as_string(measured.time[there][[0, -1]], 'D'))}"
+            for label, there in zip(measured.label, np.isfinite(measured.depth).T, strict=True)
+            if there.any()
+        ]
+        raise UsageError(
+            f"--pressures: {said}: the records share no time ({'; '.join(spans)}). Give currents, "
+            "records of one deployment, or a longer --gap"
+        )
+    return [said]
 
 
 def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
@@ -74,6 +119,8 @@ class RecoveredMooring:
     gap : longest time between two values that are interpolated
     declination : added to the directions of the currents [degrees]
     prior : a record of currents whose shapes are taken, where none were measured; None of none
+    without : labels of sensors that are left out altogether
+    moved : the step by which all sensors are deeper, where no currents were measured
     measured, notes, source : what was read, with notes on it and the source files
 
     Raises
@@ -96,6 +143,8 @@ class RecoveredMooring:
     gap: np.timedelta64 = GAP
     declination: float | None = None
     prior: Path | None = None
+    without: Sequence[str] = ()
+    moved: tuple[Fault, ...] = field(default=(), init=False)
     _faults: tuple[Fault, ...] = field(default=(), init=False)
 
     def __post_init__(self) -> None:
@@ -139,14 +188,24 @@ class RecoveredMooring:
             self.currents, seabed, (position.latitude, position.longitude), self.declination,
             mooring.file.environment.maximum_speed,
         )  # fmt: skip
+        for i, text in enumerate(self.currents):
+            path = split_label(text)[1]
+            read[i], said = matching.hung_currents(read[i], path, line, seabed)
+            notes += said
         notes += dict.fromkeys(f"{one.source}: {one.note}" for one in given if one.note)
         self.cards = [*(card for one in read for card in one.cards), *of_files.values()]
+        points = self._without(points, line.label)
+        first = min(time[0] for time in [one.time for one in read] + [one.time for one in given])
+        clocks = matching.clocks_of(mooring, first)
+        read = [by_clocks(one, clocks) for one in read]
         used, absolute = [], "air" in self.correct
         for i, at in points.items():
             depth = given[i].value - sensors.AIR * absolute
             one = replace(given[i], label=line.label[at], value=depth)
+            if clock := clocks.get(one.label):
+                one = replace(one, time=clock.true_times(one.time))
             for fault in self._faults:
-                if fault.label in (ALL, one.label):
+                if fault.label in (ALL, one.label) and fault.kind != "moved":
                     time, depth = fault.taken_off(one.time, one.value)
                     one = replace(one, time=time, value=depth)
             one, said = sensors.plausible(one, float(line.still[at]), seabed)
@@ -154,6 +213,7 @@ class RecoveredMooring:
             notes += said
             if one.dropped:
                 notes.append(f"{one.label}: {one.dropped} pressures left out for their flag")
+        notes += [f"{label}: {clock.sentence}" for label, clock in clocks.items()]
         if not any(np.isfinite(one.value).any() for one in used):
             raise UsageError("--pressures: no sensor has a good pressure: " + "; ".join(notes))
         level = None if self.sea_level is None else sensors.read_sea_level(self.sea_level)
@@ -162,23 +222,43 @@ class RecoveredMooring:
         notes += [f"{one.source}: {note}" for one in read for note in one.notes]
         places = line.still[measured.point]
         notes += sensors.air_notes(measured.depth, places)
-        lost = sensors.unusable(measured.label, measured.depth, places)
+        shown = [j for j, label in enumerate(measured.label) if label not in self.hidden]
+        judged_labels = tuple(measured.label[j] for j in shown)
+        lost = sensors.unusable(judged_labels, measured.depth[:, shown], places[shown])
         notes += [f"{label} {reason}" for label, reason in lost.items()]
         measured = without(measured, list(lost))
         if not measured.label:
             raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
+        notes += shared_times(without(measured, self.hidden), bool(self.currents))
         self.measured, said = torn(measured, distances_of(mooring))
         self.notes = notes + said
         self.source = {
             "currents": ", ".join(hashed(split_label(one)[1]) for one in self.currents),
             "pressures": ", ".join(hashed(split_label(one)[1]) for one in self.pressures),
         }
+        if not self.currents:
+            step = common_step(without(self.measured, self.hidden), line.still)
+            if step is not None:
+                sunk = np.where(self.measured.time >= step.since, step.value, 0.0)
+                self.measured = replace(self.measured, sunk=sunk)
+                self.moved = (step,)
         off = [one.sentence() for one in self._faults]
+        off += [f"{label}: {clock.sentence}" for label, clock in clocks.items()]
         off += ["all sensors: 10.13 dbar, the pressure of the air"] * absolute
         if off:
             self.source["corrected"] = "taken off: " + "; ".join(off)
         if self.prior is not None:
             self.source["prior"] = hashed(self.prior)
+
+    def _without(self, points: dict[int, int], labels: Sequence[str]) -> dict[int, int]:
+        """Return the points of the sensors that are not left out, whose labels must be known."""
+        known = [labels[at] for at in points.values()]
+        for option, asked in (("--without", self.without), ("--hold-out", self.hidden)):
+            for label in asked:
+                if label not in known:
+                    what = f"{option}: no sensor is called `{label}`"
+                    raise UsageError(unknown(what, label, known))
+        return {i: at for i, at in points.items() if labels[at] not in self.without}
 
     def _prepared(self, tell: Callable[[str], None]) -> Task:
         return prepare(self.mooring, self.measured, self.names, self.hidden, tell, self.shapes)
@@ -208,6 +288,7 @@ class RecoveredMooring:
         options = {
             "fit": sorted(self.names),
             "hold_out": sorted(self.hidden),
+            "without": sorted(self.without),
             "correct": self.source.get("corrected", ""),
             "prior": self.source.get("prior", ""),
             "sensors": list(self.measured.label),
@@ -237,7 +318,7 @@ class RecoveredMooring:
         tell : is told what is going on
         workers : threads
         """
-        faults = (*self._faults, *diagnosed(self.task))
+        faults = (*self._faults, *self.moved, *diagnosed(self.task))
         study = replace(judged(self.task, self.measured, result, faults), notes=tuple(self.notes))
         if self.cross_validate:
             each = cross_validated(
@@ -248,10 +329,35 @@ class RecoveredMooring:
         return study
 
 
+def as_files(given: Any, folder: Path, name: str) -> list[str]:
+    """Return files for datasets and tables, which are written to a folder; paths as they stand.
+
+    Parameters
+    ----------
+    given : one or several; a table has an index of times and columns as a CSV file has them
+    folder, name : where to write, and how the files begin
+    """
+    if isinstance(given, str | Path) or not isinstance(given, Sequence):
+        given = [given]
+    found = []
+    for number, one in enumerate(given):
+        if isinstance(one, str | Path):
+            found.append(str(one))
+        elif hasattr(one, "to_netcdf"):
+            found.append(str(folder / f"{name}-{number + 1}.nc"))
+            one.to_netcdf(found[-1], engine="h5netcdf")
+        elif hasattr(one, "to_csv"):
+            found.append(str(folder / f"{name}-{number + 1}.csv"))
+            one.to_csv(found[-1], index_label="time", date_format="%Y-%m-%dT%H:%M:%S.%f")
+        else:
+            raise TypeError(f"{name}: {type(one).__name__} is no path, xarray or pandas object")
+    return found
+
+
 def estimate_motion(
     mooring: Design,
-    pressures: Sequence[str | Path],
-    currents: Sequence[str | Path] = (),
+    pressures: Given | Sequence[Given],
+    currents: Given | Sequence[Given] = (),
     *,
     match: str = "label",
     fit: Sequence[str] = (),
@@ -263,6 +369,7 @@ def estimate_motion(
     declination: float | None = None,
     correct: Sequence[str] = (),
     prior: str | Path | None = None,
+    without: Sequence[str] = (),
     workers: int | None = None,
 ) -> MotionEstimate:
     """Estimate the depth of every part of a mooring at every time, as ``calm motion`` does.
@@ -270,9 +377,10 @@ def estimate_motion(
     Parameters
     ----------
     mooring : with a position
-    pressures : files of the sensors on the line, as paths or as ``LABEL=PATH``
-    currents : files of the current, as paths or as ``LABEL=PATH``; none: they are learnt from the
-        pressures of two sensors or more
+    pressures : of the sensors on the line: a file or several, as paths or as ``LABEL=PATH``, an
+        `xarray.Dataset` as such a file holds it, or a `pandas.DataFrame` with an index of times and
+        columns such as ``LABEL[dbar]``
+    currents : in the same ways; none: they are learnt from the pressures
     match : how sensors are found on the line: by `label`, or by nominal `height` or `depth`
     fit : what to estimate for the whole record besides the drag: `buoyancy`, `length`
     hold_out : labels of sensors that are hidden, and at which the result is judged
@@ -284,6 +392,7 @@ def estimate_motion(
     correct : what is taken off where a sensor is wrong: `clock`, `gain`, `offset`, `drift`; `air`
         of absolute pressures
     prior : a record of currents whose shapes are taken, without `currents`
+    without : labels of sensors that are left out altogether
     workers : threads; one for each processor that may be used where not given
 
     Raises
@@ -292,23 +401,25 @@ def estimate_motion(
         A file cannot be read or does not belong to the mooring; too few sensors are left.
     """
     refuse_all_but_moorings(mooring.file)
-    recovery = RecoveredMooring(
-        mooring,
-        [str(path) for path in pressures],
-        [str(path) for path in currents],
-        match,
-        fit,
-        hold_out,
-        cross_validate,
-        correct,
-        None if sea_level is None else Path(sea_level),
-        ",".join(map(str, flags)),
-        GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"),
-        declination,
-        None if prior is None else Path(prior),
-    )
-    with TemporaryDirectory() as folder:
-        output = Path(folder) / "motion.nc"
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        recovery = RecoveredMooring(
+            mooring,
+            as_files(pressures, folder, "pressures"),
+            as_files(currents, folder, "currents"),
+            match,
+            fit,
+            hold_out,
+            cross_validate,
+            correct,
+            None if sea_level is None else Path(sea_level),
+            ",".join(map(str, flags)),
+            GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"),
+            declination,
+            None if prior is None else Path(prior),
+            without,
+        )
+        output = folder / "motion.nc"
         recovery.estimate(output, workers=workers)
         with open_result(output) as kept:
             dataset = kept.load()

@@ -24,6 +24,8 @@ LIKELY = 20.0
 """Odds from which something is said to be wrong."""
 FAR_OFFSET = 2.5
 """Offset of all sensors that is named, in deviations of what is expected."""
+FAR_DATUM = 10.0
+"""The same, at most [m]."""
 FAR_LENGTH = 5.0
 """The same of a length where currents are not known: these take up much of it."""
 FAR_FACTOR = 3.0
@@ -39,7 +41,7 @@ class Fault:
     Attributes
     ----------
     label : of the sensor; `ALL` where it is all of them alike
-    kind : `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
+    kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
     value, low, high : with the ends of its interval of 95 %: how late its times are [h]; factor on
         its depths; how much too deep it reads, what that grows to, or how far down the line it has
         moved [m]; 0 of what is exchanged; of `OF_LINE` a factor on what the file or the meter says
@@ -94,7 +96,9 @@ class Fault:
         if self.kind == "gain":
             return time, depth / self.value
         share: Floats = np.ones(1)
-        if self.kind != "offset":
+        if self.kind == "moved":
+            share = np.where(time >= self.since, 1.0, 0.0)
+        elif self.kind != "offset":
             share = np.clip((time - self.since) / (self.until - self.since), 0.0, 1.0)
         return time, depth - self.value * share
 
@@ -125,6 +129,9 @@ class Fault:
             f"{'longer' if self.value > 1.0 else 'shorter'} than in the file",
             "drag": f"its drag is {share} of that assumed",
             "fouling": f"its drag changes to {share} of itself by the end: fouling",
+            "moved": f"the whole mooring is {abs(self.value):.1f} m {band} "
+            f"{'deeper' if self.value > 0.0 else 'shallower'} from {when} on: it moved, and the "
+            "seabed there is at another depth",
             "clock": f"{clock} {abs(self.value):.2f} h {way} {band}"
             + f", or those of the currents {'early' if self.value > 0.0 else 'late'}"
             * (self.label == ALL),
@@ -187,7 +194,7 @@ def alone_remarks(common: Common) -> list[str]:
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
     """Return a sentence where all sensors are off alike, by much of the depth of the seabed [m]."""
-    if abs(common.datum) <= FAR_OFFSET * common_unknowns.DATUM * seabed:
+    if abs(common.datum) <= min(FAR_OFFSET * common_unknowns.DATUM * seabed, FAR_DATUM):
         return []
     return [
         f"all sensors: {common.datum:+.1f} m off alike: the depth of the water, a length, or the "

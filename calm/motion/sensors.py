@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -286,6 +286,15 @@ def plausible(
             "and 10.13 dbar, the air's, are taken off"
         )
         sensor = replace(sensor, value=sensor.value - AIR)
+    stuck = _stuck(sensor.value)
+    if stuck.any():
+        first, last = np.flatnonzero(stuck)[[0, -1]]
+        begins, ends = (np.datetime_as_string(sensor.time[at], "m") for at in (first, last))
+        notes.append(
+            f"{sensor.label}: does not change at {stuck.sum()} of its {stuck.size} times, from "
+            f"{begins} to {ends}, and is left out there"
+        )
+        sensor = replace(sensor, value=np.where(stuck, np.nan, sensor.value))
     wrong = (sensor.value < least) | (sensor.value > greatest)
     if wrong.any() and 2 * wrong.sum() < np.isfinite(sensor.value).sum():
         first = int(wrong.argmax())
@@ -296,6 +305,24 @@ def plausible(
         )
         sensor = replace(sensor, value=np.where(wrong, np.nan, sensor.value))
     return sensor, notes
+
+
+STUCK, FEWEST_STUCK = 0.1, 24
+"""Share of a series over which a sound sensor does not read the same, and readings at least."""
+
+
+def _stuck(value: Floats) -> NDArray[np.bool_]:
+    """Return (n,) where a series that changes elsewhere reads the same for long."""
+    same = np.zeros(len(value), bool)
+    change = np.flatnonzero(np.diff(value) != 0.0)  # also on either side of a gap
+    ends = np.concatenate([[-1], change, [len(value) - 1]])
+    for before, end in pairwise(ends):
+        length = end - before
+        if length >= max(STUCK * len(value), FEWEST_STUCK) and np.isfinite(value[end]):
+            same[before + 1 : end + 1] = True
+    rest = value[~same]
+    lively = rest.size > FEWEST and 2 * np.count_nonzero(np.diff(rest)) > rest.size
+    return same & lively
 
 
 AIR = instrument_text.AIR / 1.0082
@@ -322,7 +349,7 @@ def air_notes(depth: Floats, place: Floats) -> list[str]:
 
 
 def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, str]:
-    """Return why sensors cannot be used, by label; what cannot be right is refused.
+    """Return why sensors cannot be used, by label.
 
     Parameters
     ----------
@@ -333,11 +360,13 @@ def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, s
     Raises
     ------
     UsageError
-        A sensor is nowhere near its place on the line, so that its unit or its label is wrong.
+        Half of the sensors or more are nowhere near their places on the line, so that a unit or the
+        line is wrong; or two labels are exchanged.
     """
-    reasons, complaints = {}, []
+    reasons: dict[str, str] = {}
+    far_off: dict[str, str] = {}
     least = np.array([_least(column) for column in depth.T])
-    complaints += _exchanged(labels, least, place)
+    exchanged = _exchanged(labels, least, place)
     units = _other_unit(least, place)
     for j, label in enumerate(labels):
         known = depth[:, j][np.isfinite(depth[:, j])]
@@ -348,15 +377,17 @@ def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, s
             reasons[label] = f"is constant at {known[0]:.1f} m: it is left out"
             continue
         far = abs(least[j] - place[j]) > MISPLACED and not 0.5 < least[j] / place[j] < 2.0
-        if (far or units) and not any(f"`{label}`" in one for one in complaints):
+        if (far or units) and not any(f"`{label}`" in one for one in exchanged):
             doubted = "sign" if least[j] < -MISPLACED else f"unit ({units or 'bar, kPa?'})"
-            complaints.append(
-                f"`{label}` is at {least[j]:.1f} m at its least, where the line has it at "
-                f"{place[j]:.1f} m: its {doubted} or its label is wrong"
+            far_off[label] = (
+                f"is at {least[j]:.1f} m at its least, where the line has it at {place[j]:.1f} m: "
+                f"its {doubted} or its label is wrong"
             )
-    if complaints:
-        raise UsageError("--pressures: " + "; ".join(complaints))
-    return reasons
+    if exchanged or 2 * len(far_off) >= max(len(labels) - len(reasons), 1):
+        said = [f"`{label}` {reason}" for label, reason in far_off.items()]
+        if exchanged or said:
+            raise UsageError("--pressures: " + "; ".join([*exchanged, *said]))
+    return reasons | {one: f"{reason}; it is left out" for one, reason in far_off.items()}
 
 
 def _least(depth: Floats) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from calm.errors import UsageError, unknown
 from calm.motion.correction import Task, estimate_in_memory
 from calm.motion.line_response import Forward, instruments_of, labels_of
 from calm.motion.matching import without
+from calm.motion.measured_currents import CurrentSmoother
 from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, level_names
 from calm.motion.remarks import (
     ALL,
@@ -35,7 +36,6 @@ from calm.motion.remarks import (
 )
 from calm.motion.suspects import meter_remarks
 from calm.motion.unknown_currents import learn_currents, with_knots
-from calm.motion.whole_record import estimate_common
 from calm.physics.line import Floats
 
 if TYPE_CHECKING:
@@ -102,6 +102,34 @@ class MotionEstimate:
         """Return the dataset that ``calm motion`` writes, with labels and units."""
         return self.dataset.copy()
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the depths of the sensors over time, with their 95 % bands, and return the axes.
+
+        Measured depths are dots. Needs matplotlib.
+
+        Parameters
+        ----------
+        ax : axes of matplotlib; new ones if not given
+        """
+        if ax is None:
+            from matplotlib.figure import Figure
+
+            ax = Figure(figsize=(9.0, 5.0)).add_subplot()
+        used, time = self.task.measured, self.task.measured.time
+        for j, label in enumerate(used.label):
+            depth, spread = depths_at(self.dataset, int(used.point[j]))
+            (line,) = ax.plot(time, depth, label=label, linewidth=1.0)
+            colour = line.get_color()
+            ax.fill_between(
+                time, depth - BAND * spread, depth + BAND * spread, color=colour, alpha=0.25
+            )
+            ax.plot(time, used.depth[:, j], ".", color=colour, markersize=2.0)
+        ax.set_ylabel("depth [m]")
+        if not ax.yaxis_inverted():
+            ax.invert_yaxis()
+        ax.legend(fontsize="small")
+        return ax
+
     def __repr__(self) -> str:
         """Return the times, the factors and the agreement, in ten lines at most."""
         time = self.task.measured.time
@@ -153,13 +181,9 @@ def prepare(
     if not used.label:
         raise UsageError("--hold-out: no sensor is left to estimate from")
     if used.u.shape[1]:
-        return Task(mooring, used, estimate_common(mooring, used, names))
-    if len(used.label) < 2:
-        raise UsageError(
-            "without --currents at least two sensors with a pressure are needed, and one is left: "
-            "one pressure says how strong the current is, not where; give --currents, or hide "
-            "fewer"
-        )
+        smoother = CurrentSmoother(mooring, used, names)
+        smoother.solve()
+        return Task(mooring, used, smoother.common(), smoother)
     used = with_knots(used, mooring)
     return Task(mooring, used, learn_currents(mooring, used, names, tell, prior))
 
@@ -185,7 +209,6 @@ def judged(
     diagnosis : what is wrong
     """
     used = task.measured
-    residual = np.asarray(result["residual"].values, np.float64)
     alone = task.common.inferred
     plain = None if alone else np.asarray(result["plain_depth"].values, np.float64)
     down = knockdown(used)
@@ -193,8 +216,8 @@ def judged(
     fit_of, plain_of = {}, {}
     for j, label in enumerate(used.label):
         calm = calm_times(down, every & np.isfinite(used.depth[:, j]))
-        depth = used.depth[:, j] - task.common.offset[j]
-        fit_of[label] = agreement(depth - residual[:, j], used.depth[:, j], calm, every)
+        depth, _ = depths_at(result, int(used.point[j]))
+        fit_of[label] = agreement(depth, used.depth[:, j], calm, every)
         if plain is not None:
             plain_of[label] = agreement(plain[:, j], used.depth[:, j], calm, every)
     still = Forward(task.mooring, {}).still
@@ -213,13 +236,8 @@ def judged(
         said += [*current_remarks(false, len(used.time)), *meter_remarks(used, names)]
     if not any(one.label == ALL and one.kind == "gain" for one in diagnosis):
         said += datum_remarks(task.common, float(task.mooring.water.depth))
-    if task.common.widened > 1.0:
-        said.append(
-            "the pressures miss the computed depths by more than all errors that are allowed "
-            f"for: the bands are widened {task.common.widened:.2g} times"
-        )
     of_line = any(one.kind in OF_LINE for one in diagnosis)
-    fits = not (of_line or unfit or task.common.widened > 1.0)
+    fits = not (of_line or unfit)
     return MotionEstimate(
         task, result, intervals(task), fit_of, plain_of, held, tuple(diagnosis), fits, tuple(said),
         false,

@@ -17,11 +17,12 @@ import numpy as np
 from calm.case import Design
 from calm.files.pieces import clamps_down
 from calm.motion import line_response
+from calm.motion.common_unknowns import NOISE, NORMAL
 from calm.motion.correction import Task
 from calm.motion.currents_law import Linear, ReadCurrents
 from calm.motion.line_response import FACTORS, STEP, Forward, LineResponse
 from calm.motion.measurements import MooringMeasurements, level_names
-from calm.motion.remarks import BAND, CURRENTS, LINE, Fault
+from calm.motion.remarks import ALL, BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
 
 CAUSES: Mapping[str, tuple[float, float]] = {
@@ -65,7 +66,7 @@ class Suspect:
 
         A parabola through nothing, with the slope there, and through the size throughout.
         """
-        if self.ahead is None or self.share is None:
+        if self.ahead is None or self.share is None or not size:
             return self
         slope = np.divide(
             self.column, self.share, out=np.zeros_like(self.column), where=self.share > 0.0
@@ -84,7 +85,7 @@ def line_suspects(
     moments : at some of the times
     way, at : the currents there, and the line in them
     """
-    common, one = task.common, moments.measured
+    one, factors = moments.measured, task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
     span = task.measured.time[[0, -1]]
     share = ((one.time[good] - span[0]) / max(span[1] - span[0], np.timedelta64(1, "ns")))[:, None]
@@ -102,8 +103,8 @@ def line_suspects(
         return Suspect(fault, column, wide, log, none, ahead, part)
 
     def dragged(size: float) -> Floats:
-        factors = {n: v * np.exp(size * n.endswith("drag")) for n, v in common.factors.items()}
-        there = moments.depths(way, at.logs, Forward(task.mooring, factors))
+        grown = {n: v * np.exp(size * n.endswith("drag")) for n, v in factors.items()}
+        there = moments.depths(way, at.logs, Forward(task.mooring, grown))
         return np.nan_to_num(seen(there - at.depth))
 
     def misread(level: int) -> Callable[[float], Floats]:
@@ -112,11 +113,11 @@ def line_suspects(
             seen(moments.depths(way, at.logs - size * mine) - at.depth)
         )
 
-    names = list(common.factors)
+    names = list(factors)
     columns = {name: seen(at.common[:, :, i]) for i, name in enumerate(names)}
     for name in FACTORS:
         if name not in columns:
-            forward = Forward(task.mooring, {**common.factors, name: float(np.exp(STEP))})
+            forward = Forward(task.mooring, {**factors, name: float(np.exp(STEP))})
             ahead = moments.depths(way, at.logs, forward)
             columns[name] = np.nan_to_num(seen((ahead - at.depth) / STEP))
     yield suspect(LINE, "length", columns["length"])
@@ -237,3 +238,41 @@ def torn(measured: MooringMeasurements, distance: Floats) -> tuple[MooringMeasur
         if wrong[at, j]
     ]
     return replace(measured, depth=np.where(wrong, np.nan, depth)), notes
+
+
+EITHER_SIDE, CLEAR, LEAST_STEP = 4, 8.0, 3.0
+"""Times on either side of a step; how many times its usual change that of the lowest sensor is, at
+least; and the least step [m]."""
+
+
+def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
+    """Return the step by which all sensors are deeper or shallower alike from one time on.
+
+    Where no current was measured: strong currents would explain it. They take the lowest sensor
+    down by little, and less than the highest; a mooring that moves takes all down alike.
+
+    Parameters
+    ----------
+    still : (p,) depths of the points in still water [m]
+    """
+    whole = np.flatnonzero(np.isfinite(measured.depth).all(axis=1))
+    order = np.argsort(still[measured.point], kind="stable")
+    depth = measured.depth[whole][:, order]
+    count, sensors = depth.shape
+    if count < 4 * EITHER_SIDE or sensors < 2:
+        return None
+    sums = np.cumsum(np.pad(depth, ((1, 0), (0, 0))), axis=0)
+    means = (sums[EITHER_SIDE:] - sums[:-EITHER_SIDE]) / EITHER_SIDE
+    change = means[EITHER_SIDE:] - means[:-EITHER_SIDE]
+    usual = NORMAL * np.median(np.abs(change), axis=0) + NOISE
+    at = int(np.abs(change[:, -1]).argmax())
+    size = float(change[at, -1])
+    lasting = np.median(depth[at + EITHER_SIDE :, -1]) - np.median(depth[: at + EITHER_SIDE, -1])
+    alike = np.abs(change[at] - size) <= 3.0 * usual
+    if abs(size) < max(CLEAR * usual[-1], LEAST_STEP) or not alike.all():
+        return None
+    if abs(lasting - size) > 0.5 * abs(size):
+        return None
+    since = measured.time[whole[at + EITHER_SIDE]]
+    deviation = float(usual[-1] / np.sqrt(EITHER_SIDE))
+    return replace(Fault(ALL, "moved", since=since).sized(size, deviation), odds=np.inf)

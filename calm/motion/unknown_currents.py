@@ -22,12 +22,16 @@ from numpy.typing import NDArray
 from calm.case import Design
 from calm.errors import UsageError
 from calm.motion import line_response
-from calm.motion.common_unknowns import Common
+from calm.motion.common_unknowns import (
+    Common,
+    common_beforehand,
+    fixed_slopes,
+    repeated,
+)
 from calm.motion.currents_law import Linear, ReadCurrents, SpeedLaw
 from calm.motion.estimate import CurrentsState, Posterior, posterior
 from calm.motion.line_response import Forward, LineResponse
 from calm.motion.measurements import FREE, CurrentMeasurements, MooringMeasurements
-from calm.motion.whole_record import common_beforehand, fixed_slopes, repeated
 from calm.physics.line import Floats, Integers
 
 KNOTS, FINER = 6, 2.2
@@ -62,6 +66,9 @@ USUAL, WITHIN = 0.07, 0.7
 SEABED = 0.0005
 """Of the depth of the water, as a share of it: where pressures alone place a line, a wrong length
 stands for what is wrong by more."""
+LEAST_PART, HIGH, HIGH_KNOWN = 5.0, 3.0, 0.1
+"""Percentile of its depths that counts as the least of a sensor; how far that is above its place in
+still water before the place is doubted [m]; and how well that is known, as a share of it."""
 AGAIN = 3
 """Steps from a fit that is kept to that of another time."""
 
@@ -74,7 +81,8 @@ def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasure
     """
     still, seabed = Forward(mooring, {}).still, float(mooring.water.depth)
     sensor = int(np.argmin(still[measured.point]))
-    down = float(np.nanquantile(measured.depth[:, sensor], DOWN)) - still[measured.point[sensor]]
+    depth = measured.depth[:, sensor] - measured.moved
+    down = float(np.nanquantile(depth, DOWN)) - still[measured.point[sensor]]
     top = max(float(still.min()), 0.0) + max(down, 0.0)
     knots = top + (seabed - top) * np.linspace(0.0, 1.0, KNOTS) ** FINER
     shape = len(measured.time), KNOTS
@@ -164,22 +172,28 @@ def learn_currents(
         places = dict(zip(labels, still.tolist(), strict=True))
         mean, covariance = shaped_law(part, prior, places)
     worth = SHAPED if prior else PRIOR
-    begun = common_beforehand(
-        dict.fromkeys(names, 1.0), SEABED * mooring.water.depth, part, np.zeros((KNOTS, KNOTS))
-    )
+    high = raised(mooring, part)
+    datum = max(SEABED * float(mooring.water.depth), HIGH_KNOWN * abs(high))
+    begun = common_beforehand(dict.fromkeys(names, 1.0), datum, len(part.label), high)
     begun = replace(begun, worst=USUAL)
     common, logs = begun, np.zeros((len(part.time), KNOTS))
     at = None
     before = covariance.copy()
     nothing = np.zeros_like(begun.covariance)
     reach = np.ones(len(part.time))
-    down = np.nansum(part.depth, axis=1)
+    down = np.nansum(part.depth - part.moved[:, None], axis=1)
     used = np.flatnonzero(down >= np.quantile(down, 1.0 - STRONGER))
     for turn in range(TURNS):
         tell(f"learning the currents from the pressures: {turn + 1} of {TURNS}")
         moments = LineResponse(part, *line_response.forwards_of(mooring, common))
         fit = _Fit(moments, replace(common, covariance=nothing), SpeedLaw(mean, covariance))
         at = fit.linear(logs) if at is None else fit.moved(at, logs)
+        if not np.isfinite(at.depth).any():
+            names_of = ", ".join(part.label)
+            raise UsageError(
+                f"--pressures: the line has no equilibrium that fits {names_of}: check their "
+                "labels, the lengths of the line and the depth of the water"
+            )
         found = fit.posterior(at)
         tried = logs + reach[:, None] * np.clip(found.logs - logs, -LONGEST, LONGEST)
         ahead = fit.linear(tried)
@@ -205,6 +219,21 @@ def learn_currents(
     return replace(common, law=SpeedLaw(mean, covariance, _with_mean(fit, at)))
 
 
+def raised(mooring: Design, measured: MooringMeasurements) -> float:
+    """Return by how much all sensors are shallower than the line in still water, at most 0 [m].
+
+    No current lifts a line: where the shallowest readings of a sensor are above its place, the
+    depth of the water, a length or the place is another than in the file.
+    """
+    still = Forward(mooring, {}).still
+    depth = measured.depth - measured.moved[:, None]
+    least = [np.nanpercentile(one, LEAST_PART) for one in depth.T if np.isfinite(one).any()]
+    used = [j for j, one in enumerate(depth.T) if np.isfinite(one).any()]
+    off = np.array(least) - still[measured.point[used]]
+    high = float(off.min(initial=0.0))
+    return high if high < -HIGH else 0.0
+
+
 @dataclass(frozen=True)
 class _Fit:
     """The times that are learnt from, under a law."""
@@ -228,7 +257,7 @@ class _Fit:
     def posterior(self, at: Linear, common: Common | None = None) -> Posterior:
         """Return what the pressures make of the currents by the slopes at a state."""
         one, still = self.moments.measured, self.moments.forward.still
-        return posterior(one, at, self.way.spread, common or self.common, still, furthest=np.inf)
+        return posterior(one, at, self.way.spread, common or self.common, still)
 
     def misfit(self, at: Linear) -> Floats:
         """Return (n,) twice the negative logarithm of how likely a state is, with its pressures."""
@@ -236,8 +265,7 @@ class _Fit:
         found = self.posterior(at)
         seen = at.slope[:, point]
         rest = found.expected - seen @ self.law.covariance @ seen.transpose(0, 2, 1)
-        tide = 0.0 if one.tide is None else one.tide[:, None]
-        there = at.depth[:, point] + self.common.datum + self.common.offset + tide
+        there = at.depth[:, point] + self.common.datum + self.common.offset + one.surface[:, None]
         left = np.where(np.isfinite(one.depth), one.depth - there, 0.0)
         size = np.linalg.slogdet(rest)[1]
         bent = np.einsum("ns,ns->n", left, np.linalg.solve(rest, left[:, :, None])[:, :, 0])
@@ -294,19 +322,16 @@ def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
 
 def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterior) -> Common:
     """Return factors, datum and offsets after a step of Gauss and Newton, and their covariance."""
-    free = len(begun.value) - len(begun.offset)
     seen = fixed_slopes(at.common[:, fit.moments.measured.point])
     inverse = np.linalg.inv(found.expected)
     pulls = np.einsum("nsq,nst,nt->nq", seen, inverse, found.innovation)
     alike = repeated(pulls[:, len(begun.factors)])
-    before = np.linalg.inv(begun.covariance[:free, :free])
-    now = known.value[:free]
+    before = np.linalg.inv(begun.covariance)
+    now = known.value
     normal = np.einsum("nsq,nst,ntr->qr", seen, inverse, seen) / alike + before
-    step = np.linalg.solve(normal, pulls.sum(axis=0) / alike - before @ (now - begun.value[:free]))
+    step = np.linalg.solve(normal, pulls.sum(axis=0) / alike - before @ (now - begun.value))
     value = now + np.clip(step, -5.0, 5.0)
-    covariance = np.zeros_like(begun.covariance)
-    covariance[:free, :free] = np.linalg.inv(normal)
-    return replace(known.at(value), covariance=covariance)
+    return replace(known.at(value), covariance=np.linalg.inv(normal))
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
@@ -315,15 +340,16 @@ def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
     assert law is not None and law.kept is not None
     way, kept, still = law.read(one.level_depth), law.kept, moments.forward.still
     offset = common.offset + common.datum
-    off = np.nan_to_num(one.depth[:, None, :] - offset - kept.depth[None, :, one.point])
+    depth = one.depth - one.moved[:, None]
+    off = np.nan_to_num(depth[:, None, :] - offset - kept.depth[None, :, one.point])
     near = np.square(off).sum(axis=2).argmin(axis=1) if len(one.label) else 0
     near = np.where(np.isfinite(one.depth).any(axis=1), near, 0)
     at = Linear(*(part[near] for part in vars(kept).values()))
-    found = posterior(one, at, way.spread, common, still, furthest=np.inf)
+    found = posterior(one, at, way.spread, common, still)
     for _ in range(AGAIN):
         logs = at.logs + np.clip(found.logs - at.logs, -LONGEST, LONGEST)
         there = moments.depths(way, logs)
         lost = np.isnan(there).any(axis=1, keepdims=True)
         at = at.moved(np.where(lost, at.logs, logs), np.where(lost, at.depth, there))
-        found = posterior(one, at, way.spread, common, still, furthest=np.inf)
+        found = posterior(one, at, way.spread, common, still)
     return CurrentsState(way, at, found)

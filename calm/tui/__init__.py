@@ -1,1 +1,1 @@
-"""The line builder in the terminal: screens and widgets; `live` computes what they show."""
+"""The line builder in the terminal: screens and widgets; `live` solves and judges the line."""

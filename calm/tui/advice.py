@@ -1,6 +1,6 @@
-"""Changes of the file that mend what the design check finds.
+"""Changes of the file that correct findings of the design check.
 
-Nothing here knows of the screen. What has to be solved for is found by `calm size`.
+This module does not depend on the screen. Targets are met by the search of `calm size`.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -31,9 +31,9 @@ class Offer:
 
     Attributes
     ----------
-    title : what it is for and what it does
-    label : in the history
-    make : the file with it; it may solve for it, and raise a `CalmError` where nothing helps
+    title : purpose and effect
+    label : name in the history
+    make : returns the changed file; may solve for a value, and raise `CalmError` without a remedy
     """
 
     title: str
@@ -42,13 +42,13 @@ class Offer:
 
 
 def single(view: View) -> LegResult | None:
-    """Return the line of a mooring that stands; None of a tow and of several legs."""
+    """Return the line of a mooring with an equilibrium; None for a tow or several legs."""
     result = view.result
     return None if result is None or result.several or result.towed else result.leg
 
 
 def offers(view: View, catalogue: Catalogue | None) -> list[Offer]:
-    """Return what mends the failures and warnings of a line that was judged, the gravest first."""
+    """Return remedies for the failures and warnings of a line, the most severe first."""
     result = single(view)
     if view.result is None or result is None:
         return [*_against_lifting(view, catalogue)]
@@ -62,7 +62,10 @@ def offers(view: View, catalogue: Catalogue | None) -> list[Offer]:
 
 
 def _against_lifting(view: View, catalogue: Catalogue | None) -> Iterator[Offer]:
-    """A heavier anchor, for a line that lifts its own: what one that holds anything would need."""
+    """Offer a heavier anchor for a line that lifts its anchor.
+
+    The weight is found with an anchor that holds any load.
+    """
     if view.failure is None or view.failure.status != Status.ANCHOR_LIFTS.label:
         return
     draft = Draft(view.text)
@@ -73,12 +76,12 @@ def _against_lifting(view: View, catalogue: Catalogue | None) -> Iterator[Offer]
 
 
 def sized(mooring: Design, target: str, change: str) -> Offer:
-    """The smallest change that meets a target, both as `calm size` reads them.
+    """Offer the smallest change that meets a target, both in the syntax of `calm size`.
 
     Raises
     ------
     UsageError
-        They cannot be understood.
+        The target or the change is invalid.
     """
     adjustment = parse_change(change, mooring.file)
     targets.parse_target(target, mooring.file)
@@ -86,14 +89,14 @@ def sized(mooring: Design, target: str, change: str) -> Offer:
     key, unit = change.rpartition(".")[2], f" {adjustment.unit}" if adjustment.unit else ""
     clamps = (f"clamps.{part.place.clamp}" for part in adjustment.parts if part.place.is_clamp)
     if any(clamps):
-        raise UsageError(f"{change}: only pieces of the line are changed here")
+        raise UsageError(f"{change}: only items of the line can be changed here")
 
     def make(draft: Draft) -> Draft:
         sizing = size(mooring, target, change)
         if sizing.status == NOT_MET:
             raise UsageError(f"{sizing.message} {sizing.advice}".strip())
         if sizing.after is None or sizing.after.value == adjustment.now:
-            raise UsageError(f"{target} is met as it is")
+            raise UsageError(f"{target} is met already")
         value = sizing.after.value
         if not adjustment.whole:
             value = rounded(value, _DIGITS, up=value > adjustment.now)
@@ -118,7 +121,7 @@ def _for(
 
 
 def _needed_weight(result: LegResult, grave: Sequence[Finding]) -> float:
-    """Return what the anchor is to weigh in water for all that is found of it [N]."""
+    """Return the anchor weight in water [N] that satisfies all findings on the anchor."""
     factor = result.file.checks.anchor_factor
     needed = [result.anchor_load.required_weight]
     for finding in grave:
@@ -133,7 +136,7 @@ def _needed_weight(result: LegResult, grave: Sequence[Finding]) -> float:
 
 
 def _anchors(last: Piece, needed: float, catalogue: Catalogue | None) -> Iterator[Offer]:
-    """The lightest anchor of the catalogue that is heavy enough, or the same one made heavier."""
+    """Offer the lightest anchor of the catalogue that is heavy enough, or a heavier one."""
     item = last.place.item
     heavy = [] if catalogue is None else [*_heavy_enough(catalogue, needed)]
     if heavy:
@@ -141,7 +144,7 @@ def _anchors(last: Piece, needed: float, catalogue: Catalogue | None) -> Iterato
         title = f"anchor: {id}, {say('tension', weight)} in water; {say('tension', needed)} needed"
         yield Offer(title, f"use {id}", _put(item, "use", id))
     weight = rounded(needed, _DIGITS, up=True)
-    title = f"anchor: {last.use} made to weigh {say('tension', weight)} in water"
+    title = f"anchor: {last.use} with a weight of {say('tension', weight)} in water"
     yield Offer(title, "a heavier anchor", _put(item, "weight", f"{weight:g} N"))
 
 
@@ -149,14 +152,14 @@ def _heavy_enough(catalogue: Catalogue, needed: float) -> Iterator[tuple[float, 
     for id in catalogue.ids():
         entry = catalogue.entry(id)
         if entry is not None and entry.section.data.get("kind") == "anchor":
-            with suppress(CalmError):  # one of the person's own with a mistake in it
+            with suppress(CalmError):  # a component of the user's catalogue with a mistake
                 component = catalogue.get(id)
                 if isinstance(component, Anchor) and -component.net_buoyancy >= needed:
                     yield -component.net_buoyancy, id
 
 
 def _floats(mooring: Design, finding: Finding, lacking: float) -> Iterator[Offer]:
-    """More of the floats between a break and the release."""
+    """Offer more floats between a break and the release."""
     file, release = mooring.file, mooring.file.release
     broken = next((p.index for p in file.pieces if p.place == finding.place), -1)
     if release is None:
@@ -166,12 +169,12 @@ def _floats(mooring: Design, finding: Finding, lacking: float) -> Iterator[Offer
         own = [piece for piece in file.pieces if piece.place.item == item]
         count = len(own) + ceil(lacking / own[0].component.net_buoyancy)
         label = f"{count} {own[0].use}"
-        title = f"back-up: {label} in place of {len(own)}"
+        title = f"back-up: {label} instead of {len(own)}"
         yield Offer(title, label, _put(item, "count", str(count)))
 
 
 def _put(item: int, key: str, value: str) -> Callable[[Draft], Draft]:
-    """Writes a value; another component drops the `weight` of the row."""
+    """Return a change that writes a value; a new component deletes the `weight` of the row."""
 
     def make(draft: Draft) -> Draft:
         made = draft.put(item, key, value)
@@ -188,7 +191,7 @@ def _is_float(piece: Piece) -> bool:
 
 
 def _buoyancy(mooring: Design, finding: Finding) -> Iterator[Offer]:
-    """More buoyancy of the highest float against a knockdown, an excursion or a tilt."""
+    """Offer more buoyancy of the highest float to reduce a knockdown, an excursion or a tilt."""
     floats = [piece for piece in mooring.file.pieces if _is_float(piece)]
     if not floats:
         return
@@ -201,7 +204,7 @@ def _buoyancy(mooring: Design, finding: Finding) -> Iterator[Offer]:
 
 
 def differences(before: View, after: View) -> list[str]:
-    """Return what a change does to the figures and to the findings, each as ``from → to``."""
+    """Return the effects of a change on values and findings, each as ``from → to``."""
     effects = []
     one, other = single(before), single(after)
     if one is not None and other is not None:
@@ -217,12 +220,12 @@ def differences(before: View, after: View) -> list[str]:
             if texts[0] != texts[1]:
                 effects.append(f"{name} {texts[0]} → {texts[1]}")
     elif after.failure is not None:
-        effects.append(f"it does not stand: {after.failure.message}")
+        effects.append(f"no equilibrium: {after.failure.message}")
     if idle := [when for when, view in (("before", before), ("now", after)) if not view.result]:
-        return [*effects, f"findings: not judged {' and '.join(idle)}, as it does not stand"]
-    words = {"failures": State.FAIL, "figures unknown": State.UNKNOWN, "warnings": State.WARN}
+        return [*effects, f"findings: not judged {' and '.join(idle)} (no equilibrium)"]
+    words = {"failures": State.FAIL, "unknown values": State.UNKNOWN, "warnings": State.WARN}
     for word, state in words.items():
         counts = [sum(each.state is state for each in view.findings) for view in (before, after)]
         if counts[0] != counts[1]:
             effects.append(f"{word} {counts[0]} → {counts[1]}")
-    return effects or ["nothing that is shown here changes"]
+    return effects or ["none of the displayed values changes"]

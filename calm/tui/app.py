@@ -1,5 +1,4 @@
-"""The application: it owns the turns of the keys, the workers and the way out; screens own what is
-shown."""
+"""The application handles the order of keys, the workers and the exit; screens show the draft."""
 
 import os
 import time
@@ -28,35 +27,35 @@ from calm.tui.session import Session
 from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
 
 _AUTOSAVED_AFTER = 0.3  # seconds
-_LOOKED_AT_DISK = 2.0  # seconds between two looks
-_HELD_AT_MOST = 3.0  # seconds that a frame waits for a terminal that answers no more
-_MOST_ROUNDS = 50  # what sends itself messages without an end is not waited for
+_LOOKED_AT_DISK = 2.0  # seconds between two checks of the file
+_HELD_AT_MOST = 3.0  # seconds that a frame waits for an unresponsive terminal
+_MOST_ROUNDS = 50  # a widget that keeps sending itself messages is not waited for
 _COLOURLESS = NoColor()
 
 
 class BuildApp(App[int]):
     """The line builder.
 
-    It handles keys, pastes and the mouse one after the other: what a key opens is there before the
-    next one is pressed. Keys that are typed ahead, or come in one parcel over a slow line, would
-    otherwise go to what has the focus when they arrive: to the line instead of the field that the
-    first of them opens.
+    It handles keys, pastes and the mouse one after the other: a screen opened by a key is there
+    before the next key is handled. Keys that are typed ahead, or arrive together over a slow
+    connection, would otherwise go to the widget in focus on arrival, such as the line instead of
+    the field that the first key opens.
 
-    A key is done when everything that it may have set going has come to rest. Each part of the
-    screen handles what it is sent in the order of its queue: a call that is sent after the key
-    comes back when the key is handled, and a second round finds what the key made the parts send
-    each other. Rounds are made until one of them finds no queue with anything left in it.
+    A key is handled once all message queues that it may have filled are empty. Each widget
+    handles messages in the order of its queue: a call posted after the key returns when the key is
+    handled, and a second round waits for messages that the widgets sent each other. Rounds are
+    repeated until all queues are empty.
 
     Parameters
     ----------
     session : the file that is built
-    kept : work that an earlier session has kept and not saved, to be offered
-    environ : describes the terminal
+    kept : unsaved work of an earlier session, offered at the start
+    environ : environment variables that describe the terminal
 
     Attributes
     ----------
-    not_kept : why unsaved work could not be kept at the end; empty as a rule
-    has_keys_waiting : whether a key is not handled yet
+    not_kept : reason if unsaved work could not be kept at the end, else empty
+    has_keys_waiting : whether a key is still waiting
     """
 
     TITLE = "calm build"
@@ -100,10 +99,10 @@ class BuildApp(App[int]):
         self.ansi_theme_dark, self.ansi_theme_light = PICTURE_DARK, PICTURE_LIGHT
         self.theme = choose_theme(environ)
 
-    # the turns of the keys
+    # the order of keys
 
     async def on_event(self, event: events.Event) -> None:
-        """Let what a person does wait for what was done before, but for the mouse that moves."""
+        """Queue user input until earlier input is handled, except mouse movements."""
         is_done = isinstance(event, events.InputEvent | events.Paste)
         if not is_done or event.is_forwarded or isinstance(event, events.MouseMove):
             await super().on_event(event)
@@ -113,7 +112,7 @@ class BuildApp(App[int]):
             await self._press()
 
     async def _press(self) -> None:
-        """Do what has waited longest."""
+        """Handle the oldest event in the queue."""
         self.has_keys_waiting = bool(self._waiting)
         if self.has_keys_waiting:
             before = self._listeners()
@@ -122,17 +121,17 @@ class BuildApp(App[int]):
             self._go_round(before)
 
     def _listeners(self) -> list[MessagePump]:
-        """All that a key may set going: what has the focus and what is around it, the screen.
+        """Return the widgets that a key may affect: the focused widget, its ancestors, the screen.
 
-        Not the screens below it: each message makes them have all of the screen painted anew. A
-        list hands on what is chosen in it, without the focus.
+        Screens below are excluded: each message would repaint the whole screen. Lists are included:
+        they post their selection without having the focus.
         """
         around = [] if self.focused is None else list(self.focused.ancestors_with_self)
         lists = [each for top in self.screen_stack[-1:] for each in top.query(OptionList)]
         return list(dict.fromkeys([*around, *lists, *self.screen_stack[-1:], self]))
 
     def _go_round(self, listeners: list[MessagePump]) -> None:
-        """Wait for one after the other; one that is gone handles nothing any more."""
+        """Wait for all listeners in turn; removed widgets are skipped."""
         while listeners:
             first, *others = listeners
             if first.call_later(self._go_round, others):
@@ -151,17 +150,17 @@ class BuildApp(App[int]):
     # the terminal
 
     def get_default_screen(self) -> Screen[Any]:
-        """The line as the lowest screen: a screen below it would be painted too."""
+        """Return the line as the lowest screen: a screen below would be painted, too."""
         return self.builder
 
     def on_mount(self) -> None:
-        """The first solution and the catalogue follow what is shown."""
+        """Start timers; solve the line and read the catalogue after the first frame."""
         self.app_resume_signal.subscribe(self, lambda _: self.action_repaint())
         self.call_after_refresh(self._begin)
         self.set_interval(_LOOKED_AT_DISK, self.saving.look_at_disk)
 
     def _begin(self) -> None:
-        """Once the line is on the screen: read the catalogue, solve, tell what was found."""
+        """Read the catalogue, solve the line and report, once the line is on the screen."""
         self._read_catalogue()
         self.judging.ask()
         if self._offered is not None:
@@ -171,16 +170,16 @@ class BuildApp(App[int]):
         is_unsaved = self.session.file.is_open_elsewhere()
         others = self.saving.presence.say(self.session.file.path)
         if is_unsaved or others:
-            what = "with work not saved" if is_unsaved else "in another builder"
+            what = "with unsaved work" if is_unsaved else "in another builder"
             who = f" (process {others[0]})" if others else ""
             self.tell(f"{self.session.name} is open elsewhere{who}, {what}", wrong=True)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """The command for colours; the other commands of textual have keys of their own here."""
+        """Yield the command for colours; Textual's other commands have keys in the builder."""
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Those of textual, and one for legible colours or for none."""
+        """Return Textual's filters, and a filter for legible colours or for none."""
         if self.no_color:
             return [_COLOURLESS]
         theme = self.current_theme
@@ -188,7 +187,7 @@ class BuildApp(App[int]):
         return [*super().get_line_filters(), own]
 
     def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
-        """Send the terminal what it does not show yet, once it has shown what was sent before."""
+        """Send the changed cells, once the terminal has displayed the previous frame."""
         if not isinstance(renderable, CompositorUpdate):
             super()._display(screen, renderable)
         elif self._pace.holds(time.monotonic()):
@@ -201,7 +200,7 @@ class BuildApp(App[int]):
                 driver.write(self._pace.question(time.monotonic()))
 
     def on_cursor_position(self) -> None:
-        """The terminal shows what was sent: send what has changed since."""
+        """Send the next changes; the terminal has displayed the previous frame."""
         if self._late is not None:
             self._late.stop()
             self._late = None
@@ -209,35 +208,35 @@ class BuildApp(App[int]):
             self.screen.refresh()
 
     def action_repaint(self) -> None:
-        """Send the terminal all of the screen."""
+        """Redraw the whole screen."""
         self._painted.forget()
         self.screen.refresh()
 
     # the screens
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Say something in the last line of the screen."""
+        """Show a message in the last line of the screen."""
         if self.is_running:  # else the screens are being taken apart
             screen = self.screen if isinstance(self.screen, DraftScreen) else self.builder
             screen.tell(text, wrong=wrong)
 
     def draft_screens(self) -> list[DraftScreen]:
-        """The open ones, the top one last."""
+        """Return the open draft screens, the top screen last."""
         return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
 
     def is_settled(self) -> bool:
-        """Return whether nothing is being typed any more; a bad value has been reported."""
+        """Whether no value is being typed any more; an invalid value is reported."""
         return not isinstance(self.screen, DraftScreen) or self.screen.settle()
 
     def taken_over(self, message: str) -> None:
-        """Another text has taken the place of the draft: every screen reads it again."""
+        """Update all screens after the draft was replaced by another text."""
         for screen in self.draft_screens():
             screen.replaced()
         self.tell(message)
         self._edited()
 
     def action_save(self) -> None:
-        """Save, and ask for a name where there is none."""
+        """Save, asking for a file name if needed."""
         if self.is_settled():
             self.saving.save()
 
@@ -247,7 +246,7 @@ class BuildApp(App[int]):
             self.saving.save_as()
 
     async def action_quit(self) -> None:
-        """Leave; unsaved work is asked about."""
+        """Quit; prompts for unsaved changes."""
         if self.is_settled():
             self.saving.quit()
 
@@ -257,14 +256,14 @@ class BuildApp(App[int]):
             self.push_screen(palette.Commands(id="--command-palette"))
 
     def action_help(self) -> None:
-        """All keys."""
+        """Show all keys."""
         self.push_screen(dialogs.LongText(key_table.all_keys()))
 
     # judging
 
     @property
     def is_idle(self) -> bool:
-        """Return whether the line that is shown has been solved, and nothing else is under way."""
+        """Whether the displayed line has been solved and no worker is running."""
         return self.judging.is_idle and self._is_catalogue_read
 
     def _edited(self) -> None:
@@ -280,18 +279,18 @@ class BuildApp(App[int]):
     def _show_views(self, *, is_first: bool = False) -> None:
         if self.is_running:  # else the screens are being taken apart
             for screen in self.draft_screens():
-                if screen.is_mounted and screen.is_attached:  # there, and not on the way out
+                if screen.is_mounted and screen.is_attached:  # mounted, and not being removed
                     screen.show_view()
             self.mend(as_judged=is_first)
 
     def _tell_lost_environment(self) -> None:
         before, self._lost = self._lost, self.session.standing.lost_environment
         if self._lost not in (None, before):
-            message = f"There is no environment {self._lost} now; the line stands in the file's own"
+            message = f"There is no environment {self._lost} now; the default environment is used"
             self.tell(message)
 
     def mend(self, *, as_judged: bool = False) -> None:
-        """Open the text where the draft cannot be read; or, `as_judged`, has mistakes."""
+        """Open the text if the draft cannot be parsed or, `as_judged`, has mistakes."""
         judged = self.workspace.view if as_judged and self.screen is self.builder else None
         if (judged and judged.problems) or self.session.draft.problems:
             self.call_later(self._open_text)
@@ -301,7 +300,7 @@ class BuildApp(App[int]):
 
         screens = self.draft_screens()
         if isinstance(screens[-1], TextScreen) or self.screen is not screens[-1]:
-            return  # it is open, or a question is, after which the view comes again
+            return  # open already, or a question is open, after which the view is shown again
         while self.screen is not self.builder:
             await self.pop_screen()
         self.builder.action_text()
@@ -323,10 +322,10 @@ class BuildApp(App[int]):
             self.workspace.take_catalogue(catalogue)
             self.builder.show_catalogue()
 
-    # what is kept, and the way out
+    # unsaved work, and the exit
 
     def keep(self) -> str:
-        """Keep what is not saved, at once; why it cannot be kept, empty where it is."""
+        """Keep unsaved work now; return the reason if this fails, else ""."""
         try:
             self.session.note_unsaved().keep()
         except (CalmError, OSError) as error:
@@ -340,36 +339,36 @@ class BuildApp(App[int]):
 
     @work(thread=True, group="keeping", exit_on_error=False)
     def _keep_aside(self, file: editing.WorkingFile) -> None:
-        """A slow disk holds up no key."""
+        """Keep unsaved work in a thread, so that a slow disk does not block keys."""
         try:
             file.keep()
         except (CalmError, OSError) as error:
             self.call_later(self.tell, f"Unsaved work cannot be kept: {error}", wrong=True)
 
     def on_unmount(self) -> None:
-        """Keep what is not saved whatever has ended the application, a closed page or a failure."""
+        """Keep unsaved work, even after a failure or a closed page."""
         self.saving.presence.say(None)
         self.keep_at_the_end()
 
     def take_typed(self) -> None:
-        """Take a good value that is being typed, nobody being asked any more."""
+        """Accept a valid value that is being typed, without questions."""
         if self.is_running and self.screen_stack and isinstance(self.screen, DraftScreen):
             self.screen.settle()
 
     def keep_at_the_end(self) -> None:
-        """Keep what is not saved, unless the person has left; `not_kept` says what prevents it."""
+        """Keep unsaved work unless the user has quit; set `not_kept` if this fails."""
         if not self._is_left:
             self.not_kept = self.keep()
 
     def leave(self) -> None:
-        """Leave; nothing is to be kept."""
+        """End the application without keeping unsaved work."""
         self._is_left, self._ends_at = True, time.monotonic() + 1.0
         if not self.session.changed:
-            self.keep()  # which removes a copy that is out of date
+            self.keep()  # removes an outdated copy
         self._exit_answered()
 
     def _exit_answered(self) -> None:
-        """End once the terminal has answered: the shell would take the answer for keys."""
+        """End after the terminal has answered, or the shell would read the answer as keys."""
         if self._pace.is_out and self._ends_at > time.monotonic():
             self.set_timer(0.02, self._exit_answered)
         else:

@@ -1,4 +1,4 @@
-"""The first screen: the line, its picture, the verdict, and the catalogue when it is wanted."""
+"""The first screen: the line, its picture and the verdict, and the catalogue on request."""
 
 from functools import partial
 from typing import Any
@@ -30,31 +30,31 @@ from calm.tui.screen import KeyBar
 from calm.tui.verdict_pane import VerdictPane
 
 _MOST_STEPS = 9
-"""Of the history, offered at once."""
+"""Number of steps of the history in one list."""
 
 
 class BuilderScreen(ComparingScreen):
-    """The line in the middle, and the ways to all other screens."""
+    """The main screen with the line, from which all other screens open."""
 
     BINDINGS = bindings("anywhere")
 
     def on_resize(self) -> None:
-        """The title says as much as there is room for."""
+        """Fit the title to the new width."""
         self.show_title()
 
     def on_mount(self) -> None:
-        """The keys go to the line."""
+        """Show the line and give it the focus."""
         self.line.show_rows()
         self.line.table.focus()
 
     def on_key(self, event: Key) -> None:
-        """A key removes the message that is shown."""
+        """Remove the current message."""
         if not self.line.editor.is_open:
             self.tell("")
 
     @on(DescendantFocus)
     def show_keys(self) -> None:
-        """The keys of what has the focus."""
+        """Show the keys of the focused widget."""
         places: dict[Any, str] = {CellEditor: "cell", VerdictPane: "verdict", Picture: "anywhere"}
         place = places.get(type(self.focused), "line")
         if self.focused is not None and self.catalogue in self.focused.ancestors_with_self:
@@ -62,7 +62,7 @@ class BuilderScreen(ComparingScreen):
         self.query_one(KeyBar).show_keys(hints(place), beside=place == "catalogue")
 
     def action_suspend(self) -> None:
-        """Back to the shell; undo where there is none, or a value is typed."""
+        """Suspend to the shell; undo while a value is typed, or without a shell."""
         if self.is_typing or self.app.is_web or self.app.is_headless:
             self.action_undo()
         else:
@@ -73,36 +73,36 @@ class BuilderScreen(ComparingScreen):
         self.pictures.tab = tab
 
     def action_zoom(self) -> None:
-        """Give the picture the screen, or take it back."""
+        """Show the picture on the whole screen, or restore the screen."""
         self.remove_class("-searching")
         self.toggle_class("-zoomed")
         is_zoomed = self.has_class("-zoomed")
         (self.query_one(Picture) if is_zoomed else self.line.table).focus()
 
     def action_next_environment(self) -> None:
-        """Stand the line in the next of its environments."""
+        """Show the line in its next environment."""
         standing = self.session.standing
         if len(standing.environments) == 1:
             self.tell("The file has one environment; add others on the screen of the water (w)")
             return
         standing.environment = name = standing.next_environment
         self.show_draft()
-        which = f"environment {name}" if name else "own `environment:`"
-        self.tell(f"The line stands in the file's {which}")
+        which = f"environment {name}" if name else "default environment"
+        self.tell(f"The line is shown in the {which}")
         self.workspace.edited()
 
     def action_verdict(self) -> None:
-        """The verdict line by line."""
+        """Move the focus to the lines of the verdict."""
         self.remove_class("-zoomed", "-searching")
         self.add_class("-reading")
         self.verdict.focus()
 
     def action_figures(self) -> None:
-        """Ask for all figures of the components that are missing, and write what is given."""
+        """Ask for all missing values of components, and write the answers."""
         session = self.session
         if not self.settle():
             return
-        view = self.workspace.judged("Missing figures are known once the line is judged")
+        view = self.workspace.judged("Missing values are listed once the line is judged")
         if view is None:
             return
         missing = missing_figures(view, session.draft)
@@ -111,10 +111,10 @@ class BuilderScreen(ComparingScreen):
             source = texts.pop("source", "")
             figures = {asked: text for asked, text in texts.items() if text}
             if figures:
-                count = f"{len(figures)} figure{'s' * (len(figures) != 1)} filled in"
+                count = f"{len(figures)} value{'s' * (len(figures) != 1)} filled in"
                 self.line.attempt(
                     lambda: session.do(
-                        with_figures(session.draft, missing, figures, source), "fill in figures"
+                        with_figures(session.draft, missing, figures, source), "fill in values"
                     ),
                     count,
                 )
@@ -122,9 +122,9 @@ class BuilderScreen(ComparingScreen):
         if missing:
             ask(self.app, figures_sheet(missing, complete=view.complete), take)
         elif view.complete or view.result is None:
-            self.tell("No figure of a component is missing")
+            self.tell("All component values are present")
         else:
-            self.tell(f"No figure of a component is missing so far. {PENDING}")
+            self.tell(f"All component values are present so far. {PENDING}")
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
@@ -139,16 +139,16 @@ class BuilderScreen(ComparingScreen):
         answers = numbered(
             (f"{kind}: {meaning}", partial(begin, kind)) for kind, meaning in TEMPLATES.items()
         )
-        text = "Each stands as given: change depth, current and pieces to yours."
+        text = "Each has an equilibrium as given: adapt depth, current and pieces."
         choose(self.app, Question("Begin with", text, answers))
 
     def action_history(self) -> None:
-        """Show what was done, and go back to before any of it."""
+        """Show the changes made, and go back to the state before any of them."""
         steps = self.session.history
         if not self.settle():
             return
         if not steps.steps:
-            self.tell("There is nothing to undo yet")
+            self.tell("No changes to undo yet")
             return
 
         def undo(count: int) -> None:
@@ -158,17 +158,17 @@ class BuilderScreen(ComparingScreen):
             (f"before: {label}", partial(undo, number))
             for number, label in enumerate(steps.steps[:_MOST_STEPS], 1)
         )
-        text = f"Go back to before one of the last {len(answers)} changes; U does them again."
+        text = f"Go back to the state before one of the last {len(answers)} changes; U redoes them."
         if (more := len(steps.steps) - _MOST_STEPS) > 0:
-            text += f" {more} are older; u goes back one by one."
-        choose(self.app, Question("What was done", text, answers))
+            text += f" {more} changes are older; u undoes them one at a time."
+        choose(self.app, Question("Changes", text, answers))
 
     def action_search(self, purpose: Purpose) -> None:
         """Search the catalogue."""
         self.search(purpose)
 
     def action_define(self) -> None:
-        """Define a component of one's own, and put it into the line."""
+        """Define a component in the file, and add it to the line."""
         from calm.tui.component_screen import ComponentScreen
 
         index, session = self.workspace.index, self.session
@@ -177,7 +177,7 @@ class BuilderScreen(ComparingScreen):
             id, values = defined[0], values_of(defined[1])
             if self.line.attempt(
                 lambda: session.do(session.draft.put_component(id, values), f"define {id}"),
-                f"{id} is defined in the file; the catalogue has it",
+                f"{id} is defined in the file and listed in the catalogue",
             ):
                 self.search("below")
                 self.catalogue.search.value = id
@@ -186,7 +186,7 @@ class BuilderScreen(ComparingScreen):
         ask(self.app, ComponentScreen(listed, session.components), take)
 
     def action_change_component(self) -> None:
-        """Change the component of the row in its form; figures that it does not show stay."""
+        """Change the component of the row in its form; keys that are not in the form are kept."""
         from calm.tui.component_screen import ComponentScreen
 
         spot, session = self.line.table.spot, self.session
@@ -196,8 +196,9 @@ class BuilderScreen(ComparingScreen):
         values = session.components.get(id)
         if not isinstance(values, dict) or values.get("kind") not in KINDS:
             what = "is an assembly: change it in the text (t)" if id in session.components else (
-                "is not of this file: what the row says in the text (t) counts for it alone, "
-                "o defines one of your own"
+                "is not defined in this file: keys of the row in the text (t) apply "
+                "to this row only, "
+                "o defines a component in this file"
             )  # fmt: skip
             self.tell(f"{id} {what}")
             return
@@ -211,29 +212,29 @@ class BuilderScreen(ComparingScreen):
         ask(self.app, ComponentScreen(begun=(id, values)), take)
 
     def action_water(self) -> None:
-        """Depth, density, current, wind."""
+        """Show depth, density, current and wind."""
         from calm.tui.water_screen import WaterScreen
 
         self.app.push_screen(WaterScreen(self.workspace), self._back)
 
     def action_text(self) -> None:
-        """The file as text."""
+        """Show the file as text."""
         from calm.tui.text_screen import TextScreen
 
         spot, session = self.line.table.spot, self.session
         line = 1
-        if spot is not None and spot in session.spots():  # a broken text has no rows
+        if spot is not None and spot in session.spots():  # invalid text has no rows
             line = session.item(spot).line
         self.app.push_screen(TextScreen(self.workspace, line), self._back)
 
     def _back(self, _: None) -> None:
-        """Another screen may have changed the draft."""
+        """Update the line, which another screen may have changed."""
         self.show_draft()
         self.tell("")
         self.workspace.edited()
 
     def action_sheet(self, name: str) -> None:
-        """Ask for what the file says of the whole of it, and write what is entered."""
+        """Edit a group of keys of the whole file on a sheet."""
         session, view = self.session, self.workspace.view if self.workspace.is_fresh else None
         hung = hung_at(None if view is None else view.file, self.line.table.spot)
         sheet, label, changed = sheet_of(name, session.draft, hung)
@@ -244,7 +245,7 @@ class BuilderScreen(ComparingScreen):
         ask(self.app, sheet, take)
 
     def action_settings(self) -> None:
-        """Ask which section of the file is wanted, and open its form."""
+        """Choose a section of the file, and open its form."""
         models = MooringKeys.model_fields
         answers = numbered(
             (f"{name}: {models[name].description}", partial(self.action_sheet, name))

@@ -1,4 +1,4 @@
-"""The catalogue: a search that answers at each key, a card, and what else is asked for."""
+"""The catalogue: incremental search, component card, and questions for length or position."""
 
 from collections.abc import Callable, Sequence
 from itertools import zip_longest
@@ -28,7 +28,7 @@ _LEAD, _FIGURE = 4, 8
 
 
 class ComponentList(TableCells, can_focus=False):
-    """List components with a cursor, which the search moves."""
+    """List of components with a cursor."""
 
     DEFAULT_CSS = """
     ComponentList {
@@ -66,7 +66,7 @@ class ComponentList(TableCells, can_focus=False):
         by: str | None = None,
         favourites: frozenset[str] = frozenset(),
     ) -> None:
-        """List other components, the cursor on the first; `by` which figure they are sorted."""
+        """List components sorted by the value `by`, with the cursor on the first."""
         before, columns = self.rows, self.columns
         cursor, like = self.cursor, (self._index, self._favourites)
         self._index, self._by, self._favourites = index, by, favourites
@@ -83,7 +83,7 @@ class ComponentList(TableCells, can_focus=False):
 
     @property
     def columns(self) -> list[TableColumn]:
-        """The ids, the figures that have room beside them, and the names in what is left."""
+        """Columns for ids, as many values as fit, and names in the remaining width."""
         width = self.scrollable_content_region.width
         id_width = max(min(self._longest, width - _LEAD), 0)
         columns, start = [TableColumn("id", "component", _LEAD, id_width)], _LEAD + id_width + 1
@@ -96,7 +96,7 @@ class ComponentList(TableCells, can_focus=False):
         return [*columns, TableColumn("name", "", start, max(width - start, 0))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
-        """Return an id, a figure, or a name that stands there whole; else the card has it."""
+        """Return the id, value or name; a name that does not fit is only on the card."""
         each: Listed = self.rows[number]
         if column.name == "id":
             return each.id
@@ -114,13 +114,13 @@ class ComponentList(TableCells, can_focus=False):
         return [Segment(f"{cursor}{star}{theme.ROLES.get(each.role, ' ')} ", style)]
 
     def row_style(self, number: int) -> Style:
-        """Return how a row looks, that of the cursor whoever has the focus."""
+        """Style of a row; the row of the cursor is marked even without the focus."""
         if number != self.cursor:
             return self.rich_style
         return self.rich_style + self.look("component-list--cursor")
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
-        """Return how an id and a name look; figures look as the row does."""
+        """Style of an id or a name; values have the style of the row."""
         look = {"id": "own" if self.rows[number].own else "id", "name": "name"}.get(column.name)
         if look is None:
             return style
@@ -128,24 +128,24 @@ class ComponentList(TableCells, can_focus=False):
 
 
 Purpose = Literal["below", "above", "clamp", "replace"]
-"""What the component is wanted for."""
+"""Purpose of the search."""
 
 _WHAT_FOR = {
     "below": "Add below",
     "above": "Add above",
     "clamp": "Clamp on",
-    "replace": "In place of",
+    "replace": "Replace",
 }
 
 
 class CataloguePane(Vertical):
-    """Search, list, card; the length of a cable and the place of a clamp are asked for before.
+    """Search field, list and card; asks for the length of a cable or the position of a clamp.
 
     Parameters
     ----------
-    workspace : whose catalogue it is
-    take : takes what a component is for, its `use` and what was asked for: `length`, `at`, `label`
-    close : leads back to the line
+    workspace : provides the catalogue
+    take : receives the purpose and the keys of the row: `use`, `length`, `at`, `label`
+    close : returns to the line
     """
 
     BINDINGS = key_table.bindings("catalogue")
@@ -172,7 +172,7 @@ class CataloguePane(Vertical):
     ) -> None:
         super().__init__(id="catalogue")
         self.workspace, self._take, self._close = workspace, take, close
-        self.index: Index | None = None  # what was searched last
+        self.index: Index | None = None  # the index of the last search
         self.listing, self._card = ComponentList(), ScrolledText(id="catalogue-card")
         words = "words of id, name, maker, kind, role; breaking>50kN"
         self.search = ScrolledEntry(id="catalogue-search", compact=True, placeholder=words)
@@ -185,7 +185,7 @@ class CataloguePane(Vertical):
         self._target = ""
 
     def compose(self) -> ComposeResult:
-        """Title, search, and the list with its card."""
+        """Yield the title, the search field, and the list with its card."""
         yield Static(id="catalogue-title", markup=False)
         yield self.search
         with Horizontal(id="catalogue-found"):
@@ -193,14 +193,14 @@ class CataloguePane(Vertical):
             yield self._card
 
     def refresh_index(self) -> None:
-        """Search the catalogue, where it is another one now."""
+        """Search again if the catalogue has changed."""
         if self.workspace.index is not self.index:
             self.index = self.workspace.index
             if self.display or not self.listing.rows:
                 self._search_again()
 
     def _search_again(self) -> None:
-        """Search for the same, the cursor on the component it was on."""
+        """Repeat the search, keeping the cursor on the same component."""
         chosen = self.listing.chosen
         self._search()
         ids = [each.id for each in self.listing.rows]
@@ -210,10 +210,10 @@ class CataloguePane(Vertical):
     def open(
         self, purpose: Purpose, target: str, role: str = "", *, clampable: bool = False
     ) -> None:
-        """Look for a component for the row called `target`, empty in an empty line.
+        """Open the search of a component for the row `target` ("" in an empty line).
 
-        Favourites come first; then, until words are typed, what has a `role`, what was taken
-        lately, and what is used in the line. With `clampable`, only what can be clamped on a line.
+        Favourites come first; then, until words are typed, components with this `role`, recent
+        components, and components of the line. With `clampable`, only components for clamps.
         """
         self.purpose, self.clampable, self._role = purpose, clampable, role
         self.retitle(target)
@@ -223,7 +223,7 @@ class CataloguePane(Vertical):
         self.search.focus()
 
     def retitle(self, target: str) -> None:
-        """Say beside which row the next one comes."""
+        """Show the row next to which the component will be added."""
         self._target = target
         text = f"{_WHAT_FOR[self.purpose]} {target}" if target else "The top of the line"
         if self._by is not None:
@@ -251,7 +251,7 @@ class CataloguePane(Vertical):
             return
         self._shown = chosen
         if chosen is None or self.index is None:
-            card.show("No component has all these words.")
+            card.show("No component matches all words.")
             return
         from calm.report.component_cards import to_card
         from calm.report.terminal import shown
@@ -263,7 +263,7 @@ class CataloguePane(Vertical):
             card.show(Text(str(error)))
 
     def action_sort(self) -> None:
-        """Sort by the next of the figures, or by how well the words fit."""
+        """Sort by the next quantity, or by relevance."""
         keys = [None, *(column.key for column in COLUMNS)]
         self._by = keys[(keys.index(self._by) + 1) % len(keys)]
         self.retitle(self._target)
@@ -276,7 +276,7 @@ class CataloguePane(Vertical):
             try:
                 is_one = self.remembered.mark(chosen.id)
             except OSError as error:
-                self.workspace.tell(f"It could not be kept: {error}", wrong=True)
+                self.workspace.tell(f"Could not save favourites: {error}", wrong=True)
             else:
                 became = "is a favourite now" if is_one else "is no longer a favourite"
                 self.workspace.tell(f"{chosen.id} {became}")
@@ -289,12 +289,12 @@ class CataloguePane(Vertical):
     @on(Input.Submitted, "#catalogue-search")
     @on(ComponentList.Pressed)
     def action_take(self) -> None:
-        """Put the component into the line, or ask for what it needs first."""
+        """Add the component to the line, or first ask for required values."""
         chosen = self.listing.chosen
         if chosen is None:
             return
         if self.purpose == "clamp":
-            place = "e.g. 2 m down the piece"
+            place = "e.g. 2 m"
             self._ask(chosen, Asked("at", "From the top", "", distance(), place))
         elif chosen.kind in FLEXIBLE_KINDS and self.purpose != "replace":
             check = length(towed=self.workspace.session.draft.is_tow)
@@ -308,14 +308,14 @@ class CataloguePane(Vertical):
         self.search.action_select_all()
 
     def _ask(self, chosen: Listed, asked: Asked) -> None:
-        """Ask for the length or the place, and for a label."""
+        """Ask for the length or the position, and for a label."""
 
         def take(texts: dict[str, str]) -> None:
             self._give({"use": chosen.id} | {key: text for key, text in texts.items() if text})
 
-        label = Asked("label", "Label", placeholder="may stay empty")
+        label = Asked("label", "Label", placeholder="optional")
         dialogs.enter(self.app, chosen.id, "", [asked, label], take)
 
     def action_close(self) -> None:
-        """Leave the catalogue."""
+        """Close the catalogue."""
         self._close()

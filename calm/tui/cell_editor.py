@@ -1,4 +1,4 @@
-"""A table whose values are edited where they stand."""
+"""A table whose values are edited in place."""
 
 from collections.abc import Callable
 from typing import Literal
@@ -12,14 +12,14 @@ from calm.tui.checking import Check, Reading, anything
 from calm.tui.scrolled import TableCells
 
 Then = Literal["stay", "edit next", "right", "up", "down"]
-"""Where the cursor goes from a value that was taken."""
+"""Movement of the cursor after a value is accepted."""
 
 
 class EditableTable(Vertical):
     """A table, and over it the line of input that edits the cell under its cursor.
 
-    What is made of it begins with `open_editor`, and says how a text is written, and where the
-    cursor goes from one that was taken. `tell` says something in the last line of the screen.
+    Subclasses call `open_editor`, and implement `write` and the movement of the cursor (`go_on`).
+    `tell` shows a message in the last line of the screen.
     """
 
     DEFAULT_CSS = "EditableTable { layers: table over; }"
@@ -31,24 +31,24 @@ class EditableTable(Vertical):
         self.tell, self.table, self.editor = tell, table, CellEditor(self)
 
     def compose(self) -> ComposeResult:
-        """The rows, and over them what is edited."""
+        """Yield the rows, and the editor above them."""
         yield self.table
         yield self.editor
 
     def write(self, text: str) -> None:
-        """Write a good text into the cell that is edited."""
+        """Write a valid text into the edited cell."""
         raise NotImplementedError
 
     def tell_reading(self, reading: Reading) -> None:
-        """Tell what the text typed so far comes to."""
+        """Show the interpretation of the text typed so far."""
         self.tell(reading.told(self.editor.value), wrong=not reading.is_good)
 
     def go_on(self, then: Then, text: str | None) -> None:
-        """Go on from a cell whose text was taken, None where it stays as it was."""
+        """Move on after a text was accepted; None if the value is unchanged."""
         raise NotImplementedError
 
     def abandoned(self) -> None:
-        """Do what follows where a value is left as it was."""
+        """Hook that is called when editing is cancelled."""
 
     def action_move_column(self, by: int) -> None:
         """Go to the left or the right."""
@@ -56,7 +56,7 @@ class EditableTable(Vertical):
 
     @property
     def is_typing(self) -> bool:
-        """Return whether a value is typed that is not written yet."""
+        """Whether a typed value is not written yet."""
         return self.editor.is_typing
 
     def open_editor(
@@ -66,9 +66,9 @@ class EditableTable(Vertical):
 
         Parameters
         ----------
-        text, check : what is edited, and what judges it
-        least_width : of the line of input [cells]
-        begun : whether the text is what was typed already
+        text, check : the text to edit, and its check
+        least_width : minimum width of the editor [cells]
+        begun : whether the text was typed by the user
         """
         region, editor = self.table.cell_region(), self.editor
         editor.styles.offset = region.offset
@@ -76,17 +76,17 @@ class EditableTable(Vertical):
         editor.open(text, check, begun=begun)
 
     def settle(self) -> bool:
-        """Write what is typed; a bad value, which is told, stays to be corrected."""
+        """Write the typed text; an invalid text is reported and stays in the editor."""
         reading = self.editor.settle()
         if not reading.is_good:
             self.editor.focus()
-            self.tell(f"Not taken yet: {reading.note}", wrong=True)
+            self.tell(f"Not accepted yet: {reading.note}", wrong=True)
         elif self.editor.is_open:
             self._take_typed()
         return reading.is_good
 
     def _take_typed(self) -> str | None:
-        """Write the good text that is typed, if any, where it was typed."""
+        """Write the typed, valid text, if any, into its cell."""
         text = self.editor.text
         self.leave_cell()
         if text is not None:
@@ -94,7 +94,7 @@ class EditableTable(Vertical):
         return text
 
     def leave_cell(self) -> None:
-        """Edit nothing any more; what is typed is not taken."""
+        """Close the editor and discard the typed text."""
         if self.editor.is_open:
             self.editor.remove_class("-open", "-wrong")
             if self.editor.is_here:
@@ -102,14 +102,14 @@ class EditableTable(Vertical):
             self.tell("")
 
     def done(self, then: Then) -> None:
-        """Take the good text that is typed, and go on where it was not left for another place."""
+        """Accept the valid text, and move on unless the focus is elsewhere."""
         is_here = self.editor.is_here
         text = self._take_typed()
         if is_here:
             self.go_on(then, text)
 
     def abandon(self, reason: str = "") -> None:
-        """Leave the value as it was; why, where what was typed is bad and nobody is asked."""
+        """Cancel editing; report the `reason` if an invalid text is discarded."""
         self.leave_cell()
         self.abandoned()
         if reason:
@@ -117,7 +117,7 @@ class EditableTable(Vertical):
 
 
 class CellEditor(field.ScrolledEntry):
-    """A line of input laid over a cell; it says at each key what it makes of the text."""
+    """Input over a cell that reports its interpretation of the text at each key."""
 
     BINDINGS = key_table.bindings("cell")
     DEFAULT_CSS = """
@@ -137,18 +137,18 @@ class CellEditor(field.ScrolledEntry):
 
     @property
     def is_open(self) -> bool:
-        """Return whether a value is being edited."""
+        """Whether a value is being edited."""
         return self.has_class("-open")
 
     @property
     def is_here(self) -> bool:
-        """Return whether the keys go to it; `has_focus` follows later."""
+        """Whether the editor receives the keys; `has_focus` is updated later."""
         return self.screen.focused is self
 
     def open(self, text: str, check: Check, *, begun: bool = False) -> None:
         """Begin to edit a text.
 
-        The first key takes the place of the text, or goes on with one that is `begun`.
+        The first key replaces the text, or continues a text that is `begun`.
         """
         self._check, self._before = check, "" if begun else text
         self.select_on_focus = not begun
@@ -162,19 +162,19 @@ class CellEditor(field.ScrolledEntry):
 
     @property
     def is_typing(self) -> bool:
-        """Return whether something else was typed than there was."""
+        """Whether the text differs from the previous value."""
         return self.is_open and self.value != self._before
 
     @property
     def text(self) -> str | None:
-        """Return what is to be written; None where it stays, or what was typed is bad."""
+        """Text to write; None if it is unchanged or invalid."""
         reading = self._check(self.value)
-        # a value that nobody touched has its unit added, and is not tidied
+        # an untouched value only gets its unit, no tidying
         is_completed = reading.text.startswith(f"{self.value.strip()} ")
         return reading.text if reading.is_good and (self.is_typing or is_completed) else None
 
     def settle(self) -> Reading:
-        """Judge what was typed; a bad text stays to be corrected. What nobody touched is good."""
+        """Check the typed text; an invalid text stays in the editor. Untouched text is valid."""
         if not self.is_typing:
             return Reading(self.value)
         return self._judged()
@@ -185,12 +185,12 @@ class CellEditor(field.ScrolledEntry):
         return reading
 
     def watch_value(self) -> None:
-        """Judge at each key."""
+        """Check the text at each key."""
         if self.is_open:
             self._owner.tell_reading(self._judged())
 
     def action_done(self, then: Then = "stay") -> None:
-        """Take the text and go on."""
+        """Accept the text and move on."""
         reading = self._judged()
         if reading.is_good:
             self._owner.done(then)
@@ -199,22 +199,22 @@ class CellEditor(field.ScrolledEntry):
             self.correct(reading)
 
     def action_right(self) -> None:
-        """Go on where something was typed up to here, as in a spreadsheet; else move the cursor."""
+        """Accept typed text if the cursor is at its end, as in a spreadsheet; else move it."""
         if self.is_typing and self.cursor_position == len(self.value) and self.selection.is_empty:
             self.action_done("right")
         else:
             self.action_cursor_right()
 
     def action_abandon(self) -> None:
-        """Leave the value as it was."""
+        """Cancel editing."""
         self._owner.abandon()
 
     def on_blur(self, event: events.Blur) -> None:
-        """A press of the mouse elsewhere takes the value, if it is good."""
+        """Accept a valid value when the mouse is pressed elsewhere."""
         self.call_after_refresh(self._end_if_left)
 
     def _end_if_left(self) -> None:
-        """Not where the next value is edited meanwhile, nor where the window lost the focus."""
+        """Finish editing, unless the next value is edited or the window has lost the focus."""
         if not self.is_open or self.is_here or not self.app.app_focus:
             return
         reading = self._check(self.value)
@@ -223,6 +223,6 @@ class CellEditor(field.ScrolledEntry):
         elif reading.is_good:
             self._owner.done("stay")
         else:
-            # behind what follows the focus, which takes away what is told
-            reason = f"`{self.value}` is not taken: {reading.note}"
+            # after the focus handlers, which remove messages
+            reason = f"`{self.value}` was not accepted: {reading.note}"
             self.call_after_refresh(self._owner.abandon, reason)

@@ -1,4 +1,4 @@
-"""Checks of what a person types, as it is typed: taken, completed by its unit, or refused."""
+"""Checks of typed text at each key: accepted, completed by its unit, or rejected."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -16,14 +16,14 @@ _UNIT = re.compile(r"[\d.]\s*([^\d.\s].*)$")
 
 @dataclass(frozen=True)
 class Reading:
-    """A text as it was understood.
+    """Interpretation of a typed text.
 
     Attributes
     ----------
-    text : as it is to be written; with the unit that was left out
-    complaint : why it cannot be used; empty where it can
-    offer : the text corrected, where that is known
-    comes_to : what a good text comes to, where more is to be said than the text itself
+    text : text to write, with a missing unit added
+    complaint : reason why it is invalid; empty if valid
+    offer : corrected text, if known
+    comes_to : meaning of a valid text, if the text alone is not clear
     """
 
     text: str
@@ -33,33 +33,33 @@ class Reading:
 
     @property
     def is_good(self) -> bool:
-        """Return whether it can be used."""
+        """Whether the text is valid."""
         return not self.complaint
 
     @property
     def note(self) -> str:
-        """For the person who types: what is wrong, and what would be right."""
+        """Message for the user: the error and the correction."""
         if self.offer:
             return f"{self.complaint}: {self.offer}?"
         return self.complaint
 
     def told(self, typed: str) -> str:
-        """Return the note of a bad text; of a good one what it comes to, where that is more."""
+        """Return the note of an invalid text, or the meaning of a valid text if not obvious."""
         is_completed = self.text and self.text != " ".join(typed.split())
         return self.note or self.comes_to or (f"= {self.text}" if is_completed else "")
 
 
 Check = Callable[[str], Reading]
-"""Judges a text."""
+"""Function that checks a text."""
 
 
 def anything(text: str) -> Reading:
-    """Any text will do, without the blanks around it."""
+    """Accept any text, without surrounding blanks."""
     return Reading(" ".join(text.split()))
 
 
 def one_of(words: Sequence[str]) -> Check:
-    """One of some words, or nothing; the beginning of one is completed."""
+    """Accept one of the words, or empty text; the start of a word is completed."""
 
     def check(text: str) -> Reading:
         tidy = text.strip()
@@ -72,7 +72,7 @@ def one_of(words: Sequence[str]) -> Check:
 
 
 def needed(what: str) -> Check:
-    """Any text but none."""
+    """Accept any text except an empty one."""
 
     def check(text: str) -> Reading:
         reading = anything(text)
@@ -84,7 +84,7 @@ def needed(what: str) -> Check:
 def quantity(
     kind: QuantityRange, *, optional: bool = False, usual_unit: str | None = None
 ) -> Check:
-    """A number with a unit; a number alone is completed by `usual_unit`, the SI unit by default."""
+    """Accept a quantity; a number alone is completed by `usual_unit`, by default the SI unit."""
 
     def check(text: str) -> Reading:
         tidy = " ".join(text.split())
@@ -115,17 +115,17 @@ def _refused(
 
 
 def unit_of(text: str) -> str | None:
-    """The unit a value was written with."""
+    """Return the unit in a text, if any."""
     found = _UNIT.search(text)
     return found[1].strip() if found else None
 
 
 number = quantity(QuantityField("number"))
-"""Judges a plain number, of a table whose columns carry the units."""
+"""Check of a plain number, for tables with units in their headings."""
 
 
 def count(text: str) -> Reading:
-    """Return how often a piece comes, a whole number; nothing is once."""
+    """Check a count, a whole number; empty text is 1."""
     tidy = text.strip().lstrip("x×* ")
     if not tidy:
         return Reading("1")
@@ -137,16 +137,16 @@ def count(text: str) -> Reading:
 
 
 def distance(before: str = "") -> Check:
-    """Return how far down a piece something is clamped."""
+    """Check of a clamp's distance from the upper end of the piece."""
     return quantity(LENGTH, usual_unit=unit_of(before))
 
 
 def length(before: str = "", *, towed: bool = False) -> Check:
-    """A length, one with the load it is measured ``at``, or ``fit`` with the depth to reach."""
+    """Check of a length, alone, with its load (``at``), or ``fit`` with the depth to reach."""
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))
     load = quantity(item_keys.LOAD, usual_unit="kN")
-    what = "the depth its lower end is to reach" if towed else "the depth the top is to reach"
+    what = f"the required depth of the {'lower end' if towed else 'top'}"
 
     def check(text: str) -> Reading:
         fit, measured = _FIT.fullmatch(text.strip()), _AT_LOAD.fullmatch(text.strip())
@@ -164,7 +164,7 @@ def length(before: str = "", *, towed: bool = False) -> Check:
 
 
 def _joined(long: Reading, load: Reading) -> Reading:
-    """A length and the load it is measured at, each with what is wrong with it."""
+    """Combine the readings of a length and of the load at which it is measured."""
     offers = [each.offer or each.text for each in (long, load)]
     offer = " at ".join(offers) if long.offer or load.offer else None
     complaint = long.complaint or load.complaint
@@ -172,7 +172,7 @@ def _joined(long: Reading, load: Reading) -> Reading:
 
 
 def length_values(text: str, *, towed: bool = False) -> Mapping[str, editing.Value | None]:
-    """The keys of an item with this length, as `length` has read it."""
+    """Return the keys of an item for a length text accepted by `length`."""
     key, other = ("body_depth", "top_depth") if towed else ("top_depth", "body_depth")
     fit, measured = _FIT.fullmatch(text), _AT_LOAD.fullmatch(text)
     if fit is not None:
@@ -185,7 +185,7 @@ def length_values(text: str, *, towed: bool = False) -> Mapping[str, editing.Val
 
 
 def length_text(values: Mapping[str, str]) -> str:
-    """The length of an item as it is shown and typed."""
+    """Return the length of an item in the form in which it is typed."""
     written = values.get("length", "") or values.get("length_at", "")
     if written != "fit":
         return written

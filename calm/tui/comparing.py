@@ -1,4 +1,4 @@
-"""Work beside the line: advice that is tried, comparisons, its papers."""
+"""Tasks around the line: advice, comparisons, reports and deck sheets."""
 
 from __future__ import annotations
 
@@ -26,24 +26,24 @@ if TYPE_CHECKING:
 _MOST_LINES = 24
 _MOST_OFFERS = 9
 _PAPERS = {"report": ("check", "--report"), "deck": ("deck", "--output")}
-"""The command that writes each, and its option of where."""
+"""Command that writes each document, and its option for the folder."""
 
 
 class ComparingScreen(line_screen.LineScreen):
-    """The line and what it is compared with: what was saved, and changes that help.
+    """Screen that compares the line with the saved file and with proposed changes.
 
-    All of it is judged in a thread; what comes of it is asked about or told.
+    Lines are judged in a thread; a question or a message shows the outcome.
     """
 
     def action_compare(self) -> None:
-        """Show what has changed since the file was saved, and draw the line as it was."""
+        """Show the changes since the file was saved, and draw the saved line."""
         if not self.settle():
             return
         if not self.session.changed:
             self.pictures.put_beside(None)
-            self.tell("Nothing has changed since it was saved")
+            self.tell("There are no changes since the file was saved")
             return
-        view = self.workspace.judged("The line is still being judged; ask again")
+        view = self.workspace.judged("Checks are still running; try again in a moment")
         if view is None:
             return
         text, catalogs = self.session.history.saved_text, self.session.catalogs
@@ -62,13 +62,13 @@ class ComparingScreen(line_screen.LineScreen):
             if shape is not None and now and type(before.result) is type(now.result):
                 self.pictures.put_beside(shape)
             answers = [Answer("b", "back to the line")]
-            choose(self.app, Question("Beside what was saved", "\n".join(lines), answers))
+            choose(self.app, Question("Compared with the saved file", "\n".join(lines), answers))
 
         self.tell("Comparing …")
         self.run_worker(work, thread=True, group="advice", exclusive=True)
 
     def _effects(self, before: View, after: View) -> list[str]:
-        """Return how two lines differ, both judged fully; for a thread."""
+        """Return the differences between two lines, both judged fully; for a thread."""
         from calm.tui.advice import differences
         from calm.tui.live import judge_fully
 
@@ -78,7 +78,7 @@ class ComparingScreen(line_screen.LineScreen):
     # advice
 
     def action_advise(self) -> None:
-        """Ask which of the changes that would mend what was found is wanted."""
+        """Offer changes that correct findings or meet a target."""
         from calm.tui.advice import offers, single
 
         if not self.settle():
@@ -92,9 +92,9 @@ class ComparingScreen(line_screen.LineScreen):
         if result is not None and not result.towed:
             other = partial(self._ask_for_target, view, result.design)
             answers.append(Answer("o", "another target, as in `calm size`", other))
-        text = "What it changes is shown before it is taken."
+        text = "Changes are shown before you accept them."
         if not found:
-            text = "No finding has a remedy that can be computed here. " + text
+            text = "No automatic remedy is available for these findings. " + text
         if single(view) is not None and not view.complete:
             text += f" {PENDING}"
         choose(self.app, Question("Advice", text, answers))
@@ -120,7 +120,7 @@ class ComparingScreen(line_screen.LineScreen):
         enter(self.app, "A target to meet", text, asked, take)
 
     def _try(self, offer: Offer, before: View) -> None:
-        """Work a change out in a thread, and ask whether it is wanted for what it would do."""
+        """Compute a change in a thread, and ask for confirmation, showing its effects."""
         session, draft = self.session, self.session.draft
 
         def work() -> None:
@@ -139,27 +139,27 @@ class ComparingScreen(line_screen.LineScreen):
             def take() -> None:
                 if session.draft is draft:
                     label = offer.label
-                    self.line.attempt(lambda: session.do(made, label), f"{label}: taken")
+                    self.line.attempt(lambda: session.do(made, label), f"{label}: accepted")
                 else:
-                    self.tell("The line has changed meanwhile; ask again", wrong=True)
+                    self.tell("The line has changed meanwhile; try again", wrong=True)
 
             self.workspace.tell("")
-            answers, back = [Answer("y", "take it", take)], partial(self.tell, "Not taken")
+            answers, back = [Answer("y", "accept", take)], partial(self.tell, "Not accepted")
             choose(self.app, Question(offer.title, "\n".join(lines), answers, back=back))
 
-        self.tell(f"Working out {offer.label} …")
+        self.tell(f"Computing {offer.label} …")
         self.run_worker(work, thread=True, group="advice", exclusive=True)
 
-    # papers
+    # reports and sheets
 
     def action_papers(self) -> None:
-        """Show the bill, or have report and sheets written of the file as it is saved."""
+        """Show the bill of material, or write the report or deck sheets of the saved file."""
         if not self.settle():
             return
         view = self.workspace.view if self.workspace.is_fresh else None
         result = None if view is None else view.result
         if result is None or result.towed:
-            self.tell("Reports and sheets need a mooring that stands")
+            self.tell("Reports and sheets require a mooring with an equilibrium")
             return
         report, deck = (partial(self._ask_where, what) for what in _PAPERS)
 
@@ -171,7 +171,7 @@ class ComparingScreen(line_screen.LineScreen):
             Answer("r", "report of the design check: page, PDF, tables", report),
             Answer("d", "sheets for the deck: diagram, logs, cutting list, anchor drop", deck),
         ]
-        choose(self.app, Question("On paper", "", answers))
+        choose(self.app, Question("Documents", "", answers))
 
     def _ask_where(self, what: str) -> None:
         if self.workspace.papers_elsewhere:
@@ -179,16 +179,16 @@ class ComparingScreen(line_screen.LineScreen):
             return
         path = self.session.file.path
         if path is None or self.session.changed:
-            self.tell("Save the file first: reports are made from the saved file")
+            self.tell("Save the file first: documents are made from the saved file")
             return
 
         folder = path.with_name(f"{path.stem}-{what}")
         asked = [Asked("folder", "Folder", str(folder), checking.needed("a folder"))]
         write = partial(self._write, what, path)
-        enter(self.app, "Where to write it", "", asked, write)
+        enter(self.app, "Output folder", "", asked, write)
 
     def _write(self, what: str, path: Path, texts: dict[str, str]) -> None:
-        """Have the command write it; what it says last is reported."""
+        """Run the command in a thread, and show its last message."""
         folder, (command, option) = Path(texts["folder"]).expanduser(), _PAPERS[what]
         words = [sys.executable, "-m", "calm", command, str(path), option, str(folder)]
         words += [word for each in self.session.catalogs for word in ("--catalog", str(each))]
@@ -206,11 +206,11 @@ class ComparingScreen(line_screen.LineScreen):
 
 
 def changed_lines(before: str, after: str) -> list[str]:
-    """The lines that were taken out (``-``) and put in (``+``), the first of many."""
+    """Return the first removed (``-``) and added (``+``) lines."""
     diff = unified_diff(before.splitlines(), after.splitlines(), n=0, lineterm="")
     lines = [line for line in diff if not line.startswith(("---", "+++", "@@"))]
     more = len(lines) - _MOST_LINES
-    return lines[:_MOST_LINES] + ([f"and {more} lines more"] if more > 0 else [])
+    return lines[:_MOST_LINES] + ([f"and {more} more lines"] if more > 0 else [])
 
 
 def _bill(result: Result) -> RenderableType:

@@ -1,4 +1,4 @@
-"""A component of your own: a form that judges each figure as it is typed, and all of them."""
+"""Form of a component of the file; each value is checked as it is typed, and all together."""
 
 from collections.abc import Collection
 from typing import Any
@@ -18,17 +18,17 @@ from calm.tui.forms import Asked, filled, form_of, values_of
 from calm.tui.screen import KeyBar, TitleBar
 
 Defined = tuple[str, dict[str, str]]
-"""An id, and the texts of a form by their keys."""
+"""Id of a component, and the texts of its form by key."""
 
 
 class ComponentScreen(dialogs.Form[Defined]):
-    """Gives the id and the values of a component; None where it is left.
+    """Screen that returns the id and the values of a component, or None if cancelled.
 
     Parameters
     ----------
-    listed : ids of the catalogue: a component of such an id hides the one there
-    own : ids that the file defines already: no other is defined under them
-    begun : a component that is to be changed, with all that the file says of it
+    listed : ids of the catalogue, which a component of the same id overrides
+    own : ids that the file defines already, which cannot be used again
+    begun : id and all keys of a component to change
     """
 
     BINDINGS = key_table.bindings("form")
@@ -59,7 +59,7 @@ class ComponentScreen(dialogs.Form[Defined]):
         self._values = dict(self._begun)
 
     def compose(self) -> ComposeResult:
-        """Title; the fields beside what they come to; keys."""
+        """Yield the title, the fields with the resulting card, and the keys."""
         yield TitleBar()
         with Horizontal():
             with VerticalScroll(id="fields", can_focus=False):
@@ -70,7 +70,7 @@ class ComponentScreen(dialogs.Form[Defined]):
                         "",
                         id_check(self._own),
                         "e.g. sphere-own-1250",
-                        "small letters, figures and hyphens",
+                        "lower-case letters, digits and hyphens",
                     )
                     yield Field(asked, id="id")
                     yield Cycle("kind", tuple(KINDS), self._kind, title_width=20)
@@ -80,7 +80,7 @@ class ComponentScreen(dialogs.Form[Defined]):
         yield KeyBar()
 
     async def on_mount(self) -> None:
-        """The fields of the first kind."""
+        """Show the fields of the first kind."""
         what = f"{self._component}, a {self._kind}" if self._begun else "A component of your own"
         self.query_one(TitleBar).show(f"{what}, kept in this file   * needed", "")
         self.query_one(KeyBar).show_keys(key_table.hints("form"))
@@ -95,31 +95,31 @@ class ComponentScreen(dialogs.Form[Defined]):
 
     @on(Cycle.Turned)
     async def _turn(self, event: Cycle.Turned) -> None:
-        self._values |= values_of(self.texts)  # those of one kind are offered of the next
+        self._values |= values_of(self.texts)  # values are kept for the next kind
         self._kind = event.word
         await self._show_fields()
 
     def _given(self) -> Defined:
-        """The id and the texts that have been typed; empty what is to be taken away."""
+        """Return the id and the typed texts; an empty text deletes a key."""
         texts = self.texts
         id = texts.pop("id", self._component)
         return id, texts if self._begun else {"kind": self._kind, **texts}
 
     def _all(self) -> tuple[str, dict[str, Any]]:
-        """Return the id and the values, with those that no field of the form shows."""
+        """Return the id and all values, including keys without a field in the form."""
         id, texts = self._given()
         shown = {key.partition(".")[0] for key in texts}
         others = {key: value for key, value in self._begun.items() if key not in shown}
         return id, others | values_of(texts)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Say something in the last line, until the next key."""
+        """Show a message in the last line until the next key."""
         self.query_one(KeyBar).tell(text, wrong=wrong)
 
     @on(Field.Judged)
     @on(events.DescendantFocus)
     def _judge(self) -> None:
-        """Say what the values come to."""
+        """Show the component that results from the values, and its errors."""
         from rich.console import Group, RenderableType
         from rich.text import Text
 
@@ -130,24 +130,25 @@ class ComponentScreen(dialogs.Form[Defined]):
         here = next((each.asked for each in self.fields if each.input.has_focus), None)
         parts: list[RenderableType] = [Text(f"{here.takes}\n", "dim")] if here else []
         if id in self._listed - self._own:
-            parts.append(Text(f"~ {id} is in the catalogue; this one replaces it here", "yellow"))
+            note = f"~ {id} exists in the catalogue; this definition overrides it in this file"
+            parts.append(Text(note, "yellow"))
         for problem in problems:
             parts.append(Text(f"! {problem.message}", style="red"))
         if id in self._own:
             parts.append(Text(f"! {id} is defined in this file already", style="red"))
         elif component is not None:
-            parts.append(Text("✓ It can be used.", style="green"))
+            parts.append(Text("✓ The component is valid.", style="green"))
         if component is not None:
             parts.append(terminal.shown(component_cards.to_card(id or "component", component)))
         self.query_one("#outcome-text", Static).update(Group(*parts))
 
     def action_take(self) -> None:
-        """Give the component, if it is one."""
+        """Return the component if it is valid."""
         if not all_settled(self.all_parts):
             return
         component, problems = defined(*self._all())
         if component is None:
-            message = problems[0].message if problems else "It is not complete"
+            message = problems[0].message if problems else "Required fields are missing"
             self.tell(message, wrong=True)
         else:
             self.dismiss(self._given())
@@ -157,7 +158,7 @@ _FIRST = ("name", "manufacturer", "role")
 
 
 def form_fields(kind: str) -> list[Asked]:
-    """The form of a kind: what people call it, what it needs, its own keys, those of every kind."""
+    """Return the fields of a kind: names, required keys, keys of this kind, common keys."""
     asked = [each for each in form_of(KINDS[kind]) if each.key != "kind"]
 
     def rank(each: Asked) -> tuple[int, ...]:
@@ -169,14 +170,14 @@ def form_fields(kind: str) -> list[Asked]:
 
 
 def id_check(own: Collection[str]) -> Check:
-    """Return whether a text can be an id; `own` are those that the file has already."""
+    """Check of an id, given the ids `own` that the file defines already."""
 
     def check(text: str) -> Reading:
         tidy = text.strip()
         if not tidy:
             return Reading("", "an id is needed")
         if tidy_id(tidy) != tidy:
-            return Reading(tidy, "small letters, figures and hyphens", tidy_id(tidy) or None)
+            return Reading(tidy, "lower-case letters, digits and hyphens", tidy_id(tidy) or None)
         if tidy in own:
             return Reading(tidy, "is defined in this file already")
         return Reading(tidy)

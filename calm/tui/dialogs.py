@@ -1,4 +1,4 @@
-"""Dialogs over the screen: one of some answers, some texts to enter, a text to read."""
+"""Dialogs over the screen: questions with answers, input sheets, long texts."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ Then = Callable[[], object]
 
 
 def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) -> None:
-    """Put a screen over this one; what it gives is taken, and nothing where it is left."""
+    """Open a screen on top, and pass its result to `take` unless it is cancelled."""
 
     def taken(given: T | None) -> None:
         if given is not None:
@@ -50,7 +50,7 @@ def ask(app: App[Any], screen: Screen[T | None], take: Callable[[T], object]) ->
 
 
 def choose(app: App[Any], question: Question) -> None:
-    """Ask a question, and do what the answer stands for."""
+    """Ask a question, and call the action of the answer."""
     ask(app, question, lambda then: then())
 
 
@@ -61,13 +61,13 @@ def enter(
     asked: Sequence[Asked],
     take: Callable[[dict[str, str]], object],
 ) -> None:
-    """Ask for some texts on an `InputSheet`, and take what is entered."""
+    """Ask for texts on an `InputSheet`, and pass them to `take`."""
     ask(app, InputSheet(title, text, asked), take)
 
 
 @dataclass(frozen=True)
 class Answer:
-    """An answer: its key, its text, and what is done then."""
+    """An answer with its key, its text and its action."""
 
     key: str
     title: str
@@ -75,14 +75,14 @@ class Answer:
 
 
 def numbered(answers: Iterable[tuple[str, Then]]) -> list[Answer]:
-    """Titles and what is done then, their keys the numbers from 1."""
+    """Number (title, action) pairs from 1; the numbers are their keys."""
     return [Answer(str(number), *answer) for number, answer in enumerate(answers, 1)]
 
 
 class Question(ModalScreen[Then | None]):
-    """One of several answers, by its key, with arrows and Enter, or with the mouse.
+    """A question, answered by key, by arrows and Enter, or by mouse.
 
-    Esc is `back` unless one `must` be given.
+    Esc calls `back` unless one `must` answer.
     """
 
     BINDINGS = key_table.bindings("question")
@@ -103,7 +103,7 @@ class Question(ModalScreen[Then | None]):
         self._marked: int | None = None
 
     def compose(self) -> ComposeResult:
-        """Return what is asked, and the answers below each other."""
+        """Yield the question, and its answers below."""
         with Vertical():
             yield Static(self._title, classes="title", markup=False)
             yield Static(self._text, classes="text", markup=False)
@@ -117,7 +117,7 @@ class Question(ModalScreen[Then | None]):
                 yield Static("[@click=screen.leave][b]Esc[/b]  go back[/]")
 
     def on_key(self, event: Key) -> None:
-        """The key of an answer gives it; every other key does nothing."""
+        """Choose an answer by its key; ignore all other keys."""
         for answer in self._answers:
             if event.key in (answer.key, answer.key.lower()):
                 event.stop()
@@ -125,7 +125,7 @@ class Question(ModalScreen[Then | None]):
                 return
 
     def on_mount(self) -> None:
-        """In a numbered list the first answer is marked; elsewhere none is until an arrow."""
+        """Mark the first answer of a numbered list."""
         if self._answers[0].key == "1":
             self.action_move(1)
 
@@ -139,41 +139,41 @@ class Question(ModalScreen[Then | None]):
             shown.set_class(number == self._marked, "-marked")
 
     def action_give(self) -> None:
-        """Give the answer that is marked."""
+        """Choose the marked answer."""
         if self._marked is not None:
             self.action_answer_number(self._marked)
 
     def action_answer_number(self, number: int) -> None:
-        """Give an answer by its number."""
+        """Choose an answer by its number."""
         self.dismiss(self._answers[number].then)
 
     def action_leave(self) -> None:
-        """Give none of the answers."""
+        """Close the question without an answer."""
         if not self._must:
             self.dismiss(self._back)
 
 
 class Form(Screen[T | None]):
-    """Fields that are entered together: Enter goes through them, and from the last takes all."""
+    """Fields that are entered together: Enter goes to the next field and finally accepts all."""
 
     @property
     def fields(self) -> list[Field]:
-        """Return them as they follow one another, without the tables."""
+        """All fields in order, without the tables."""
         return list(self.query(Field))
 
     @property
     def all_parts(self) -> list[Part]:
-        """Return the fields and the tables as they follow one another."""
+        """All fields and tables in order."""
         found = self.query(f"{Field.__name__}, {TableField.__name__}")
         return [part for part in found if isinstance(part, Field | TableField)]
 
     @property
     def texts(self) -> dict[str, str]:
-        """Return what is entered, by key."""
+        """Entered texts by key."""
         return {part.key: part.text for part in self.all_parts}
 
     def parts_of(self, asked: Iterable[Asked]) -> Iterator[Widget]:
-        """Yield what is shown for what is asked, under the names of its groups."""
+        """Yield the widgets of the fields, under the names of their groups."""
         for each in asked:
             if each.above:
                 yield Static(each.above, classes="above", markup=False)
@@ -184,7 +184,7 @@ class Form(Screen[T | None]):
                 yield Field(each)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Say something below the fields."""
+        """Show a message below the fields."""
         raise NotImplementedError
 
     @on(Field.Entered)
@@ -195,23 +195,23 @@ class Form(Screen[T | None]):
             self.focus_next()
 
     def action_take(self) -> None:
-        """Give what is entered, if it is good."""
+        """Return the entered texts if all are valid."""
         raise NotImplementedError
 
     def action_leave(self) -> None:
-        """Give nothing."""
+        """Close the form without a result."""
         self.dismiss(None)
 
 
 _BELOW = 7
-"""Lines of a sheet around its fields: its margins, a note of two lines, the keys."""
+"""Lines of a sheet outside its fields: margins, a note of two lines, the keys."""
 _TABLE_KEYS = "a adds a row, Enter edits a value, Del deletes the row, ↑ ↓ go on"
 
 
 class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
-    """Some texts, entered together; Esc leaves all as it was.
+    """Sheet of several texts; Esc discards all changes.
 
-    It is wider where it is said beside them what they take.
+    It is wide if the fields have notes next to them.
     """
 
     BINDINGS = key_table.bindings("sheet")
@@ -233,7 +233,7 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
         self._title, self._text, self._asked = title, text, asked
 
     def compose(self) -> ComposeResult:
-        """Return what is asked, and where it is typed."""
+        """Yield the title, the fields and the keys."""
         with Vertical():
             with VerticalScroll(id="asked", can_focus=False):
                 yield Static(self._title, classes="title", markup=False)
@@ -247,11 +247,11 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
             )
 
     def on_mount(self) -> None:
-        """Type at once."""
+        """Give the first field the focus."""
         self.all_parts[0].input.focus()
 
     def on_resize(self) -> None:
-        """What is said below the fields stays in sight."""
+        """Keep the note below the fields visible."""
         self.query_one("#asked").styles.max_height = max(self.size.height - _BELOW, 1)
 
     @on(Field.Judged)
@@ -260,7 +260,7 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
 
     @on(DescendantFocus)
     def _note(self) -> None:
-        """Say what the field takes, whole."""
+        """Show the full description of the focused field."""
         for field in self.fields:
             if field.input.has_focus:
                 reading = field.reading if field.input.value else Reading("")
@@ -271,19 +271,19 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
                 self.tell(reading.note or _TABLE_KEYS, wrong=not reading.is_good)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Say something below the fields."""
+        """Show a message below the fields."""
         note = self.query_one("#sheet-note", Static)
         note.update(text)
         note.set_class(wrong, "-wrong")
 
     def action_take(self) -> None:
-        """Give the texts, if all are good."""
+        """Return the texts if all are valid."""
         if all_settled(self.all_parts):
             self.dismiss(self.texts)
 
 
 class LongText(ModalScreen[None]):
-    """A text over the screen, scrolled where it is longer; of tables, `wide`."""
+    """Scrollable text over the screen, `wide` for tables."""
 
     BINDINGS = key_table.bindings("help")
     DEFAULT_CSS = (
@@ -296,6 +296,6 @@ class LongText(ModalScreen[None]):
         self._text = text
 
     def compose(self) -> ComposeResult:
-        """The text."""
+        """Yield the text."""
         with VerticalScroll():
             yield Static(self._text)

@@ -1,4 +1,4 @@
-"""Fields for a value: a line of input, and at each key what is made of its text."""
+"""Input fields for values, with the interpretation of the text at each key."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ from calm.tui.key_table import bindings
 
 
 class ScrolledEntry(Input):
-    """A line of input; a text of several lines that is pasted is left to what is around it."""
+    """Input that leaves pasted text of several lines to its container."""
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
 
     def on_mount(self) -> None:
-        """Its cursor stands still: nothing is sent while nobody types."""
+        """Switch off cursor blinking, so that an idle builder sends no data."""
         self.cursor_blink = False
 
     def on_paste(self, event: events.Paste) -> None:
-        """Rows of a table are no value: textual would take the first of them."""
+        """Ignore pasted tables, of which Textual would use the first row."""
         if len(event.text.splitlines()) > 1:
             event.prevent_default()
 
     def correct(self, reading: Reading) -> None:
-        """Put in what was probably meant, where that is known."""
+        """Insert the suggested correction, if any."""
         if reading.offer:
             self.value = reading.offer
             self.cursor_position = len(self.value)
@@ -47,22 +47,22 @@ class Part(Protocol):
 
     @property
     def key(self) -> str:
-        """Return what it is known by."""
+        """Key of the value."""
 
     @property
     def text(self) -> str:
-        """Return what was entered, as it is to be written."""
+        """Entered text in the form in which it is written."""
 
     @property
     def input(self) -> Widget:
-        """Return where the keys go to."""
+        """Widget that receives the keys."""
 
     def settle(self) -> bool:
-        """Take what is typed; whether it was good."""
+        """Accept the typed text; return whether it is valid."""
 
 
 def all_settled(fields: Iterable[Part]) -> bool:
-    """Return whether all texts are good, and taken; the first that is not gets the focus."""
+    """Accept all texts; return False and focus the first invalid field, if any."""
     wrong = [field for field in fields if not field.settle()]
     if wrong:
         wrong[0].input.focus()
@@ -70,10 +70,10 @@ def all_settled(fields: Iterable[Part]) -> bool:
 
 
 class Field(Horizontal):
-    """A name, an input, and a note beside it.
+    """A name, an input and a note.
 
-    It is `Committed` when it is left, by Enter or by the focus, with a good text that differs from
-    the one it began with; a text that is not good stays, marked, and is not committed.
+    The field posts `Committed` when the user leaves it, by Enter or focus, with a valid text that
+    differs from the initial text. An invalid text stays, marked, and is not committed.
     """
 
     SCOPED_CSS = False  # the width of the screen counts
@@ -94,20 +94,20 @@ class Field(Horizontal):
 
     @dataclass
     class Committed(Message):
-        """A text is to be taken."""
+        """A valid text was entered."""
 
         field: Field
         text: str
 
     @dataclass
     class Entered(Message):
-        """Enter was pressed in it."""
+        """Enter was pressed in the field."""
 
         field: Field
 
     @dataclass
     class Judged(Message):
-        """Hold what the text typed so far comes to."""
+        """Interpretation of the text typed so far."""
 
         field: Field
         reading: Reading
@@ -116,46 +116,46 @@ class Field(Horizontal):
         super().__init__(id=id)
         self.key, self.check, self.asked = asked.key, asked.check, asked
         self._note = asked.takes
-        self.begun = self._shown = asked.text  # what it began with, and was last filled with
+        self.begun = self._shown = asked.text  # initial text, and text last filled in
         self.input = ScrolledEntry(asked.text, placeholder=asked.placeholder, compact=True)
         self._told = Static(asked.takes, classes="field-note", markup=False)
 
     def compose(self) -> ComposeResult:
-        """Name, input, note."""
+        """Yield the name, the input and the note."""
         yield Static(self.asked.title, classes="field-title", markup=False)
         yield self.input
         yield self._told
 
     @property
     def is_typing(self) -> bool:
-        """Return whether the text differs from the one shown first."""
+        """Whether the text differs from the text shown first."""
         return self.input.value != self._shown
 
     @property
     def text(self) -> str:
-        """Return what was typed, as it is to be written; as it was, where nothing was typed."""
+        """Typed text in the form in which it is written, or the initial text."""
         return self.reading.text if self.is_typing else self.begun
 
     @property
     def reading(self) -> Reading:
-        """Return what the text comes to."""
+        """Interpretation of the text."""
         return self.check(self.input.value)
 
     def reset(self, text: str) -> None:
-        """Show another text as the one to begin with."""
+        """Show another initial text."""
         self.begun = self._shown = text
         with self.prevent(Input.Changed):
             self.input.value = text
         self._tell(Reading(text))
 
     def tell(self, note: str) -> None:
-        """Show another note, as long as nothing is wrong; none for what the field takes."""
+        """Show another note unless the text is invalid; "" shows the description of the field."""
         self._note = note or self.asked.takes
         if not self.has_class("-wrong"):
             self._told.update(self._note, layout=False)
 
     def note(self, reading: Reading) -> str:
-        """Return what is said of the typed text: what is wrong or added, else what it takes."""
+        """Return the error or completion of the typed text, else the description of the field."""
         return reading.told(self.input.value) or self._note
 
     def _tell(self, reading: Reading) -> None:
@@ -176,12 +176,12 @@ class Field(Horizontal):
             self.post_message(self.Entered(self))
 
     def on_descendant_blur(self, event: events.DescendantBlur) -> None:
-        """Take the text when the focus goes on, if it is good."""
+        """Accept a valid text when the focus leaves."""
         if self.reading.is_good:
             self.settle()
 
     def settle(self) -> bool:
-        """Commit a good text, put in the correction of another one; whether it was good."""
+        """Commit a valid text or insert a correction; return whether the text was valid."""
         reading = self.reading
         if not reading.is_good:
             self._tell(reading)
@@ -198,7 +198,7 @@ class Field(Horizontal):
 
 
 class Cycle(Widget, can_focus=True):
-    """A name, and a word between two arrows."""
+    """A choice of words between two arrows."""
 
     BINDINGS = bindings("choice")
     DEFAULT_CSS = """
@@ -208,7 +208,7 @@ class Cycle(Widget, can_focus=True):
 
     @dataclass
     class Turned(Message):
-        """Another word is chosen."""
+        """Another word was chosen."""
 
         word: str
 
@@ -226,7 +226,7 @@ class Cycle(Widget, can_focus=True):
 
     @property
     def hint(self) -> str:
-        """Return what the keys do here."""
+        """Keys of this widget."""
         return "← → another, ↑ ↓ go on"
 
     def show(self, word: str) -> None:
@@ -245,11 +245,11 @@ class Cycle(Widget, can_focus=True):
         self.post_message(self.Turned(self.word))
 
     def on_click(self) -> None:
-        """The mouse goes on, too."""
+        """Go to the next word by mouse."""
         self.action_turn(1)
 
     def render(self) -> Text:
-        """The name, the arrows and the word."""
+        """Render the name, the arrows and the word."""
         return Text.assemble(
             (self._title, "dim"),
             ("‹ " if self.has_focus else "  ", "dim"),

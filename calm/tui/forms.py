@@ -1,7 +1,7 @@
-"""Forms of the file: what is asked for the keys of a model, and how their values are typed.
+"""Forms of the file: fields for the keys of a model, and the text form of their values.
 
-A value that is no plain text is typed as YAML in brackets, `[98 m, 104 m]`; a list of rows is a
-table, whose text is that YAML, too.
+A structured value is typed as YAML in brackets, `[98 m, 104 m]`; a list of rows is a table, whose
+text is also YAML.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _EXAMPLE = re.compile(r",? ?e\.g\. [^;]+;? ?")
 
 @dataclass(frozen=True)
 class FormColumn:
-    """A column of a table: the key of the mapping that a row is, none where a row is a list."""
+    """A column of a table, with the key of its rows ("" if the rows are lists)."""
 
     key: str
     heading: str
@@ -36,15 +36,15 @@ class FormColumn:
 
 @dataclass(frozen=True)
 class Asked:
-    """A text that is asked for.
+    """A form field: a text that the user enters.
 
     Attributes
     ----------
-    key : what it is known by; of a form of the file its place there, `position.latitude`
-    takes : stands beside it
-    above : begins a group with it
-    columns : of a table, whose rows are in the text
-    is_needed : whether its model cannot do without
+    key : name; for a key of the file, its path, such as `position.latitude`
+    takes : description next to the field
+    above : heading of a group that begins with this field
+    columns : columns of a table, whose rows are in the text
+    is_needed : whether its model requires it
     """
 
     key: str
@@ -59,14 +59,14 @@ class Asked:
 
 
 def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> list[Asked]:
-    """What is asked for the keys of a model: those it needs first, then those of models in it.
+    """Return the fields of a model: required keys first, keys of nested models last.
 
     Parameters
     ----------
-    at : what leads to its keys in the file, `deployed.`
-    needed : whether the model has to be there; the keys that it requires may be blank where not
+    at : path of its keys in the file, such as `deployed.`
+    needed : whether the model is required; otherwise its required keys may be blank
     """
-    model.model_rebuild()  # which finds what was named before it was defined
+    model.model_rebuild()  # resolves forward references
     own: list[Asked] = []
     inner: list[Asked] = []
     for name, field in model.model_fields.items():
@@ -80,7 +80,7 @@ def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> lis
 
 
 def model_in(annotation: Any) -> type[BaseModel] | None:
-    """The model that holds what is under a key; None where it is of another form, or of several."""
+    """Return the only model of an annotation, or None if there is none or a choice."""
     members = _members(annotation)
     return members[0] if len(members) == 1 and _is_model(members[0]) else None
 
@@ -96,9 +96,9 @@ def _asked(model: type[BaseModel], name: str, at: str, *, needed: bool) -> Asked
     elif words:
         check = one_of(words)
     elif members == (float,):
-        check = anything  # what it is depends on another key; all of them are judged together
+        check = anything  # its meaning depends on another key; all keys are checked together
     example = text_of(_as_texts(field.examples[0])) if field.examples else ""
-    takes = _EXAMPLE.sub("", field.description or "")  # which stands in the field
+    takes = _EXAMPLE.sub("", field.description or "")  # the example is the placeholder of the field
     return Asked(
         f"{at}{name}",
         name.replace("_", " ") + " *" * (is_needed and needed),
@@ -111,7 +111,7 @@ def _asked(model: type[BaseModel], name: str, at: str, *, needed: bool) -> Asked
 
 
 def _judged(model: type[BaseModel], name: str, needed: bool, text: str) -> Reading:
-    """Read a text as the model does, which allows or refuses its value."""
+    """Check a text by the model, which accepts or rejects its value."""
     tidy = " ".join(text.split())
     if not tidy:
         return Reading("", "a value is needed" if needed else "")
@@ -119,7 +119,7 @@ def _judged(model: type[BaseModel], name: str, needed: bool, text: str) -> Readi
 
 
 def _columns(members: tuple[Any, ...]) -> tuple[FormColumn, ...]:
-    """The columns of a list of models, or of rows of as many values each; none of another value."""
+    """Return the columns of a list of models or of fixed-length rows, else ()."""
     if len(members) != 1 or get_origin(members[0]) is not tuple:
         return ()
     row = get_args(members[0])[0]
@@ -138,7 +138,7 @@ def _columns(members: tuple[Any, ...]) -> tuple[FormColumn, ...]:
 
 
 def _members(annotation: Any) -> tuple[Any, ...]:
-    """The types of a union but None, without annotations."""
+    """Return the types of a union except None, without annotations."""
     if get_origin(annotation) in (Union, UnionType):
         return tuple(member for each in get_args(annotation) for member in _members(each))
     if hasattr(annotation, "__metadata__"):
@@ -151,7 +151,7 @@ def _is_model(member: Any) -> bool:
 
 
 def _words(members: tuple[Any, ...]) -> tuple[str, ...]:
-    """The words that a field may be, where it is one of some words and nothing else."""
+    """Return the allowed words of a field that takes only certain words."""
     if members == (bool,):
         return "true", "false"
     if all(get_origin(each) is Literal for each in members):
@@ -160,7 +160,7 @@ def _words(members: tuple[Any, ...]) -> tuple[str, ...]:
 
 
 def _as_texts(value: Any) -> Value:
-    """An example as the file has it."""
+    """Convert an example to the texts of the file."""
     if isinstance(value, dict):
         return {key: _as_texts(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
@@ -174,23 +174,23 @@ def _as_texts(value: Any) -> Value:
 
 
 def text_of(value: Value | None) -> str:
-    """A value as it is typed: what is no text in the brackets of YAML."""
+    """Return the typed form of a value: a text unchanged, any other value as inline YAML."""
     return value or "" if isinstance(value, str | None) else inline(value)
 
 
 def value_of(text: str) -> Value | None:
-    """The value that is typed; None where nothing is."""
+    """Parse a typed value; None if it is empty."""
     value = read_inline(text) if text[:1] in ("[", "{") else text
     return None if value in ("", [], {}) else value
 
 
 def rows_of(text: str, columns: Sequence[FormColumn]) -> Rows | None:
-    """The rows of a table; None of a value that has others, which only the text can show."""
+    """Return the rows of a table, or None if a row does not fit the columns."""
     return rows_in(value_of(text), columns)
 
 
 def rows_in(value: Value | None, columns: Sequence[FormColumn]) -> Rows | None:
-    """The same of a value of the file; what a row lacks is blank."""
+    """Return the rows of a value of the file, or None; missing cells are blank."""
     keys = {column.key for column in columns}
     rows = []
     for row in value if isinstance(value, list) else [] if value is None else [value]:
@@ -204,7 +204,7 @@ def rows_in(value: Value | None, columns: Sequence[FormColumn]) -> Rows | None:
 
 
 def text_of_rows(rows: Iterable[Sequence[str]], columns: Sequence[FormColumn]) -> str:
-    """The text of a table, without the rows that say nothing."""
+    """Return the text of a table, without empty rows."""
     return text_of([_row(row, columns) for row in rows if any(row)])
 
 
@@ -216,7 +216,7 @@ def _row(row: Sequence[str], columns: Sequence[FormColumn]) -> Value:
 
 
 def filled(asked: Iterable[Asked], values: Any) -> list[Asked]:
-    """The same with the texts that are in their places among values of the file."""
+    """Return the fields filled with the texts of the file."""
 
     def at(key: str) -> Any:
         found = values
@@ -228,7 +228,7 @@ def filled(asked: Iterable[Asked], values: Any) -> list[Asked]:
 
 
 def values_of(texts: Mapping[str, str]) -> dict[str, Any]:
-    """The values of a form by key, those of models in mappings; what is blank is left out."""
+    """Return the values of a form by key, nested for nested models, without blank values."""
     values: dict[str, Any] = {}
     for place, text in texts.items():
         *outer, key = place.split(".")
@@ -241,7 +241,7 @@ def values_of(texts: Mapping[str, str]) -> dict[str, Any]:
 
 
 def written(draft: Draft, texts: Mapping[str, str], below: Location = ()) -> Draft:
-    """The file with the texts of a form in their places; a blank one takes its key away."""
+    """Return the file with the texts of a form; a blank text deletes its key."""
     for key, text in texts.items():
         place = (*below, *key.split("."))
         old, new = draft.value(place), value_of(text)

@@ -1,4 +1,4 @@
-"""All actions of the builder and their keys: where they work, as hints, in help and palette."""
+"""All actions of the builder with their keys, for bindings, key bar, help and palette."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -17,17 +17,17 @@ from calm.checks.finding import State
 
 @dataclass(frozen=True)
 class Action:
-    """A verb.
+    """An action of the builder.
 
     Attributes
     ----------
-    place : where its keys work: what has the focus, or the screen it is on
-    name : of the method, without ``action_``, with its arguments
-    keys : as textual writes them, separated by commas; the first is the one that is shown
-    title : two or three words, for the palette and the line of keys
+    place : the focused widget or the screen on which its keys work
+    name : name of the method, without ``action_``, with its arguments
+    keys : keys in Textual's notation, separated by commas; the first is displayed
+    title : two or three words, for the palette and the key bar
     meaning : a sentence for the help
-    hint : its rank in the line of keys, 0 the first; None where it is not among them
-    palette : whether the command palette offers it, where it is of the line or works anywhere
+    hint : rank in the key bar, 0 first; None if it is not shown there
+    palette : whether the command palette lists it (actions of the line and of the main screen)
     """
 
     place: str
@@ -42,173 +42,174 @@ class Action:
 _TABLE = """
 [line] The line
 edit | enter,f2 | edit | 1 | Edit the value under the cursor in place; on the component, choose
-  another one.
+  another component.
 search('below') | a,insert | add | 0 | Add a piece below, from the catalogue.
 search('above') | A | add above |  | Add a piece above.
-search('clamp') | i | clamp on | 5 | Clamp an instrument on this piece.
-duplicate | d | duplicate | 6 | Repeat the piece, or those marked, below.
-delete | delete,backspace | delete | 7 | Delete the piece, or those marked.
+search('clamp') | i | clamp on | 5 | Clamp an instrument onto this piece.
+duplicate | d | duplicate | 6 | Duplicate the piece, or the marked pieces, below.
+delete | delete,backspace | delete | 7 | Delete the piece, or the marked pieces.
 move_piece(-1) | alt+up,ctrl+up,K | move up | 8 | Move the piece up the line.
-move_piece(1) | alt+down,ctrl+down,J | move down |  | Move it down the line.
+move_piece(1) | alt+down,ctrl+down,J | move down |  | Move the piece down the line.
 mark(0) | space | mark |  | Mark the piece, or remove its mark.
-mark(-1) | shift+up | mark up | - | Mark it and go up.
-mark(1) | shift+down | mark down | - | Mark it and go down.
+mark(-1) | shift+up | mark up | - | Mark the piece and go up.
+mark(1) | shift+down | mark down | - | Mark the piece and go down.
 mark_all | ctrl+a | mark all |  | Mark every piece.
-cut | x,ctrl+x | cut |  | Cut the piece, or those marked.
-copy | c,ctrl+c | copy |  | Copy them.
+cut | x,ctrl+x | cut |  | Cut the piece, or the marked pieces.
+copy | c,ctrl+c | copy |  | Copy the piece, or the marked pieces.
 paste(1) | v,ctrl+v | paste |  | Paste below the cursor.
 paste(0) | V | paste above |  | Paste above the cursor.
-edit_column('length') | l | length |  | Edit its length, or where it is clamped.
-edit_column('label') | n | label |  | Edit its label.
-edit_column('count') | equals_sign,asterisk | count |  | Edit its count.
-screen.change_component | O | change component |  | Change the component of the row, one of the
-  file's own, in its form.
-equipment | N | serial number |  | Serial number, calibration, sampling, battery, termination
-  and planned depth of the row.
+edit_column('length') | l | length |  | Edit the length of a piece, or the position of a clamp.
+edit_column('label') | n | label |  | Edit the label.
+edit_column('count') | equals_sign,asterisk | count |  | Edit the count.
+screen.change_component | O | change component |  | Edit the component of the row in a form, if the
+  file defines it.
+equipment | N | serial number |  | Serial number, calibration, sampling, battery, termination and
+  planned depth of the row.
 find | slash | find | 12 | Find words in the line: id, label, serial number, maker.
-find_next(1) | greater_than_sign,f3 | find next |  | To the next row that has them.
-find_next(-1) | less_than_sign | find last |  | To the one before.
-weakest | percent_sign | weakest |  | To the piece whose strength is used most.
+find_next(1) | greater_than_sign,f3 | find next |  | Go to the next match.
+find_next(-1) | less_than_sign | find previous |  | Go to the previous match.
+weakest | percent_sign | weakest |  | Go to the piece with the highest use of strength.
 column | number_sign | fill column |  | Serial numbers, lengths, labels or codes of the marked rows,
-  or of all of the component under the cursor, one below the other or pasted.
-repeat | plus | repeat |  | Repeat the piece, or those marked, as often as you say.
-next_finding | f8,g | next finding |  | To the next row with the most serious finding; the last
-  line of the screen shows it.
-why | y | why |  | All findings of this row, with remedies.
-search('replace') | r | replace |  | Use another component in its place.
+  or of all rows with the component under the cursor; a list can be pasted.
+repeat | plus | repeat |  | Add several copies of the piece, or of the marked pieces.
+next_finding | f8,g | next finding |  | Go to the next row with a finding of the most serious state;
+  the last line of the screen shows the finding.
+why | y | why |  | Show all findings of this row, with remedies.
+search('replace') | r | replace |  | Replace the component.
 move_cursor(-1) | up | up | - | To the row above.
-move_cursor(1) | down | down | - | To the row below.
-move_page(-1) | pageup | page up | - | A page up.
-move_page(1) | pagedown | page down | - | A page down.
-move_to_end(-1) | home | top | - | To the top of the line.
-move_to_end(1) | end | bottom | - | To the bottom.
-move_column(-1) | left | left | - | To the column on the left.
-move_column(1) | right | right | - | To the one on the right.
-screen.back | escape | back | - | Back to the line of the verdict that led here.
-[anywhere] Anywhere on the first screen
-undo | u | undo | 3 | Undo the last change, as often as there is one.
-suspend | ctrl+z | suspend |  | Suspend to the shell, `fg` returns; while a value is edited, and
-  in a browser: undo.
-redo | U,ctrl+y | redo |  | Redo what was undone.
-water | w | water | 4 | Depth, density, current, wind; environments.
+move_cursor(1) | down | down | - | Go to the row below.
+move_page(-1) | pageup | page up | - | Go a page up.
+move_page(1) | pagedown | page down | - | Go a page down.
+move_to_end(-1) | home | top | - | Go to the top of the line.
+move_to_end(1) | end | bottom | - | Go to the bottom of the line.
+move_column(-1) | left | left | - | Go to the column on the left.
+move_column(1) | right | right | - | Go to the column on the right.
+screen.back | escape | back | - | Return to the line of the verdict that led here.
+[anywhere] On the main screen
+undo | u | undo | 3 | Undo the last change; repeat to undo earlier changes.
+suspend | ctrl+z | suspend |  | Suspend to the shell, `fg` returns; undo while a value is edited,
+  and in a browser.
+redo | U,ctrl+y | redo |  | Redo the last undone change.
+water | w | water | 4 | Edit depth, density, current and wind of the environments.
 next_environment | e | environment |  | Show the line in the next environment.
-advise | p | advice | 10 | Changes that correct a finding or meet a target; shown before you
-  accept them.
-compare | ctrl+d | compare |  | What has changed since the file was saved.
-figures | f | missing figures |  | Fill in the figures that are not known, piece by piece, with
-  their source.
-verdict | f6 | verdict |  | The verdict line by line: Enter goes to the row that a line is about,
-  Esc back.
+advise | p | advice | 10 | Propose changes that correct a finding or meet a target; they are shown
+  before you accept them.
+compare | ctrl+d | compare |  | Show the changes since the file was saved.
+figures | f | missing values |  | Enter missing component values with their source.
+verdict | f6 | verdict |  | Read the verdict line by line: Enter goes to the row of a line, Esc
+  returns.
 search('below') | f7 | catalogue |  | Browse the catalogue.
 define | o | own component |  | Define a component of your own.
-picture('elevation') | 1 | elevation |  | The line seen from the side.
-picture('plan') | 2 | plan |  | The line seen from above.
-picture('tension') | 3 | tension |  | Tension along the line.
-picture('schematic') | 4 | schematic |  | The parts, not to scale.
-zoom | z | zoom |  | Give the picture the whole screen, or take it back.
-sheet('mooring') | m | name, place |  | Name, description and position.
-sheet('document') | M | document |  | Number, revision and what it changed, author, ship and cruise,
-  for the title block.
-sheet('deployed') | at | as deployed |  | Date, position and depth of the deployment; of the row its
-  number, length, remark, codes.
-sheet('tow') | T | tow |  | Speed and course of a tow; makes the line one, which hangs from a ship.
-settings | comma | settings |  | Solver, limits of the check, uncertainty and units of output.
-begin | b | begin |  | Begin an empty line with a mooring: deep, shelf, ADCP, taut or slack
-  surface; a tow.
-papers | f9 | papers |  | Bill and totals; write the report of the check, or the sheets for the
-  deck.
-history | h | history |  | History of changes, and back to before any of them.
-text | t | text |  | The file as text, with its mistakes.
+picture('elevation') | 1 | elevation |  | Show the line from the side.
+picture('plan') | 2 | plan |  | Show the line from above.
+picture('tension') | 3 | tension |  | Show the tension along the line.
+picture('schematic') | 4 | schematic |  | Show the parts, not to scale.
+zoom | z | zoom |  | Show the picture on the whole screen, or restore the screen.
+sheet('mooring') | m | name, position |  | Edit name, description and position.
+sheet('document') | M | document |  | Edit number, revisions, author, ship and cruise for the title
+  block.
+sheet('deployed') | at | as deployed |  | Edit date, position and depth of the deployment, and
+  serial number, length, remark and release codes of the row.
+sheet('tow') | T | tow |  | Edit speed and course of a tow; turns a mooring into a tow.
+settings | comma | settings |  | Edit solver, limits of the check, uncertainty and units of output.
+begin | b | begin |  | Start an empty line from a template: deep, shelf, ADCP, taut or slack surface
+  mooring, or tow.
+papers | f9 | documents |  | Show the bill of material; write the report of the check or the deck
+  sheets.
+history | h | history |  | Show the history of changes, and go back to an earlier state.
+text | t | text |  | Edit the file as text, with its mistakes.
 app.save | ctrl+s,s | save | 9 | Save the file.
-app.save_as | S | save as |  | Save it under another name.
-app.help | question_mark,f1 | help | 2 | All keys.
-app.command_palette | ctrl+p,colon | commands | - | Find any of these by its name.
+app.save_as | S | save as |  | Save the file under another name.
+app.help | question_mark,f1 | help | 2 | Show all keys.
+app.command_palette | ctrl+p,colon | commands | - | Find any of these actions by name.
 app.repaint | ctrl+l | repaint |  | Redraw the whole screen.
-app.quit | q,ctrl+q | quit | 11 | Leave; unsaved work is asked about.
+app.quit | q,ctrl+q | quit | 11 | Quit; prompts for unsaved changes.
 [verdict] The verdict, line by line
-move(-1) | up | up |  | To the line above that leads to a row.
-move(1) | down | down |  | To the one below.
-go | enter | its row | 0 | To the row it is about; Esc leads back.
-leave | escape | line | 1 | To the line.
+move(-1) | up | up |  | Go to the line above that leads to a row.
+move(1) | down | down |  | Go to the line below that leads to a row.
+go | enter | its row | 0 | Go to the row of this line; Esc returns.
+leave | escape | line | 1 | Return to the line.
 [cell] While a value is edited in place
 done | enter | done | 0 | Accept the value.
-done('edit next') | tab | next | 1 | Accept it and edit the next value.
-done('up') | up | take, up |  | Accept it and go up.
-done('down') | down | take, down |  | Accept it and go down.
-right | right | take, right |  | At the end of the text: accept it and go to the right.
-abandon | escape | leave it | 2 | Leave the value as it was.
+done('edit next') | tab | next | 1 | Accept the value and edit the next one.
+done('up') | up | accept, up |  | Accept the value and go up.
+done('down') | down | accept, down |  | Accept the value and go down.
+right | right | accept, right |  | At the end of the text: accept the value and go to the right.
+abandon | escape | cancel | 2 | Cancel editing.
 [catalogue] The catalogue
-choose(-1) | up | up |  | To the one above.
-choose(1) | down | down |  | To the one below.
-choose(-10) | pageup | page up |  | Ten up.
-choose(10) | pagedown | page down |  | Ten down.
+choose(-1) | up | up |  | Go to the component above.
+choose(1) | down | down |  | Go to the component below.
+choose(-10) | pageup | page up |  | Go up by ten.
+choose(10) | pagedown | page down |  | Go down by ten.
 sort | f4 | sort | 1 | Sort by net force, loads, depth rating, drag or mass.
-mark | f3 | favourite | 2 | Make it a favourite, or not; favourites come first, in every file.
-take | enter | insert | 0 | Put it into the line.
-close | escape | close | 3 | Back to the line.
+mark | f3 | favourite | 2 | Add to the favourites, or remove; favourites come first, in every file.
+take | enter | insert | 0 | Add the component to the line.
+close | escape | close | 3 | Return to the line.
 [water] The water
-next_environment | f5 | environment | 3 | The next environment.
-new_environment | f6,ctrl+n | new environment | 4 | Add a named one.
-drop_environment | f7 | drop it |  | Remove the named environment.
-preset | ctrl+t | presets | 2 | Typical currents to start from.
-load_current | ctrl+o | read a file | 1 | A current from CSV or NetCDF.
-app.focus_next | down | next |  | To what is below.
-app.focus_previous | up | last |  | To what is above.
+next_environment | f5 | environment | 3 | Go to the next environment.
+new_environment | f6,ctrl+n | new environment | 4 | Add a named environment.
+drop_environment | f7 | remove |  | Remove the named environment.
+preset | ctrl+t | presets | 2 | Choose a typical current to start from.
+load_current | ctrl+o | read a file | 1 | Read a current from CSV or NetCDF.
+app.focus_next | down | next |  | Go to the next field.
+app.focus_previous | up | previous |  | Go to the previous field.
 undo | ctrl+z | undo |  | Undo the last change.
-redo | ctrl+y | redo |  | Do it again.
+redo | ctrl+y | redo |  | Redo the last undone change.
 app.save | ctrl+s | save |  | Save the file.
-app.help | f1 | help | 5 | All keys.
-back | escape | back | 0 | Back to the line.
+app.help | f1 | help | 5 | Show all keys.
+back | escape | back | 0 | Return to the line.
 [grid] A table of the water
-move_row(-1) | up | up |  | To the row above; from the first one to what is before.
-move_row(1) | down | down |  | To the row below; from the last one on to what follows.
-move_cell(1) | tab | next cell |  | To the next value of the table.
-move_cell(-1) | shift+tab | last cell |  | To the one before.
-move_column(-1) | left | left |  | To the left.
-move_column(1) | right | right |  | To the right.
-edit | enter,f2 | edit | 0 | Edit the number; typing begins at once.
+move_row(-1) | up | up |  | Go to the row above; from the first row to the previous field.
+move_row(1) | down | down |  | Go to the row below; from the last row to the next field.
+move_cell(1) | tab | next cell |  | Go to the next value of the table.
+move_cell(-1) | shift+tab | previous cell |  | Go to the previous value of the table.
+move_column(-1) | left | left |  | Go to the left.
+move_column(1) | right | right |  | Go to the right.
+edit | enter,f2 | edit | 0 | Edit the value; typing a digit also starts editing.
 add_row(1) | a,insert | add row | 1 | Add a row below.
 add_row(0) | A | add above |  | Add a row above.
 drop_row | delete,backspace | delete row | 2 | Delete the row.
-[choice] One of some words between arrows
-turn(-1) | left | last |  | The word before.
-turn(1) | right,space | next |  | The next word.
-app.focus_next | enter | go on |  | To what is below.
-[given] The form in which density or current is given
-take | enter | take it |  | Choose the form shown, and go on.
+[choice] A choice between arrows
+turn(-1) | left | previous |  | Show the previous word.
+turn(1) | right,space | next |  | Show the next word.
+app.focus_next | enter | go on |  | Go to the next field.
+[given] The form of density or current
+take | enter | accept |  | Choose the form shown, and go on.
 [text] The file as text
-app.save | ctrl+s | save | 1 | Save the file as it stands.
+app.save | ctrl+s | save | 1 | Save the file.
 find | ctrl+f | find | 4 | Find words in the text.
-find_next | f3,ctrl+g | find next | 5 | To where they are next.
-next_problem | f8 | next mistake | 2 | To the next mistake.
-back | escape | to the line | 0 | To the line, once the text can be read.
-app.help | f1 | help | 3 | All keys.
+find_next | f3,ctrl+g | find next | 5 | Go to the next match.
+next_problem | f8 | next mistake | 2 | Go to the next mistake.
+back | escape | to the line | 0 | Return to the line, once the text is valid.
+app.help | f1 | help | 3 | Show all keys.
 [area] While the text is typed
-end(-1) | ctrl+home | top |  | To the beginning of the text.
-end(1) | ctrl+end | bottom |  | To the end of the text.
-indent | tab | indent |  | Blanks to the next even column.
+end(-1) | ctrl+home | top |  | Go to the beginning of the text.
+end(1) | ctrl+end | bottom |  | Go to the end of the text.
+indent | tab | indent |  | Insert blanks up to the next even column.
 [form] A component of your own
-take | ctrl+s | keep it | 0 | Write the component into the file.
-leave | escape | leave | 1 | Leave without it.
-app.help | f1 | help | 2 | All keys.
-app.focus_next | down | next |  | To the next figure.
-app.focus_previous | up | last |  | To the one before.
-[sheet] Some values asked for together
+take | ctrl+s | save | 0 | Write the component into the file.
+leave | escape | cancel | 1 | Close the form without changes.
+app.help | f1 | help | 2 | Show all keys.
+app.focus_next | down | next |  | Go to the next field.
+app.focus_previous | up | previous |  | Go to the previous field.
+[sheet] A sheet of several values
 take | ctrl+s | done |  | Accept all values.
-leave | escape | leave |  | Leave everything as it was.
-app.focus_next | down | next |  | To the next value.
-app.focus_previous | up | last |  | To the one before.
+leave | escape | cancel |  | Discard all changes.
+app.focus_next | down | next |  | Go to the next field.
+app.focus_previous | up | previous |  | Go to the previous field.
 [question] A question, answered by the letter in front of each answer
-move(-1) | up | up |  | To the answer above.
-move(1) | down | down |  | To the answer below.
-give | enter | give |  | Give the answer that is marked, if one is.
+move(-1) | up | up |  | Go to the answer above.
+move(1) | down | down |  | Go to the answer below.
+give | enter | choose |  | Choose the marked answer.
 leave | escape | go back |  | Go back, where possible.
 [help] This help
-dismiss | escape,q,enter,question_mark,f1 | close |  | Close it.
+dismiss | escape,q,enter,question_mark,f1 | close |  | Close the help.
 """
-"""Below its place, with the heading that this has in the help, each action: name | keys | title |
-rank of its hint | meaning, which may go on in lines that begin with a blank. A ``-`` in place of
-the rank keeps it out of the palette."""
+"""Actions by place, below the heading of the place in the help.
+
+Each row is: name | keys | title | rank in the key bar | meaning. Lines that begin with a blank
+continue the meaning. A ``-`` as rank excludes the action from the palette.
+"""
 
 
 def _action(place: str, row: str) -> Action:
@@ -218,9 +219,9 @@ def _action(place: str, row: str) -> Action:
 
 
 PLACES: dict[str, str] = {}
-"""The headings of the help by their places, in its order."""
+"""Headings of the help by place, in order."""
 ACTIONS: dict[str, list[Action]] = {}
-"""The actions of each place, in order."""
+"""Actions of each place, in order."""
 
 for _section in _TABLE.strip("\n[").replace("\n  ", " ").split("\n["):
     _head, *_rows = _section.splitlines()
@@ -234,7 +235,7 @@ _KEYS = {**_ARROWS, **_SHORT, "slash": "/", "space": "Space"}
 
 
 def shown_key(key: str) -> str:
-    """A key as it is written on a keyboard: ``ctrl+s`` → ``Ctrl+S``, ``question_mark`` → ``?``."""
+    """Return the usual name of a key: ``ctrl+s`` → ``Ctrl+S``, ``question_mark`` → ``?``."""
     *held, last = key.split("+")
     if len(last) == 1:
         last = last.upper() if held else last
@@ -245,17 +246,17 @@ def shown_key(key: str) -> str:
 
 
 def shown_keys(keys: str) -> str:
-    """Keys separated by commas as people read them."""
+    """Return the usual names of keys that are separated by commas."""
     return "  ".join(map(shown_key, keys.split(",")))
 
 
 def bindings(place: str) -> list[BindingType]:
-    """The keys of a place for the widget or screen that has the methods."""
+    """Return the bindings of a place, for the widget or screen with its methods."""
     return [Binding(each.keys, each.name, each.title, show=False) for each in ACTIONS[place]]
 
 
 def hints(place: str) -> list[Action]:
-    """The actions shown while a place has the focus, the most used first."""
+    """Return the actions in the key bar while a place has the focus, the most used first."""
     places = ("line", "anywhere") if place == "line" else (place,)
     own = [each for where in places for each in ACTIONS[where] if each.hint is not None]
     return sorted(own, key=lambda action: action.hint or 0)
@@ -263,21 +264,21 @@ def hints(place: str) -> list[Action]:
 
 _SIGNS = "Signs: " + ", ".join(f"{state.sign} {state}" for state in reversed(State))
 _GROUND = (
-    "Every change is solved and judged at once; until then the figures of the line before are "
-    "dimmed. A number without a unit takes the unit shown. With the mouse: press a cell to go "
-    "there, press it again to edit."
+    "Every change is solved and judged at once; until then the previous values are dimmed. "
+    " A number without a unit takes the unit shown. With the mouse: press a cell to go "
+    "there, press again to edit."
 )
 _OF_TEXTUAL: dict[str, Iterable[BindingType]] = {
     "On every screen, with Ctrl+P and Ctrl+Q": Screen.BINDINGS,
     "While a value is typed": Input.BINDINGS,
-    "While the text is typed, as well": TextArea.BINDINGS,
-    "Pictures, verdict and whatever is longer than the screen": ScrollableContainer.BINDINGS,
+    "In addition, while the text is typed": TextArea.BINDINGS,
+    "Pictures, verdict and texts longer than the screen": ScrollableContainer.BINDINGS,
 }
-"""Keys that CALM leaves to the widgets it is made of; their meanings come from them."""
+"""Keys that Textual's widgets define, with their descriptions."""
 
 
 def all_keys() -> RenderableType:
-    """Every key, by where it works."""
+    """Return a table of all keys by place."""
     listed = {
         title: [(action.keys, action.meaning) for action in ACTIONS[place]]
         for place, title in PLACES.items()

@@ -1,4 +1,4 @@
-"""The line: its rows and what is done with them."""
+"""The line pane: rows of the line and the actions on them."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -20,12 +20,12 @@ from calm.tui.names import Named, namings
 from calm.tui.verdict_text import Saying, why
 from calm.tui.workspace import Workspace
 
-_MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
+_MIXED = "Pieces and clamps of other pieces are marked; mark only pieces or only clamps"
 _FROM_A_ROW = frozenset(
     {"mark", "why", "equipment", "column", "repeat", "duplicate", "delete",
      "move_piece", "cut"}
 )  # fmt: skip
-"""Actions that need a row to begin with."""
+"""Actions that require a row."""
 
 
 class LinePane(LineSearch):
@@ -33,7 +33,7 @@ class LinePane(LineSearch):
 
     Parameters
     ----------
-    search : searches the catalogue for a component for the row under the cursor
+    search : opens the catalogue to find a component for the row under the cursor
     """
 
     BINDINGS = bindings("line")
@@ -43,14 +43,14 @@ class LinePane(LineSearch):
         self.table: LineTable = LineTable(id="line")
         super().__init__(workspace.tell, self.table, id="line-pane")
         self.workspace, self.session, self._search = workspace, workspace.session, search
-        self._cell: LineCell | None = None  # what is edited, or was last
+        self._cell: LineCell | None = None  # the cell edited now or last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """The keys of the rows are not those of a value that is typed, nor of an empty line."""
+        """Disable row actions while a value is typed, and some of them in an empty line."""
         return not self.editor.is_open and (bool(self.table.rows) or action not in _FROM_A_ROW)
 
     def show_rows(self) -> None:
-        """Show the rows as they are now, with the figures that are known of them."""
+        """Show the current rows with their known values."""
         workspace, view = self.workspace, self.workspace.view
         workspace.refresh_index()
         figures = view if view is not None and (view.rows or view.problems) else workspace.good
@@ -58,7 +58,7 @@ class LinePane(LineSearch):
         self.table.show_rows(rows, old=workspace.is_old)
 
     def show_draft(self, spot: Place | None = None) -> None:
-        """Show the draft, another one now; the cursor goes to a row, or stays where it is."""
+        """Show a new draft, with the cursor on `spot` or unmoved."""
         here = self.table.spot if spot is None else spot
         self.leave_cell()
         self.table.mark(frozenset())
@@ -66,7 +66,7 @@ class LinePane(LineSearch):
         self.table.go_to(here)
 
     def attempt(self, change: Callable[[], object], message: str = "") -> bool:
-        """Make a change, after what is typed in place is taken. Whether it was made."""
+        """Accept typed text, make a change, and return whether it was made."""
         if not self.settle():
             return False
         self.session.followed = []
@@ -76,7 +76,7 @@ class LinePane(LineSearch):
         return is_made
 
     def _show_edited(self, spot: Place | None = None, message: str = "") -> None:
-        """Show the draft, which was edited, and have it judged."""
+        """Show the edited draft and have it judged."""
         self.show_draft(spot)
         self.workspace.tell("; ".join([*filter(None, [message]), *self.session.followed]))
         self.workspace.edited()
@@ -96,21 +96,21 @@ class LinePane(LineSearch):
         self.table.cursor = 0 if way < 0 else len(self.table.rows) - 1
 
     def action_mark(self, by: int) -> None:
-        """Mark the row or not, and go on."""
+        """Toggle the mark of the row, or extend the marks and move on."""
         table = self.table
         marked, spot = table.marked, table.chosen_here
         table.cursor += by
         table.mark(marked | {spot, table.chosen_here} if by else marked ^ {spot})
 
     def action_mark_all(self) -> None:
-        """Mark all pieces, or none where all are."""
+        """Mark all pieces, or remove all marks if all are marked."""
         pieces = frozenset(row.spot for row in self.table.rows if not row.spot.is_clamp)
         self.table.mark(frozenset() if self.table.marked >= pieces else pieces)
 
-    # what was found
+    # findings
 
     def action_next_finding(self) -> None:
-        """Go to the next row that a failure, else a warning, else a missing figure is found of."""
+        """Go to the next row with a failure, else a warning, else a missing value."""
         rows, here = self.table.rows, self.table.cursor
         around = [*range(here + 1, len(rows)), *range(here + 1)]
         for state in (State.FAIL, State.WARN, State.UNKNOWN):
@@ -124,16 +124,16 @@ class LinePane(LineSearch):
         self.workspace.tell("There are no findings")
 
     def _found_of(self, spot: Place) -> list[Saying]:
-        """Return what is known now of a row, the gravest first."""
+        """Return the current findings of a row, the most severe first."""
         view = self.workspace.view
         return why(view, spot) if view is not None and self.workspace.is_fresh else []
 
     def action_why(self) -> None:
-        """Show all that was found of the row under the cursor."""
+        """Show all findings of the row under the cursor."""
         row = self.table.rows[self.table.cursor]
         found = self._found_of(row.spot)
         if not found:
-            self.workspace.tell("There are no findings for this row, or it is not judged yet")
+            self.workspace.tell("This row has no findings, or is not judged yet")
             return
         text = "\n".join(f"{each.sign} {each.heading}  {each.text}" for each in found)
         called = row.texts.get("label") or row.texts["component"]
@@ -146,10 +146,10 @@ class LinePane(LineSearch):
         if self.table.rows or purpose in ("below", "above"):
             self._search(purpose)
         elif purpose == "clamp":
-            self.workspace.tell("There is no piece yet to clamp it on")
+            self.workspace.tell("Add a piece before clamping an instrument")
 
     def action_equipment(self) -> None:
-        """Serial number, calibration and more of the row."""
+        """Edit the serial number, calibration and other equipment keys of the row."""
         spot = self.table.chosen_here
         values = self.session.written(spot)
         label = str(values.get("label") or values.get("use") or "")
@@ -165,7 +165,7 @@ class LinePane(LineSearch):
         ask(self.app, equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
 
     def action_column(self) -> None:
-        """Fill a column of the rows that are marked, else of all of the component of the row."""
+        """Fill a column of the marked rows, or of all rows with the component of this row."""
         table = self.table
         spots = table.chosen
         if not table.marked:
@@ -175,7 +175,7 @@ class LinePane(LineSearch):
         def fill(column: str) -> None:
             filling = ColumnFilling(self.workspace, spots, column)
             if (sheet := filling.sheet) is None:
-                self.workspace.tell("None of these rows has such a value")
+                self.workspace.tell("These rows cannot have such a value")
             else:
                 ask(self.app, sheet, lambda texts: self.attempt(lambda: filling.write(texts)))
 
@@ -185,11 +185,11 @@ class LinePane(LineSearch):
             Answer("n", "labels", partial(fill, "label")),
             Answer("c", "codes of releases that have serial numbers", partial(fill, "codes")),
         ]
-        text = f"Of {len(spots)} rows, one below the other; a list copied elsewhere can be pasted."
+        text = f"Values of {len(spots)} rows, one below the other; you can paste a copied list."
         choose(self.app, Question("Fill a column", text, answers))
 
     def action_repeat(self) -> None:
-        """Repeat what is chosen several times."""
+        """Add several copies of the chosen rows."""
         chosen = self._chosen_of_a_kind()
 
         def take(texts: dict[str, str]) -> None:
@@ -200,7 +200,7 @@ class LinePane(LineSearch):
             enter(self.app, "Repeat", "", asked, take)
 
     def action_duplicate(self) -> None:
-        """Repeat what is chosen."""
+        """Duplicate the chosen rows."""
         chosen = self._chosen_of_a_kind()
         named = [each for spot in chosen for each in namings(self.session.draft, spot)]
 
@@ -208,23 +208,23 @@ class LinePane(LineSearch):
             self.attempt(lambda: self.session.duplicate(chosen, also))
 
         if named:
-            text = "\n".join(f"{each.where} names {each.text}" for each in named)
+            text = "\n".join(f"{each.where} refers to {each.text}" for each in named)
             answers = [
-                Answer("o", "the one that is there; the copy stands for itself", duplicate),
-                Answer("b", "both (`NAME *`) in what is accepted", partial(duplicate, named)),
+                Answer("o", "the original only", duplicate),
+                Answer("b", "both (`NAME *`) in accepted findings", partial(duplicate, named)),
             ]
-            choose(self.app, Question("Is the copy meant, too?", text, answers))
+            choose(self.app, Question("Which pieces should these keys refer to?", text, answers))
         elif chosen:
             duplicate()
 
     def action_delete(self) -> None:
-        """Take out what is chosen."""
+        """Delete the chosen rows."""
         chosen = self.table.chosen
         what = f"{len(chosen)} rows" if len(chosen) > 1 else "deleted"
-        self.attempt(lambda: self.session.delete(chosen), f"{what}; u brings it back")
+        self.attempt(lambda: self.session.delete(chosen), f"{what}; u restores")
 
     def action_move_piece(self, by: int) -> None:
-        """Move what is chosen up or down."""
+        """Move the chosen rows up or down."""
         marked, chosen = self.table.marked, self._chosen_of_a_kind()
         moved: list[Place] = []
 
@@ -236,29 +236,28 @@ class LinePane(LineSearch):
             self.table.mark(frozenset(moved))
 
     def action_copy(self) -> None:
-        """Keep what is chosen for pasting."""
+        """Copy the chosen rows for pasting."""
         if copied := self.session.copy(self._chosen_of_a_kind()):
             self.table.mark(frozenset())
             self.workspace.tell(f"{copied} row{'s' * (copied != 1)} copied; v pastes below")
 
     def action_cut(self) -> None:
-        """Take out what is chosen, for pasting."""
+        """Cut the chosen rows for pasting."""
         chosen = self._chosen_of_a_kind()
         if self.session.copy(chosen):
             self.attempt(lambda: self.session.delete(chosen), "cut; v pastes below")
 
     def action_paste(self, below: int) -> None:
-        """Put in what was copied."""
+        """Paste the copied rows."""
         if not self.session.copied:
-            self.workspace.tell("Nothing was copied yet")
+            self.workspace.tell("There are no copied rows to paste")
         else:
             self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))
 
     def _chosen_of_a_kind(self) -> tuple[Place, ...]:
-        """Return what is chosen; nothing, with a report, where clamps of other pieces are with
-        pieces.
+        """Return the chosen rows, or () with a message if pieces and clamps of others are mixed.
 
-        They have no place of their own among pieces that are pasted or moved.
+        Such clamps have no position among pieces that are pasted or moved.
         """
         chosen = self.table.chosen
         pieces = {spot.item for spot in chosen if not spot.is_clamp}
@@ -288,7 +287,7 @@ class LinePane(LineSearch):
             self._edit(LineCell(self.workspace, spot, column))
 
     def _edit(self, cell: LineCell) -> None:
-        """Edit a value, after what is typed in another is taken."""
+        """Edit a value after accepting text typed in another cell."""
         if refused := cell.refused:
             self.workspace.tell(refused)
         if refused or not self.settle():
@@ -299,7 +298,7 @@ class LinePane(LineSearch):
         self.open_editor(cell.text, cell.check, least_width=least)
 
     def write(self, text: str) -> None:
-        """Write a good text into the draft."""
+        """Write a valid text into the draft."""
         cell, before = self._cell, self.session.draft
         is_put = cell is not None and self.workspace.attempt(lambda: cell.put(text))[0]
         if is_put and self.session.draft is not before:

@@ -1,4 +1,4 @@
-"""The rows of the line: what the file says beside what was found; values and columns as edited."""
+"""Rows of the line, from the file and its results; editing of single values and columns."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ _MOST_USE = 9.99
 def table_rows(
     draft: Draft, view: View | None, index: Index | None, added: Collection[Place] = ()
 ) -> list[TableRow]:
-    """A row for each item and clamp; figures of pieces that share an item are its worst.
+    """Return a row for each item and clamp, with the governing values of the pieces of an item.
 
-    A view of an earlier text gives its figures to the rows that are called as its own are, but for
-    those that were `added`.
+    If the view is of an earlier text, its values go to the rows of the same name, except the rows
+    that were `added`.
     """
     found = _figures(draft, view, added)
     wrong = _wrong_items(draft, view)
@@ -61,7 +61,7 @@ def table_rows(
 
 
 def _wrong_items(draft: Draft, view: View | None) -> set[int]:
-    """The items in whose lines there are mistakes."""
+    """Return the numbers of items with mistakes in their lines of text."""
     if view is None or view.text != draft.text or not view.problems:
         return set()
     lines = {problem.line for problem in view.problems if problem.path == str(view.path)}
@@ -75,7 +75,7 @@ def _wrong_items(draft: Draft, view: View | None) -> set[int]:
 def _figures(
     draft: Draft, view: View | None, added: Collection[Place]
 ) -> dict[Place, Sequence[FoundRow]]:
-    """Return what was found for each row."""
+    """Return the results for each row."""
     if view is None:
         return {}
     found: dict[Place, list[FoundRow]] = {}
@@ -97,7 +97,7 @@ def _figures(
 
 
 def _called(items: Sequence[LineItem], place: Place) -> tuple[str, str, bool]:
-    """Return what the file says a row is: component, label, and whether it is clamped."""
+    """Return the identity of a row in the file: component, label, and whether it is clamped."""
     item = items[place.item]
     values = (item.clamps[place.clamp] if place.is_clamp else item).values
     use = values.get("use", "")
@@ -105,7 +105,7 @@ def _called(items: Sequence[LineItem], place: Place) -> tuple[str, str, bool]:
 
 
 def _row(spot: Place, item: LineItem, found: Sequence[FoundRow], index: Index | None) -> TableRow:
-    values = {key: " ".join(value.split()) for key, value in item.values.items()}  # of one line
+    values = {key: " ".join(value.split()) for key, value in item.values.items()}  # on one line
     use = values.get("use", "")
     listed = None if index is None else index.get(use)
     sign = UNKNOWN_ROLE if listed is None else ROLES.get(listed.role, " ")
@@ -123,14 +123,14 @@ def _row(spot: Place, item: LineItem, found: Sequence[FoundRow], index: Index | 
 
 
 def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
-    """A length as written; of one that is fitted, what it is cut to."""
+    """Return the written length, or the computed length of a `fit`."""
     if values.get("length") == "fit" and found and found[0].length is not None:
         return f"fit: {QUANTITIES['length'].say(found[0].length)}"
     return length_text(values)
 
 
 def _told(found: Sequence[FoundRow]) -> dict[str, str]:
-    """The figures of the pieces of one item: where it begins, and the worst of them."""
+    """Return the texts of an item: the governing value of its pieces in each column."""
     texts = {}
     for one in table_columns(Output.BUILDER):
         known = [row.figures[one.name] for row in found if one.name in row.figures]
@@ -145,29 +145,29 @@ def _told(found: Sequence[FoundRow]) -> dict[str, str]:
     return texts
 
 
-_NO_COUNT = "A clamp has no count; duplicate it instead"
-_NO_SERIAL = "is an assembly, whose parts have serial numbers; it has none"
-_NO_LENGTH = "Its length is set by the component"
+_NO_COUNT = "Clamps cannot have a count; duplicate the clamp instead"
+_NO_SERIAL = "is an assembly: only its parts have serial numbers"
+_NO_LENGTH = "The component determines the length"
 
 
 @dataclass(frozen=True)
 class LineCell:
-    """A value of a row, as the file of a workspace has it now."""
+    """An editable value of a row in the current file of a workspace."""
 
     workspace: Workspace
     spot: Place
     column: str
-    """One of the table that can be edited, or the serial number."""
+    """An editable column of the table, or `serial`."""
 
     @property
     def listed(self) -> Listed | None:
-        """Return its component, where the catalogue is read and has it."""
+        """Component of the row, if the loaded catalogue has it."""
         index = self.workspace.index
         return None if index is None else index.get(self._values.get("use", ""))
 
     @property
     def refused(self) -> str:
-        """Return why it cannot be edited; empty where it can."""
+        """Reason why the value cannot be edited, or ""."""
         listed = self.listed
         if self.column == "serial" and listed is not None and listed.kind == "assembly":
             return _NO_SERIAL
@@ -179,7 +179,7 @@ class LineCell:
 
     @property
     def text(self) -> str:
-        """As it is edited."""
+        """Text to edit."""
         if self._is_length:
             return length_text(self._values)
         if self.column == "serial":
@@ -188,7 +188,7 @@ class LineCell:
 
     @property
     def check(self) -> Check:
-        """Return what judges another text of it."""
+        """Check of a new text."""
         if self.column != "length":
             return {"count": count, "serial": serial_of_equipment}.get(self.column, anything)
         if self.spot.is_clamp:
@@ -196,7 +196,7 @@ class LineCell:
         return length(self._values.get("length", ""), towed=self._is_towed)
 
     def put(self, text: str) -> None:
-        """Write another text, one that was judged good; the same one changes nothing.
+        """Write a valid text; an unchanged text has no effect.
 
         Raises
         ------
@@ -207,7 +207,7 @@ class LineCell:
             self.workspace.session.put({self.spot: given}, f"change the {name}")
 
     def values_of(self, text: str) -> dict[str, Value | None]:
-        """The keys of the file that another text changes; None takes one away."""
+        """Return the keys of the file that a text changes; None deletes a key."""
         written = self._values
         if text == self.text:
             return {}
@@ -223,7 +223,7 @@ class LineCell:
         return given if any(written.get(key) != new for key, new in given.items()) else {}
 
     def onward(self) -> LineCell | None:
-        """The next one of the row that can be edited."""
+        """Return the next editable cell of the row, if any."""
         for column in EDITABLE[EDITABLE.index(self.column) + 1 :]:
             cell = LineCell(self.workspace, self.spot, column)
             if not cell.refused:
@@ -247,10 +247,10 @@ _TITLES = {"serial": "Serial numbers", "length": "Lengths", "label": "Labels", "
 
 
 class ColumnSheet(InputSheet):
-    """A field for each row; a list that is pasted fills them downwards."""
+    """Sheet with a field for each row; a pasted list fills the fields downwards."""
 
     def on_paste(self, event: Paste) -> None:
-        """Fill the fields from the one that is edited on."""
+        """Fill the fields downwards from the edited field."""
         lines = [line.split("\t")[0].strip() for line in event.text.splitlines()]
         fields = self.fields
         first = next((i for i, field in enumerate(fields) if field.input.has_focus), 0)
@@ -266,21 +266,21 @@ class ColumnSheet(InputSheet):
 
 
 class ColumnFilling:
-    """A column of some rows: what it has now, and what is entered."""
+    """Values of a column in several rows, edited on one sheet."""
 
     def __init__(self, workspace: Workspace, spots: Sequence[Place], column: str) -> None:
         self._session, self._column = workspace.session, column
-        held = "serial" if column == "codes" else column  # by which codes are known
+        held = "serial" if column == "codes" else column  # codes belong to serial numbers
         self._cells = {str(i): LineCell(workspace, spot, held) for i, spot in enumerate(spots)}
         self._asked = [each for key in self._cells if (each := self._ask(key)) is not None]
 
     @property
     def sheet(self) -> ColumnSheet | None:
-        """Return where it is entered; None where none of the rows has such a value."""
+        """Sheet for the values, or None if no row can have such a value."""
         return ColumnSheet(_TITLES[self._column], "", self._asked) if self._asked else None
 
     def write(self, texts: Mapping[str, str]) -> None:
-        """Write what is another now, in one step."""
+        """Write the changed values in one step."""
         begun, draft = {each.key: each.text for each in self._asked}, self._session.draft
         new = {self._cells[key]: text for key, text in texts.items() if text != begun[key]}
         label = f"fill in {_TITLES[self._column].lower()}"

@@ -1,4 +1,4 @@
-"""The line beside its picture and verdict, or beside the catalogue."""
+"""Layout of the main screen: the line next to its picture and verdict, or the catalogue."""
 
 from collections.abc import Collection
 
@@ -14,7 +14,7 @@ from calm.tui.workspace import Workspace
 
 
 class LineScreen(screen.DraftScreen):
-    """Lay out what the first screen shows of the line, and how its parts lead to each other."""
+    """Layout of the main screen, and navigation between its parts."""
 
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide"), (176, "-huge")]  # noqa: RUF012
     DEFAULT_CSS = """
@@ -54,7 +54,7 @@ class LineScreen(screen.DraftScreen):
         self._came_from_verdict = False
 
     def parts(self) -> ComposeResult:
-        """The line; picture and verdict, in whose place the catalogue may be."""
+        """Yield the line, and the picture and verdict, which the catalogue may replace."""
         with Horizontal(id="body"):
             yield self.line
             yield self.catalogue
@@ -64,50 +64,50 @@ class LineScreen(screen.DraftScreen):
 
     @property
     def is_typing(self) -> bool:
-        """Return whether a value is typed in place that is not in the draft yet."""
+        """Whether a value typed in a cell is not in the draft yet."""
         return self.line.editor.is_typing
 
     def settle(self) -> bool:
-        """Take what is typed in a cell; a bad value stays to be corrected."""
+        """Accept the text typed in a cell; an invalid text stays in the editor."""
         return self.line.settle()
 
     def show_draft(self) -> None:
-        """Show the draft as it is now."""
+        """Show the current draft."""
         self.line.show_draft()
         self._show_beside()
         self.show_title()
 
     def show_view(self) -> None:
-        """Show what a worker made of it; dim what is of an earlier one."""
+        """Show the last view; values of an earlier draft are dimmed."""
         if self.workspace.is_fresh or self.workspace.is_old:
             self.line.show_rows()
         self._show_beside()
         self.show_title()
 
     def show_catalogue(self) -> None:
-        """Search the catalogue that was read."""
+        """Use the catalogue that was loaded."""
         self.line.show_rows()
         self._show_beside()
 
     def _show_beside(self) -> None:
-        """Catalogue, picture and verdict of the last view, dimmed until they are of the draft."""
+        """Show catalogue, picture and verdict of the last view, dimmed if out of date."""
         self.catalogue.refresh_index()
         view, fresh = self.workspace.view, self.workspace.is_fresh
         last = None if view is None or view.result is not None else self.workspace.good
         if fresh:
-            self.pictures.show(last or view, "the last complete line" if last else "")
-            note = "The picture shows the last complete line." if last else ""
+            self.pictures.show(last or view, "last valid line" if last else "")
+            note = "The drawing shows the last valid line." if last else ""
             self.verdict.say(view, note)
         self.pictures.set_class(self.workspace.is_old or last is not None, "-old")
         self.verdict.set_class(self.workspace.is_old, "-old")
 
     def titles(self) -> tuple[str, str]:
-        """Name, file, what is not saved; environment and verdict."""
+        """Return the title (file, unsaved changes, name) and the status (environment, verdict)."""
         name = " ".join(self.session.draft.text_at(("name",)).split())
         standing, parts = self.session.standing, []
         here = standing.environment
         if here is not None or len(standing.environments) > 1:
-            parts.append(f"environment {here}" if here else "own environment")
+            parts.append(f"environment {here}" if here else "default environment")
         parts.append(state_word(self.workspace.view, old=not self.workspace.is_fresh))
         return f"{self.workspace.called}  {name}".rstrip(), "   ".join(parts)
 
@@ -118,14 +118,14 @@ class LineScreen(screen.DraftScreen):
         table = self.line.table
         rows = {row.spot: number for number, row in enumerate(table.rows)}
         numbers = sorted(rows[place] for place in places if place in rows)
-        if numbers:  # again and again: the next of them
+        if numbers:  # repeated presses go to the next row
             table.cursor = next((each for each in numbers if each > table.cursor), numbers[0])
             self.workspace.tell(text)
             self._came_from_verdict = True
         table.focus()
 
     def action_back(self) -> None:
-        """Back to the verdict, where it has led here."""
+        """Go back to the verdict if the cursor came from there."""
         if self._came_from_verdict:
             self._came_from_verdict = False
             self.add_class("-reading")
@@ -142,7 +142,7 @@ class LineScreen(screen.DraftScreen):
         self.catalogue.open(purpose, self._target(purpose), self._role(purpose), clampable=is_clamp)
 
     def _role(self, purpose: Purpose) -> str:
-        """Return what is likely wanted there: a float on top, an anchor last, the like."""
+        """Return the likely role of a new component, such as a float on top or an anchor."""
         spot, index, items = self.line.table.spot, self.workspace.index, self.session.draft.items
         if spot is None or (purpose == "above" and spot == Place(0)):
             return "" if self.session.draft.is_tow else "float"
@@ -156,7 +156,7 @@ class LineScreen(screen.DraftScreen):
         return "anchor" if is_last and "release" in roles and "anchor" not in roles else ""
 
     def _target(self, purpose: Purpose) -> str:
-        """Return what the row is called that the component is for."""
+        """Return the name of the row for which a component is searched."""
         spot = self.line.table.spot
         if spot is None:
             return ""
@@ -168,7 +168,7 @@ class LineScreen(screen.DraftScreen):
         if purpose == "replace" and spot is not None:
             kept: list[str] = []
             if self.line.attempt(lambda: kept.extend(session.replace(spot, values))):
-                kept_keys = f"; kept from the one before: {', '.join(kept)}" if kept else ""
+                kept_keys = f"; kept from the previous component: {', '.join(kept)}" if kept else ""
                 self.workspace.tell(f"now {use}{kept_keys}")
             self.close_catalogue()
             return
@@ -177,12 +177,12 @@ class LineScreen(screen.DraftScreen):
         else:
             below = purpose != "above"
             self.line.attempt(lambda: session.insert(spot, values, below=below), f"{use} added")
-            if not below:  # the next one comes below it: a line is listed downwards
+            if not below:  # the next component goes below: a line is listed downwards
                 self.catalogue.purpose = "below"
         self.catalogue.retitle(self._target(self.catalogue.purpose))
 
     def close_catalogue(self) -> None:
-        """Back to the line."""
+        """Close the catalogue and return to the line."""
         self.remove_class("-searching")
         self.line.table.focus()
 

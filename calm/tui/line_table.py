@@ -1,6 +1,4 @@
-"""The line as a table, top to bottom: a cursor, marks, figures, no lines between the cells;
-and ways through it: words that are found, the greatest use, the next of a kind.
-"""
+"""The line as a table from top to bottom, with cursor, marks and values, and its searches."""
 
 from __future__ import annotations
 
@@ -30,7 +28,7 @@ _EMPTY = (
 
 
 class LineTable(TableCells, can_focus=True):
-    """Show the rows of the line with a cursor on one cell of them."""
+    """Table of the rows of the line with a cell cursor."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {
         "line-table--row",
@@ -73,7 +71,7 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def columns(self) -> tuple[TableColumn, ...]:
-        """The columns as wide as they are now."""
+        """Columns for the current width."""
         width = self.scrollable_content_region.width
         if self._arranged[0] != width:
             names = ("component", "label", "length", "leg")
@@ -87,7 +85,7 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def editable(self) -> Sequence[str]:
-        """The names of the columns that a person fills."""
+        """Names of the columns that the user fills."""
         return EDITABLE
 
     @property
@@ -97,23 +95,23 @@ class LineTable(TableCells, can_focus=True):
 
     @property
     def spot(self) -> Place | None:
-        """Return where the cursor is in the line."""
+        """Row of the line under the cursor, or None in an empty line."""
         return self.row.spot if self.row else None
 
     @property
     def chosen_here(self) -> Place:
-        """Return the same, of a line that has rows."""
+        """Row of the line under the cursor; the line must have rows."""
         return self.rows[self.cursor].spot
 
     @property
     def chosen(self) -> tuple[Place, ...]:
-        """The rows marked, or that under the cursor."""
+        """Marked rows, or the row under the cursor."""
         if self.marked:
             return tuple(row.spot for row in self.rows if row.spot in self.marked)
         return (self.spot,) if self.spot else ()
 
     def show_rows(self, rows: Sequence[TableRow], *, old: bool = False) -> None:
-        """Other rows; `old` where their figures are those of an earlier line."""
+        """Replace the rows; dim their values if `old` (of an earlier line)."""
         self.old = old
         self._arranged = (-1, self._arranged[1])
         self.marked &= {row.spot for row in rows}
@@ -127,26 +125,26 @@ class LineTable(TableCells, can_focus=True):
                 self.follow()
 
     def mark(self, spots: frozenset[Place]) -> None:
-        """Mark these rows and no other."""
+        """Mark only these rows."""
         self.marked = spots
         self.refresh()
 
     def on_resize(self) -> None:
-        """Keep the cursor in sight as the window changes."""
+        """Keep the cursor visible as the window changes."""
         self.follow()
 
     def below(self, y: int) -> list[Segment]:
-        """Return what an empty line says of how it is begun."""
+        """Return the hints that are shown below an empty line."""
         if self.rows or not 1 < y < len(_EMPTY) + 2:
             return []
         return [Segment(_EMPTY[y - 2], self.get_component_rich_style("line-table--clamp"))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
-        """Return what stands in a cell of a row."""
+        """Return the text of a cell."""
         return self.rows[number].texts.get(column.name, "")
 
     def row_style(self, number: int) -> Style:
-        """Return how a row looks: clamped, under the cursor, wrong or marked."""
+        """Style of a row: clamped, under the cursor, wrong or marked."""
         row = self.rows[number]
         base = "line-table--clamp" if row.spot.is_clamp else "line-table--row"
         style = self.get_component_rich_style(base)
@@ -160,7 +158,7 @@ class LineTable(TableCells, can_focus=True):
         return style
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
-        """Return how a cell looks: a figure of an earlier line is dimmed."""
+        """Style of a cell; values of an earlier line are dimmed."""
         if self.old and column.name not in EDITABLE:
             style += self.look("line-table--old")
         return style
@@ -185,7 +183,7 @@ class LineTable(TableCells, can_focus=True):
 
 Column = Literal["component", "label", "count", "length"]
 EDITABLE: tuple[Column, ...] = ("component", "label", "count", "length")
-"""The columns that a person fills, from the left."""
+"""Columns that the user fills, from the left."""
 
 _WORDS = ("leg", "component", "label")
 _WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "use": 5,
@@ -199,9 +197,9 @@ LEAD = 4
 
 @dataclass(frozen=True)
 class TableRow:
-    """Hold what is shown of a piece, or of what is clamped on one.
+    """Displayed row of a piece or a clamp.
 
-    `texts` are by the name of the column; `wrong` tells that no such component is known.
+    `texts` are by the name of the column; `wrong` marks an unknown component.
     """
 
     spot: Place
@@ -220,19 +218,19 @@ def layout_for(
     *,
     planned: bool = False,
 ) -> tuple[TableColumn, ...]:
-    """The columns of a table as wide as this, those least needed left out where it is narrow.
+    """Return the columns that fit a width; a narrow table omits the least important ones.
 
     Parameters
     ----------
-    component, label : cells of the longest text in these columns, which share what is left
+    component, label : cells of the longest text in these columns, which share the remaining width
     length : cells of the longest length
-    leg : cells of the longest name of a leg of a net; none of a line
+    leg : cells of the longest name of a leg of a net; 0 for a single line
     planned : whether any row has a planned depth
     """
     heads = {name: "n" if name == "count" else name for name in ("leg", *EDITABLE)}
     figures = {one.name: _heading(one) for one in table_columns(Output.BUILDER)}
     if planned:
-        figures["planned_depth"] = "planned"  # in the unit of the depth beside it
+        figures["planned_depth"] = "planned"  # in the unit of the depth column
     else:
         figures.pop("planned_depth")
     heads |= figures | {"use": "use"}
@@ -253,7 +251,7 @@ def layout_for(
     widths = fixed | {"component": component, "label": min(room - component, _MOST_LABEL)}
     columns, start = [], LEAD
     for name in shown:
-        tail = _TAIL if name == "component" else 0  # its size stands at its end
+        tail = _TAIL if name == "component" else 0  # the end of an id is its size
         is_right = name not in _WORDS
         columns.append(TableColumn(name, heads[name], start, widths[name], is_right, tail))
         start += widths[name] + 1
@@ -261,26 +259,26 @@ def layout_for(
 
 
 def _heading(figure: ResultColumn) -> str:
-    """The head of a column of what is solved, with its unit."""
+    """Return the heading of a result column, with its unit."""
     if figure.quantity is None:
         return figure.name
     return f"{figure.quantity.heading} {figure.quantity.display_unit}".rstrip()
 
 
 def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:
-    """Cells left for the component and the label."""
+    """Return the cells that remain for component and label."""
     return width - LEAD - len(shown) - sum(fixed.get(name, 0) for name in shown)
 
 
 class LineSearch(cell_editor.EditableTable):
-    """A table of the line whose cursor goes to what is looked for, and which tells what it is."""
+    """Table of the line with searches that move the cursor and report the match."""
 
     table: LineTable
     workspace: Workspace
     words = ""
 
     def action_find(self) -> None:
-        """Ask for words, and go to the next row that has them."""
+        """Ask for words, and go to the next row that contains them."""
 
         def take(texts: dict[str, str]) -> None:
             self.words = texts["words"]
@@ -291,7 +289,7 @@ class LineSearch(cell_editor.EditableTable):
         dialogs.enter(self.app, "Find in the line", "", asked, take)
 
     def action_find_next(self, by: int) -> None:
-        """To the next row, or the one before, that has all words: id, label, serial, maker."""
+        """Go to the next or previous row that contains all words (id, label, serial, maker)."""
         wanted = self.words.casefold().split()
         if not wanted:
             self.workspace.tell("/ finds words in the line first")
@@ -299,8 +297,8 @@ class LineSearch(cell_editor.EditableTable):
         self._to(by, lambda row: all(word in self._said(row) for word in wanted), self.words)
 
     def action_weakest(self) -> None:
-        """To the row whose strength is used most."""
-        view = self.workspace.judged("The line is still being judged; ask again")
+        """Go to the row with the highest use of strength."""
+        view = self.workspace.judged("Checks are still running; try again in a moment")
         if view is None:
             return
         found = [
@@ -310,18 +308,19 @@ class LineSearch(cell_editor.EditableTable):
             if each.rule == strength.name
         ]
         if not found:
-            self.workspace.tell("No use of strength is known")
+            self.workspace.tell("The use of strength is unknown for all pieces")
             return
         use, place, finding = max(found, key=lambda each: each[0])
         self.table.go_to(place)
         used = f"{percent_used(use):.0f} %"
-        self.workspace.tell(f"The weakest, {used}: {finding.component}, {finding.message}")
+        text = f"Highest use of strength, {used}: {finding.component}, {finding.message}"
+        self.workspace.tell(text)
 
     def _to(self, by: int, is_wanted: Callable[[TableRow], bool], what: str) -> None:
         rows: Sequence[TableRow] = self.table.rows
         found = [number for number, row in enumerate(rows) if is_wanted(row)]
         if not found:
-            self.workspace.tell(f"Nothing in the line has `{what}`", wrong=True)
+            self.workspace.tell(f"No row of the line contains `{what}`", wrong=True)
             return
         here = self.table.cursor
         beyond = [each for each in found[::by] if (each - here) * by > 0]
@@ -330,7 +329,7 @@ class LineSearch(cell_editor.EditableTable):
         self.workspace.tell(f"{found.index(number) + 1} of {len(found)} {what}")
 
     def _said(self, row: TableRow) -> str:
-        """Return what a row says, and the catalogue of its component."""
+        """Return the searchable text of a row, including its catalogue entry."""
         index, use = self.workspace.index, row.texts["component"].split()[-1:]
         listed = index.get(use[0]) if index and use else None
         serial = self.workspace.session.written(row.spot).get("serial", "")

@@ -1,7 +1,7 @@
-"""Live verdict of a text while it is edited: the line solved and judged, or what it still lacks.
+"""Solution and verdict of a text while it is edited.
 
-Nothing here knows of the screen. `judge` is for a worker at every change; `judge_fully` adds what
-takes longer.
+This module does not depend on the screen. `judge` runs in a worker after every change;
+`judge_fully` adds the slower checks.
 """
 
 from __future__ import annotations
@@ -27,31 +27,31 @@ from calm.files import MooringFile, Piece, Place, editing, pieces, read_mooring,
 from calm.quantities import show_in
 
 UNNAMED = "unnamed.yaml"
-"""The path of a text that belongs to no file yet."""
+"""Path of a text without a file."""
 
 
 @dataclass(frozen=True)
 class View:
-    """A text as it stands.
+    """Results for a text.
 
     Attributes
     ----------
-    text, path, environment : what was judged
-    problems : what is wrong with it; nothing is solved then
-    missing : what it still lacks, in plain words
-    file : as read; None where something is wrong or lacking, but for an anchor or a float.
-        A line without an anchor stands on one that holds anything here.
-    result : the line solved; None where it could not be
-    failure : why it could not
-    findings : of the design check; none for a tow
-    tighter : of each rule and part what another situation uses more, without being graver
-    environments : the names of those that the file gives besides its own
-    rows : down the file, clamps below their piece
-    complete : whether the findings are all that `calm check` has, see `judge_fully`; a tow's, which
-        has none, are
-    stands : the line in each of its environments, once they are judged
-    elsewhere : what is wrong with environments other than that which the line stands in
-    memory : what was solved, for the next text
+    text, path, environment : the judged text, its path and its environment
+    problems : mistakes in the text, which then has no solution
+    missing : missing parts of the line, in words
+    file : the file as read; None if there are mistakes or missing parts, except an anchor or a
+        float. A line without an anchor is solved with an anchor that holds any load.
+    result : the solution, or None
+    failure : the reason if there is no solution
+    findings : findings of the design check; none for a tow
+    tighter : findings with a higher use in another situation, but of the same severity
+    environments : names of the environments besides the default environment
+    rows : results in the order of the file, clamps below their piece
+    complete : whether these are all findings of `calm check`, see `judge_fully`; true for a tow,
+        which has no findings
+    stands : results in each environment, once they are judged
+    elsewhere : mistakes in other environments
+    memory : previous solutions, for the next text
     """
 
     text: str
@@ -72,22 +72,22 @@ class View:
     memory: Memory = field(default_factory=Memory, repr=False, compare=False)
 
     def is_of(self, text: str, path: Path | None, environment: str | None) -> bool:
-        """Return whether a text, of the file of a path, was judged in this environment."""
+        """Whether the view is of this text, path and environment."""
         return (self.text, self.path, self.environment) == (text, _placed(path), environment)
 
     @cached_property
     def items(self) -> tuple[editing.LineItem, ...]:
-        """The items of the text, as written."""
+        """Items of the line in the text."""
         return editing.Draft(self.text).items
 
     @property
     def here(self) -> str:
-        """The environment that the line stands in, as findings name it."""
+        """Name of the current environment in the findings."""
         return OWN if self.file is None else self.file.environment.name or OWN
 
     @property
     def anchored(self) -> bool:
-        """Return whether the line has an anchor of its own, or needs none."""
+        """Whether the line has an anchor, or needs none."""
         return self.file is not None and self.file.pieces[-1].use != pieces.STAND_IN
 
 
@@ -98,20 +98,20 @@ def judge(
     catalogs: Sequence[str | Path] = (),
     keep: View | None = None,
 ) -> View:
-    """Solve a text and judge it by the rules of a standing line; for any thread.
+    """Solve a text and judge it by the rules for a line in equilibrium; for any thread.
 
     Parameters
     ----------
-    text : of a mooring or a tow file
-    path : of the file it belongs to, beside which the files that it names are; None of none
+    text : text of a mooring or tow file
+    path : path of its file, for relative file names; None without a file
     environment : one of its `environments`, or an environment file
-    catalogs : catalogue files of the person's own
-    keep : an earlier view of the same file: what has not changed since is not solved again
+    catalogs : catalogue files of the user
+    keep : an earlier view of the same file, whose solutions are reused if unchanged
 
     Returns
     -------
-    View : with the figures of `calm run` and the findings as given of `calm check`. Nothing that a
-        person can write raises.
+    View : with the results of `calm run` and the findings of `calm check` for the situation as
+        given. No text raises an exception.
     """
     memory = Memory() if keep is None else keep.memory
     view = View(text, _placed(path), environment, memory=memory)
@@ -124,15 +124,15 @@ def judge(
 
 
 def _placed(path: str | Path | None) -> Path:
-    """Return where a text belongs, beside which the files that it names are looked for."""
+    """Return the path of a text, to which file names in it are relative."""
     return Path.cwd() / UNNAMED if path is None else Path(path)
 
 
 def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
-    """Return the same with all that `calm check` finds: in every environment and situation, in
-    waves, at launch and at recovery, and where a part breaks.
+    """Return the view with all findings of `calm check`.
 
-    A tow, and a line without an anchor of its own or without equilibrium, is returned as it is.
+    These include every environment and situation, waves, launch, recovery and breaks. A tow, and a
+    line without an anchor or without equilibrium, is returned unchanged.
     """
     if view.complete or not view.anchored or view.result is None or view.result.towed:
         return view
@@ -150,7 +150,7 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
 def in_all_environments(
     view: View, here: Design, catalogs: Sequence[str | Path] = ()
 ) -> tuple[list[Design], list[Problem]]:
-    """The mooring in each of its environments, as long in all as here; what is wrong with them."""
+    """Return the mooring in each environment, with the cut lengths of `here`, and mistakes."""
     found: list[Design] = []
     problems: list[Problem] = []
     for name in dict.fromkeys([None, *view.environments, view.environment]):
@@ -162,7 +162,7 @@ def in_all_environments(
         except InputError as error:
             problems += error.problems
         else:
-            leg = here.legs[0]  # nothing in one of several is cut to fit
+            leg = here.legs[0]  # lines with several legs have no `fit`
             found.append(Design(leg.cut(file), memory=view.memory))
     return found, problems
 
@@ -189,7 +189,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
 
 
 def _lacking(file: MooringFile) -> Iterator[str]:
-    """Return what no mooring stands without and this line has not; nothing of a tow."""
+    """Yield missing parts without which a mooring has no equilibrium; none for a tow."""
     if file.tow is not None or file.legs:
         return
     clamps = [clamp.component for piece in file.pieces for clamp in piece.clamps]
@@ -207,7 +207,7 @@ def _solved(view: View, file: MooringFile) -> View:
     except NoEquilibrium as error:
         result, failure = None, error
     findings: list[Finding] = []
-    if not design.towed:  # no rule is of a tow
+    if not design.towed:  # no rule applies to a tow
         for each in (None,) if result is None else result.legs:
             situation = Situation(AS_GIVEN, each, failure)
             findings += assess.findings_of(situation, file.name, file.environment.name or OWN)
@@ -221,7 +221,7 @@ def _solved(view: View, file: MooringFile) -> View:
 
 
 def _wrong(view: View, problems: Sequence[Problem]) -> View:
-    """Return what is wrong and what is lacking, apart."""
+    """Return a view with mistakes and missing parts separated."""
     lacking = dict.fromkeys(problem.lacks for problem in problems if problem.lacks)
     wrong = tuple(problem for problem in problems if not problem.lacks)
     return replace(view, problems=wrong, missing=tuple(lacking))
@@ -233,13 +233,13 @@ class FoundRow:
 
     Attributes
     ----------
-    place : in the line as read
-    label : as in results
-    length : as cut [m]; None of a clamp, and of one to be cut to fit until it is solved
-    figures : what the columns of the builder have of it, by name; none where nothing is solved
-    use : the greatest utilisation of its findings; None where none is known
-    state : the gravest of its findings; None where there is none
-    lacks_strength : whether a figure of its strength is missing
+    place : position in the line as read
+    label : label in results
+    length : cut length [m]; None for a clamp, and for a `fit` until it is solved
+    figures : values of the builder's columns by name; empty without a solution
+    use : maximum utilisation of its findings, or None if unknown
+    state : most severe state of its findings, or None without findings
+    lacks_strength : whether a strength value is missing
     """
 
     place: Place
@@ -254,7 +254,7 @@ class FoundRow:
 def rows_of(
     file: MooringFile, result: Result | None, findings: Iterable[Finding] = ()
 ) -> Iterator[FoundRow]:
-    """Down the file; with figures where there is a result, and what the findings say of each."""
+    """Yield rows in the order of the file, with results, if any, and findings."""
     solved = {} if result is None else rows_by_place(result)
     columns = table_columns(Output.BUILDER)
     found: defaultdict[Place | None, list[Finding]] = defaultdict(list)
@@ -288,7 +288,7 @@ def rows_of(
 
 
 def _lacks_strength(finding: Finding) -> bool:
-    """Whether `strength` lacks a figure, or would if nobody had accepted it."""
+    """Whether `strength` lacks a value, accepted or not."""
     if finding.missing is not None:
         return strength.name in finding.missing.needed_by
     lacks = finding.lacks is not None and finding.utilisation is None

@@ -1,4 +1,4 @@
-"""Sheets for a whole file and for a row of its line; all they ask for is in the models."""
+"""Sheets for a whole file and for a row of its line, derived from the models of the file."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
     from calm.tui.live import View
 
 Sheet = tuple[InputSheet, str, Callable[[Draft, Mapping[str, str]], Draft]]
-"""What is asked, the label of the change, and the file with what is entered."""
+"""The sheet, the label of the change, and a function that applies the entered texts."""
 
 _BEGIN_A_TOW = (
-    "The line becomes a tow: it hangs from a ship, its pieces from the ship down, and has no "
-    "anchor. Undo makes it a mooring again."
+    "The line becomes a tow: suspended from a ship, listed from the ship down, without an "
+    "anchor. Undo restores the mooring."
 )
 _COMPARED = "Compared with the design by calm diff."
 RELEASES: Location = ("releases",)
 _ITEMS: Location = ("deployed", "items")
 
 SHEETS = {
-    "mooring": ("Name and place", ("name", "description", "position")),
+    "mooring": ("Name and position", ("name", "description", "position")),
     "document": ("The document", ("document",)),
     "deployed": ("As deployed", ("deployed", "releases")),
     "tow": ("The tow", ("tow",)),
 }
-"""Titles of sheets, and the keys of the file that they ask for."""
+"""Titles of sheets, and the keys of the file on them."""
 _ABOUT = {
     "document": "For the title block of drawings, and its history.",
     "tow": _BEGIN_A_TOW,
@@ -49,18 +49,18 @@ _ABOUT = {
 
 
 def settings() -> list[str]:
-    """Sections of the file that are forms and on no other sheet."""
+    """Return the sections of the file that have a form, but no sheet in `SHEETS`."""
     known = {key for _, keys in SHEETS.values() for key in keys}
     fields = MooringKeys.model_fields.items()
     return [name for name, each in fields if name not in known and model_in(each.annotation)]
 
 
 def sheet_of(name: str, draft: Draft, hung: Piece | Clamp | None) -> Sheet:
-    """Return a sheet of `SHEETS`, or that of a section of `settings`, as the file has it.
+    """Return a sheet of `SHEETS` or of a section of `settings`, filled from the file.
 
     Parameters
     ----------
-    hung : what hangs at the row under the cursor
+    hung : piece or clamp of the row under the cursor
     """
     fields = MooringKeys.model_fields
     title, keys = SHEETS.get(name, (name.capitalize(), (name,)))
@@ -81,13 +81,13 @@ def _top_level(key: str) -> list[Asked]:
 
 
 def hung_at(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
-    """Return what hangs at a row of a line; None where that is several things, or not known."""
+    """Return the piece or clamp of a row; None if the row has several, or is unknown."""
     found = [part for part in parts_of(file.pieces if file else ()) if part.place.row == spot]
     return found[0] if len(found) == 1 else None
 
 
 def _deployed_sheet(draft: Draft, hung: Piece | Clamp | None, asked: list[Asked]) -> Sheet:
-    """When and where it was deployed; of the row what hangs there, else all that differs."""
+    """Return the sheet *As deployed*, with the keys of the row's part, else of all parts."""
     if hung is None:
         sheet = InputSheet("As deployed", _COMPARED, filled(asked, draft.value(())))
         return sheet, "the deployment", written
@@ -119,12 +119,12 @@ _SEVERAL = "For a count, give one number for each, separated by commas."
 
 
 def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) -> InputSheet:
-    """The fields of a row as the file has them.
+    """Return the equipment sheet of a row, filled from the file.
 
     Parameters
     ----------
-    label : of the row
-    values : what the file says of it
+    label : label of the row
+    values : keys of the row in the file
     """
     asked = [
         replace(each, text=texts_of_equipment(values, each.key))
@@ -138,7 +138,7 @@ def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) ->
 def equipment_changes(
     values: Mapping[str, Any], texts: Mapping[str, str]
 ) -> dict[str, Value | None]:
-    """Return what of the texts differs from what the file says; None takes a key away."""
+    """Return the texts that differ from the file; None deletes a key."""
     changed: dict[str, Value | None] = {}
     for key, new in texts.items():
         if new != texts_of_equipment(values, key):
@@ -148,7 +148,7 @@ def equipment_changes(
 
 
 def texts_of_equipment(values: Mapping[str, Any], key: str) -> str:
-    """A value of the equipment as it is typed: several are parted by commas."""
+    """Return the typed form of an equipment value; several values are separated by commas."""
     value = values.get(key)
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value or "")
 
@@ -162,12 +162,12 @@ def serial_of_equipment(text: str) -> Reading:
 
 
 def said(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
-    """Return what an entry says under a key, where that is a plain text; else empty.
+    """Return the plain text of an entry under a key, else "".
 
     Parameters
     ----------
-    rows : the list
-    called : the key and the text that the entry is known by
+    rows : path of the list
+    called : key and text that identify the entry
     """
     index = _index(draft, rows, called)
     return "" if index is None else draft.text_at((*rows, index, key))
@@ -176,9 +176,9 @@ def said(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str
 def entered(
     draft: Draft, rows: Location, called: tuple[str, str], texts: Mapping[str, str]
 ) -> Draft:
-    """The file with the texts in an entry, which is added where it is not there.
+    """Return the file with the texts in an entry, which is added if needed.
 
-    One in which nothing is left but what it is known by is taken out.
+    An entry that has only its identifying key left is deleted.
     """
     changed = {key: text for key, text in texts.items() if text != said(draft, rows, called, key)}
     index = _index(draft, rows, called)
@@ -199,17 +199,17 @@ def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
     return next((i for i, one in entries if isinstance(one, dict) and called in one.items()), None)
 
 
-_ELSEWHERE = "part of an assembly of the catalogue: use its parts, or define it in the file (o)"
-PENDING = "Launch, recovery, breaks and waves are still being judged."
+_ELSEWHERE = "part of a catalogue assembly: use its parts, or define it in the file (o)"
+PENDING = "Launch, recovery, break and wave checks are still running."
 _SOURCE = "data sheet, test certificate …"
 
 
 def figures_sheet(missing: Sequence[Missing], *, complete: bool = True) -> InputSheet:
-    """Ask for all figures of each component, and for their source; any may stay empty.
+    """Return the sheet for missing values of components and their source; all are optional.
 
     Parameters
     ----------
-    complete : whether all rules have been judged; else others may need more
+    complete : whether all rules have been judged; otherwise more values may be needed
     """
     asked: list[Asked] = []
     notes = [] if complete else [PENDING]
@@ -220,23 +220,23 @@ def figures_sheet(missing: Sequence[Missing], *, complete: bool = True) -> Input
             key, title = f"{each.use}.{figure.key}", figure.key.replace("_", " ")
             takes = each.estimates.get(figure.key, figure.takes)
             asked.append(replace(figure, key=key, title=title, above=above, takes=takes))
-    asked.append(Asked("source", "source", takes=_SOURCE, above="Of the figures"))
+    asked.append(Asked("source", "source", takes=_SOURCE, above="Source of these values"))
     count = len(missing)
-    title = f"Figures missing of {count} component{'s' * (count != 1)}; any may stay empty"
+    title = f"Missing values of {count} component{'s' * (count != 1)}; all are optional"
     return InputSheet(title, "\n".join([*elsewhere, *notes]), asked)
 
 
 @dataclass
 class Missing:
-    """Hold what is not known of a component, once for all rows that use it.
+    """Missing values of a component, for all rows that use it.
 
     Attributes
     ----------
-    use, kind : of the component
-    labels : of the pieces and clamps that it is missing of, as the keys of a dict
-    targets : by key where in the file it is written: in the definition, where the file has it,
-        else in every row that lacks it, of an assembly its own; nowhere if that cannot take it
-    estimates : class estimate by key, without its source
+    use, kind : id and kind of the component
+    labels : labels of the pieces and clamps concerned, as keys of a dict
+    targets : locations in the file by key: the definition, if the file has it, else every row that
+        lacks the value (the row of the assembly for its parts); empty if the row cannot take it
+    estimates : class estimates by key, without source
     """
 
     use: str
@@ -247,7 +247,7 @@ class Missing:
 
     @property
     def called(self) -> str:
-        """Return the component, with the labels of the first rows that lack a figure."""
+        """Name of the component, with the labels of the first rows that lack a value."""
         from calm.report.check_tables import named
 
         labels = named(self.labels)
@@ -255,12 +255,12 @@ class Missing:
 
     @property
     def fields(self) -> list[Asked]:
-        """Return what would do and can be filled in, as the form of a component has it."""
+        """Fields of the component form that can supply the missing values."""
         return [each for each in form_fields(self.kind) if self.targets.get(each.key)]
 
 
 def missing_figures(view: View, draft: Draft) -> list[Missing]:
-    """Return what the unknown findings of a line ask for, down the line."""
+    """Return the missing values behind the unknown findings, in the order of the line."""
     if view.file is None:
         return []
     wanted: dict[Place, dict[str, None]] = {}
@@ -297,12 +297,12 @@ def missing_figures(view: View, draft: Draft) -> list[Missing]:
 def with_figures(
     draft: Draft, missing: Iterable[Missing], texts: Mapping[str, str], source: str
 ) -> Draft:
-    """The draft with figures filled in.
+    """Return the draft with values filled in.
 
     Parameters
     ----------
-    texts : by ``component.key``; what is empty stays unknown
-    source : of all of them; may be empty
+    texts : texts by ``component.key``; values with an empty text stay unknown
+    source : source of all values; may be empty
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Names in a file: labels of pieces, kept in step with the line; environments."""
+"""Names in a file: references to labels, updated with the line; environments."""
 
 import os.path
 from collections.abc import Iterable, Iterator, Mapping
@@ -16,19 +16,19 @@ _MOST_OF_A_COUNT = 1000
 
 @dataclass(frozen=True)
 class Named:
-    """A label, or a pattern of labels, as a file names it, and where."""
+    """A reference in the file to a label or a pattern of labels."""
 
     location: yaml_document.Location
     text: str
 
     @property
     def where(self) -> str:
-        """For people: the keys that lead there."""
+        """Path of the reference, for messages."""
         return ": ".join(str(key) for key in self.location[:2] if isinstance(key, str))
 
 
 def named_in(draft: Draft) -> Iterator[Named]:
-    """All that a file names of its line: what is accepted, what was deployed, stops."""
+    """Yield all references of a file to labels: accepted findings, deployed items, stops."""
 
     def within(*location: str | int) -> Iterator[tuple[yaml_document.Location, Any]]:
         values = draft.value(location)
@@ -50,7 +50,7 @@ def named_in(draft: Draft) -> Iterator[Named]:
 
 
 def labels_of(draft: Draft) -> dict[Place, list[str]]:
-    """The labels of each row, those of a count numbered; parts of an assembly are not told."""
+    """Return the labels of each row, numbered for a count, without parts of assemblies."""
     rows: list[tuple[Place, str]] = []
     for number, item in enumerate(draft.items):
         count = item.values.get("count", "1")
@@ -67,12 +67,12 @@ def labels_of(draft: Draft) -> dict[Place, list[str]]:
 
 
 def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple[Draft, list[str]]:
-    """An edited file that names its pieces as they are called now; what was done, in words.
+    """Update the references to labels in an edited file; also return messages on the changes.
 
     Parameters
     ----------
-    before, after : the file, and as it was edited
-    moved : the rows that are left of the line, and where they are now
+    before, after : the file before and after the edit
+    moved : new positions of the remaining rows, by old position
     """
     names = list(named_in(after))
     old, new = labels_of(before), labels_of(after)
@@ -95,16 +95,16 @@ def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple
                 raise LookupError
             after = after.put_at(each.location, text)
         except (CalmError, LookupError):
-            told.append(f"{each.where} still names `{each.text}`, which is gone")
+            told.append(f"{each.where} still refers to `{each.text}`, which no longer exists")
         else:
-            told.append(f"{each.where} now names {text}")
+            told.append(f"{each.where} now refers to {text}")
     return after, list(dict.fromkeys(told))
 
 
 def _called(
     text: str, wanted: set[str], renamed: Mapping[str, str], labels: Iterable[str]
 ) -> str | None:
-    """Return what stands for pieces as they are called now; None where nothing does."""
+    """Return the text that matches the new labels, or None."""
     labels = list(labels)
     if text in renamed:
         return renamed[text]
@@ -117,14 +117,12 @@ def _called(
 
 
 def namings(draft: Draft, place: Place) -> list[Named]:
-    """Return what names a row, and nothing but it: a copy of it would be another piece of that
-    name.
-    """
+    """Return the references to this row alone, which could also mean a copy of the row."""
     return [each for each in named_in(draft) if labels_of(draft).get(place) == [each.text]]
 
 
 def widened(draft: Draft, named: Iterable[Named]) -> Draft:
-    """A file in which what is accepted of a piece is so of all that are called like it."""
+    """Extend acceptances of a piece to all pieces with the same base name."""
     for each in named:
         if each.location[0] == "checks" and not each.text.endswith("*"):
             draft = draft.put_at(each.location, f"{each.text} *")
@@ -132,12 +130,12 @@ def widened(draft: Draft, named: Iterable[Named]) -> Draft:
 
 
 class Standing:
-    """A line that stands in its file's own environment, in a named one or in that of a file.
+    """The current environment of a line: the default, a named one, or an environment file.
 
     Parameters
     ----------
-    history : of the file
-    environment : the name of one of its environments, or an environment file; None of its own
+    history : history of the file
+    environment : name of an environment, or an environment file; None for the default
     """
 
     def __init__(self, history: History, environment: str | None) -> None:
@@ -146,13 +144,13 @@ class Standing:
 
     @property
     def environments(self) -> list[str | None]:
-        """Return those of the file; None is its own, the first."""
+        """Environments of the file; the first is None, the default environment."""
         named = self._history.draft.value(("environments",))
         return [None, *(named if isinstance(named, dict) else ())]
 
     @property
     def environment(self) -> str | None:
-        """Return what the line stands in; its own where the chosen one is gone from the file."""
+        """Current environment; the default if the chosen one is not in the file any more."""
         return None if self.lost_environment else self._environment
 
     @environment.setter
@@ -161,13 +159,13 @@ class Standing:
 
     @property
     def lost_environment(self) -> str | None:
-        """The chosen environment, where the file, as far as it can be read, does not have it."""
+        """The chosen environment if a readable file does not have it, else None."""
         here = self._environment
         is_there = self._is_file or self._history.draft.problems or here in self.environments
         return None if is_there else here
 
     @property
     def next_environment(self) -> str | None:
-        """The one after that, the own one after the last."""
+        """Next environment; after the last comes the default."""
         names, here = self.environments, self.environment
         return names[(names.index(here) + 1) % len(names)] if here in names else None

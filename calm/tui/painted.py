@@ -1,7 +1,7 @@
-"""Cells that the terminal shows, so that only those that change are sent to it.
+"""Record of the displayed cells, so that only changed cells are sent to the terminal.
 
-Textual sends a part of the screen again as soon as one cell of it may have changed, and all of it
-where something has another size: 38 kB for a screen of 140 columns and 45 rows.
+Textual sends a whole region again if one of its cells may have changed, and the whole screen after
+a change of size: 38 kB for a screen of 140 columns and 45 rows.
 """
 
 from __future__ import annotations
@@ -22,28 +22,28 @@ Cell = tuple[str, Style | None]
 
 _UNKNOWN: Cell = ("\0", None)
 _PLAIN = "\x1b[0m"
-_WHERE = "\x1b[6n"  # the report of the cursor's place, which every terminal of ECMA-48 sends
-_PATIENCE = 3.0  # seconds; an answer that takes longer is lost
+_WHERE = "\x1b[6n"  # request of the cursor position (ECMA-48)
+_PATIENCE = 3.0  # seconds after which an answer is given up
 _GAP = 8
-"""Cells that have not changed are sent where fewer lie between others: to skip them costs more."""
+"""Runs of unchanged cells shorter than this are sent, because skipping them costs more."""
 
 
 class Painted:
-    """The cells of a terminal."""
+    """Displayed cells of a terminal."""
 
     def __init__(self) -> None:
         self._rows: list[list[Cell]] = []
 
     def forget(self) -> None:
-        """Something else may have written to the terminal: all is to be sent again."""
+        """Forget all cells after another program has written to the terminal."""
         self._rows = []
 
     def update(self, update: CompositorUpdate) -> CompositorUpdate:
-        """Of an update what differs from what is shown, found out when it is sent."""
+        """Wrap a compositor update so that only changed cells are written."""
         return _Changes(self, update)
 
     def put(self, y: int, x: int, cells: list[Cell], pen: _Pen) -> str:
-        """Return what is to be sent to have cells in a row, from a column on."""
+        """Return the output that displays cells in row y from column x."""
         self._rows += ([] for _ in range(y + 1 - len(self._rows)))
         row = self._rows[y]
         row += [_UNKNOWN] * (x + len(cells) - len(row))
@@ -55,16 +55,17 @@ class Painted:
         return "".join(sent)
 
     def fit(self, width: int, height: int) -> None:
-        """Forget what was shown in a terminal of another size."""
+        """Forget all cells if the size of the terminal has changed."""
         if len(self._rows) != height or any(len(row) != width for row in self._rows):
             self._rows = [[_UNKNOWN] * width for _ in range(height)]
 
 
 class Pace:
-    """Lets a terminal show one frame before the next is made: over a slow link they merge.
+    """Flow control: the next frame waits until the terminal has displayed the previous one.
 
-    The terminal is asked where its cursor is behind a frame, and answers when it has come to that.
-    One that has never answered is not waited for.
+    After each frame, the cursor position is requested; the answer shows that the frame has been
+    displayed. Over a slow connection, frames merge in this way. A terminal that has never answered
+    is not waited for.
     """
 
     def __init__(self) -> None:
@@ -72,37 +73,37 @@ class Pace:
         self._since: float | None = None
 
     def holds(self, now: float) -> bool:
-        """Return whether a frame is to wait; the one that is made then has all that changed."""
+        """Return whether a frame must wait; the later frame then contains all changes."""
         is_out = self._since is not None and now - self._since < _PATIENCE
         self._has_waiting = self._answers and is_out
         return self._has_waiting
 
     def question(self, now: float) -> str:
-        """Return what is sent behind a frame."""
+        """Return the request to send after a frame, or ""."""
         if self._has_asked and not self._answers:
             return ""
         self._has_asked, self._since = True, now
         return _WHERE
 
     def answered(self) -> bool:
-        """Take an answer; whether a frame waits for it."""
+        """Register an answer; return whether a frame is waiting."""
         self._answers, self._since = True, None
         return self._has_waiting
 
     @property
     def is_out(self) -> bool:
-        """Return whether an answer is to come: it would be taken for keys by what follows."""
+        """Whether an answer is pending, which the shell would read as keys."""
         return self._answers and self._since is not None
 
 
 class _Changes(CompositorUpdate):
-    """Hold what of an update is to be sent."""
+    """Update that writes only changed cells."""
 
     def __init__(self, painted: Painted, update: CompositorUpdate) -> None:
         self._painted, self._update = painted, update
 
     def render_segments(self, console: Console) -> str:
-        """The signs to be sent; they are taken to be shown then."""
+        """Return the output for the changed cells, and record them as displayed."""
         painted, update, pen = self._painted, self._update, _Pen(console)
         if not isinstance(update, LayoutUpdate | ChopsUpdate):
             painted.forget()
@@ -114,7 +115,7 @@ class _Changes(CompositorUpdate):
 
 
 def _parts(update: LayoutUpdate | ChopsUpdate) -> Iterator[tuple[int, int, list[Cell]]]:
-    """The cells of an update, of the whole or of some spans, by row and column."""
+    """Yield (row, column, cells) of an update of the whole screen or of spans."""
     if isinstance(update, LayoutUpdate):
         for y, line in enumerate(update.strips, update.region.y):
             yield y, update.region.x, [*_cells(chain.from_iterable(line))]
@@ -142,16 +143,16 @@ def _cells(segments: Iterable[Segment]) -> Iterator[Cell]:
 
 @lru_cache(1024)
 def _ground(style: Style | None) -> Style | None:
-    """Return what is seen of a style where nothing is written."""
+    """Return the visible part of a style on blank cells."""
     if style is None or style.underline or style.overline or style.strike or style.reverse:
         return style
     return Style(bgcolor=style.bgcolor)
 
 
 def _changed(shown: list[Cell], wanted: list[Cell]) -> Iterator[tuple[int, int]]:
-    """Begin and end of each run of cells that differ, those near each other as one.
+    """Yield begin and end of each run of changed cells; runs with small gaps are merged.
 
-    No run begins or ends within a wide sign, shown or wanted: half of one cannot be written.
+    A run never begins or ends within a wide character, because half of it cannot be written.
     """
     if shown == wanted:
         return
@@ -176,7 +177,7 @@ def _around(begin: int, end: int, shown: list[Cell], wanted: list[Cell]) -> tupl
 
 
 class _Pen:
-    """Writes signs; a style is sent to the terminal once, where it changes to the eye."""
+    """Writer of cells that sends a style only if the visible style changes."""
 
     def __init__(self, console: Console) -> None:
         self._system = console._color_system
@@ -184,7 +185,7 @@ class _Pen:
         self._ground: Style | None = None
 
     def written(self, cells: list[Cell]) -> str:
-        """Return what is sent for cells beside each other."""
+        """Return the output for adjacent cells."""
         parts = []
         for sign, style in cells:
             if sign == " " and self._held and style is not None and style == self._ground:
@@ -199,14 +200,14 @@ class _Pen:
         return "".join(parts)
 
     def put_down(self) -> str:
-        """Return what leaves the terminal without a style."""
+        """Return the output that resets the style."""
         held, self._held = self._held, ""
         return _PLAIN if held else ""
 
 
 @lru_cache(4096)
 def _style_codes(style: Style | None, system: ColorSystem | None) -> str:
-    """The numbers that switch a style on."""
+    """Return the numbers of the escape sequence of a style."""
     if style is None or system is None:
         return ""
     return style._make_ansi_codes(system)

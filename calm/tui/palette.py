@@ -11,10 +11,10 @@ from calm.tui.line_pane import LinePane
 
 
 class Commands(CommandPalette):
-    """The palette of textual, in terminals of any height."""
+    """Textual's palette, adapted to terminals of any height."""
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """A list without a line on the screen has no pages."""
+        """Disable page keys if the list has no visible line."""
         is_page = action == "command_list" and str(parameters[0]).startswith("page")
         return not is_page or self.query_one(CommandList).size.height > 0
 
@@ -29,12 +29,12 @@ class Actions(Provider):
         return [each for each in (*ACTIONS["line"], *ACTIONS["anywhere"]) if each.palette]
 
     async def discover(self) -> Hits:
-        """All of them, before a word is typed."""
+        """List all actions before a word is typed."""
         for action in self._offered:
             yield DiscoveryHit(_shown(action), self._run(action), help=action.meaning)
 
     async def search(self, query: str) -> Hits:
-        """Return those whose name or meaning is like the words."""
+        """Yield the actions whose title or meaning matches the words."""
         matcher = self.matcher(query)
         for action in self._offered:
             score = max(matcher.match(action.title), 0.8 * matcher.match(action.meaning))

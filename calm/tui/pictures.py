@@ -1,4 +1,4 @@
-"""The line in pictures: from the side, from above, its tension, its parts; the current alone."""
+"""Pictures of the line (elevation, plan, tension, schematic) and of the current profile."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _BESIDE, _MOST_BESIDE = 3, 26
 
 
 class Picture(scrolled.DrawnRows, can_focus=True):
-    """One picture, drawn for the cells it has."""
+    """A picture drawn to fit its cells."""
 
     DEFAULT_CSS = """
     Picture { height: 1fr; width: 1fr; background: $background; scrollbar-size: 1 1;
@@ -47,14 +47,14 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         self._beside: Sequence[Shape] = ()
 
     def show(self, view: View | None, tab: Tab, beside: Sequence[Shape] = ()) -> None:
-        """Draw a line as judged, other shapes beside it."""
+        """Draw the line of a view, with other shapes for comparison."""
         if tab != self.tab:
             self.scroll_to(0, 0, animate=False)
         self._view, self.tab, self._beside = view, tab, beside
         self.draw_again()
 
     def rows_for(self, size: Size) -> list[scrolled.Row]:
-        """Draw the picture; one that is not to scale is as large as it needs."""
+        """Draw the picture; the schematic may exceed the size and scroll."""
         rows = self._picture(size)
         widest = max((row.cell_len for row in rows), default=0)
         self.virtual_size = Size(widest, len(rows)) if self.tab == "schematic" else Size(0, 0)
@@ -65,7 +65,8 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         if _is_small(size):
             return [Text("(too small)", style="dim")]
         if result is None:
-            words = "A picture appears once the line stands." if self._view else theme.ELLIPSIS
+            waits = "A picture appears once the line has an equilibrium."
+            words = waits if self._view else theme.ELLIPSIS
             return [Text(""), *(Text(line, style="dim") for line in wrap(words, size.width))]
         from calm.drawing.schematic.in_terminal import schematic_text
         from calm.drawing.sketch import plan, tension
@@ -103,7 +104,7 @@ def _is_small(size: Size) -> bool:
 
 
 class Pictures(Vertical):
-    """The pictures under their names, dimmed where they are of another state of the line."""
+    """Tabs of pictures, dimmed if they show an earlier state of the line."""
 
     DEFAULT_CSS = """
     Pictures { height: 1fr; width: 1fr; }
@@ -124,25 +125,25 @@ class Pictures(Vertical):
         self._note = ""
         self._saved: Shape | None = None
         self._tabs, self._picture = Static(id="tabs"), Picture()
-        self._caption = Static("dashed: what was saved", id="beside", markup=False)
+        self._caption = Static("dashed: the saved line", id="beside", markup=False)
 
     def compose(self) -> ComposeResult:
-        """The names, and the picture."""
+        """Yield the tabs, the caption and the picture."""
         yield self._tabs
         yield self._caption
         yield self._picture
 
     def on_mount(self) -> None:
-        """Nothing is solved yet."""
+        """Show the tabs before the first solution."""
         self._show()
 
     def show(self, view: View | None, note: str = "") -> None:
-        """Draw a line as judged, with a note."""
+        """Draw the line of a view, with a note."""
         self._view, self._note = view, note
         self._show()
 
     def put_beside(self, saved: Shape | None) -> None:
-        """Draw the line as it was saved beside it; None takes it away."""
+        """Draw the saved line for comparison; None removes it."""
         self._saved = saved
         self._show()
 
@@ -159,7 +160,7 @@ class Pictures(Vertical):
     @on(events.DescendantFocus)
     @on(events.DescendantBlur)
     def _show_tabs(self) -> None:
-        """The names of the pictures, that shown in reverse; a sign where the keys go to it."""
+        """Show the tabs, the current one in reverse, and a cursor if the picture has the focus."""
         parts = [theme.CURSOR if self._picture.has_focus else " "]
         for number, tab in enumerate(TABS, 1):
             style = ("[reverse bold]", "[/]") if tab == self.tab else ("", "")
@@ -173,7 +174,7 @@ class Pictures(Vertical):
 
 
 class ProfilePicture(scrolled.DrawnRows):
-    """Speed and direction over depth, of the environment that the line was judged in."""
+    """Speed and direction against depth in the current environment."""
 
     DEFAULT_CSS = """
     ProfilePicture { height: 1fr; overflow: hidden; }
@@ -183,7 +184,7 @@ class ProfilePicture(scrolled.DrawnRows):
     _view: View | None = None
 
     def show(self, view: View | None, *, old: bool = False) -> None:
-        """Draw another one, dimmed where it is `old`; one that cannot be read dims the last."""
+        """Draw the profile of a view, dimmed if `old`; without a readable file, dim the last."""
         if view is not None and view.file is not None:
             self._view = view
             self.draw_again()
@@ -192,7 +193,7 @@ class ProfilePicture(scrolled.DrawnRows):
         self.set_class(old, "-old")
 
     def rows_for(self, size: Size) -> list[scrolled.Row]:
-        """Draw the profile; nothing where there is no room, or no environment yet."""
+        """Draw the profile; return [] without enough room or without an environment."""
         file = None if self._view is None else self._view.file
         if _is_small(size) or file is None:
             return []
@@ -200,7 +201,7 @@ class ProfilePicture(scrolled.DrawnRows):
         from calm.drawing.sketch import current_profile
 
         if file.environment.depth is None:
-            rows = [Text("No depth is given: the water is deep.", style="dim")]
+            rows = [Text("The depth is not set: deep water is assumed.", style="dim")]
         else:
             rows = current_profile(assemble_water(file.environment), *size)
         return [[*row.render(self.app.console)] for row in rows]

@@ -1,4 +1,4 @@
-"""Saving, and what may stand against it: no name yet, another file there, a change on the disk."""
+"""Saving, with questions on missing names, existing files and changes on the disk."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from calm.tui.screen import DraftScreen
 from calm.tui.workspace import Workspace, place_of
 
 _SUFFIX = ".yaml"
-_CHANGED = "The file was changed by another program; saving will ask"
-_GONE = "The file is gone from the disk and not saved any more; saving writes it again"
-_READ_AGAIN = "Read again: another program has changed it"
+_CHANGED = "Another program changed the file; you will be asked when saving"
+_GONE = "The file was deleted from the disk; saving writes it again"
+_READ_AGAIN = "Reloaded: the file was changed by another program"
 
 
 class Saving:
-    """Writes the file of a workspace, asks where something stands against it, watches the disk.
+    """Saves the file of a workspace, asks before overwriting, and watches the disk.
 
     Parameters
     ----------
-    app : whose screen it asks on
-    taken_over : shows a text that has taken the place of the draft, and tells what happened
+    app : application on whose screen questions appear
+    taken_over : shows a text that has replaced the draft, with a message
     leave : ends the application
     """
 
@@ -46,10 +46,10 @@ class Saving:
         self._taken_over, self._leave = taken_over, leave
         self._app, self._workspace, self._session = app, workspace, workspace.session
         self.presence = Presence()
-        self._told: tuple[object] | None = None  # the state of the file on the disk, told already
+        self._told: tuple[object] | None = None  # state on the disk that was reported last
 
     def save(self, then: Then | None = None) -> None:
-        """Save, and ask for a name where there is none; `then` follows where it was done."""
+        """Save, asking for a file name if needed, and call `then` afterwards."""
         file = self._session.file
         if file.path is None:
             self.save_as(then)
@@ -62,7 +62,7 @@ class Saving:
         try:
             lost = write()
         except (CalmError, OSError) as error:
-            # the folder is known, and the reason must not be cut off after it
+            # drop the known folder, so that the reason is not cut off
             folder = "" if self._session.file.path is None else f"{self._session.file.path.parent}/"
             self._workspace.tell(f"Not saved: {str(error).replace(folder, '')}", wrong=True)
             return
@@ -71,12 +71,12 @@ class Saving:
         but = "; ".join(filter(None, [lost, wrong]))
         told = f"{self._session.name} saved" + (f", but {but}" if but else "")
         self._workspace.tell(told, wrong=bool(wrong))
-        self._workspace.edited()  # what it names may be another file in another folder
+        self._workspace.edited()  # relative names may now refer to other files
         if then is not None and not wrong:
             then()
 
     def _mistake(self) -> str:
-        """Return why no command can open the file as it was saved; what it lacks yet is none."""
+        """Return the first mistake of the saved file, or ""; missing parts are not mistakes."""
         session = self._session
         path = session.file.path or Path(session.name)
         try:
@@ -86,11 +86,11 @@ class Saving:
             if found:
                 place = place_of(found[0], path)
                 said = ", ".join(filter(None, [place, found[0].message]))
-                return f"it cannot be opened as it is: {said}"
+                return f"the file cannot be opened: {said}"
         return ""
 
     def save_as(self, then: Then | None = None, begin: Path | None = None) -> None:
-        """Save under another name, which is asked for; `begin` is offered."""
+        """Ask for another name (default `begin`) and save."""
         path = self._session.file.path
 
         def take(texts: dict[str, str]) -> None:
@@ -104,11 +104,11 @@ class Saving:
 
         begun = str(begin or path or "")
         asked = [Asked("path", "File", begun, _is_writable, placeholder="e.g. iroise-2026.yaml")]
-        text = f"In {Path.cwd()}, unless you give a folder."
+        text = f"Relative to {Path.cwd()}."
         enter(self._app, "Save as", text, asked, take)
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
-        """Of another file that is there, or of one's own that is protected or was changed."""
+        """Ask before overwriting another file, a protected file, or a file changed on the disk."""
         session, file = self._session, self._session.file
         is_own, stamp = path == file.path, file.stamp
         is_changed = is_own and stamp is not None and file.changed_on_disk()
@@ -120,11 +120,11 @@ class Saving:
             Answer("o", overwrite, lambda: self._write(write, then)),
             Answer("n", f"save{mine} under another name", other),
         ]
-        title = f"{path.name} is write-protected" if is_own else f"{path.name} is there already"
+        title = f"{path.name} is write-protected" if is_own else f"{path.name} exists already"
         protected = not is_own and not os.access(path, os.W_OK)
-        text = f"{path}{', and write-protected' if protected else ''}"
+        text = f"{path}{' (write-protected)' if protected else ''}"
         if is_changed and stamp is not None:
-            theirs = "read the file from the disk; undo brings back your line"
+            theirs = "load the file from the disk; undo restores your line"
             answers.append(Answer("t", theirs, self._take_theirs))
             title = f"{path.name} was changed by another program"
             text = "The file on the disk differs from your line. "
@@ -134,10 +134,10 @@ class Saving:
     # the file on the disk
 
     def look_at_disk(self) -> None:
-        """Take a file that another program has changed; tell of it where that would lose work."""
+        """Reload the file if another program changed it; warn if that would lose unsaved work."""
         session, screen = self._session, next(reversed(self._app.screen_stack), None)
         if not isinstance(screen, DraftScreen):
-            return  # a question is open: later; or the application ends
+            return  # try again later: a question is open, or the application is ending
         if not session.file.changed_on_disk():
             self._told = None
             return
@@ -147,7 +147,7 @@ class Saving:
             if is_new:
                 session.history.saved("")
                 self._workspace.tell(_GONE, wrong=True)
-                self._workspace.edited()  # what is here is kept like every change
+                self._workspace.edited()  # keep the draft like every change
         elif not (session.changed or screen.is_typing):
             self._take_theirs(quietly=not is_new)
         elif is_new:
@@ -160,53 +160,53 @@ class Saving:
             if not quietly:
                 self._workspace.tell(f"The file cannot be read any more: {error}", wrong=True)
             return
-        self._session.write(text, "read the file again")
+        self._session.write(text, "reload the file")
         self._session.history.saved()
         self._taken_over(_READ_AGAIN)
 
     # work of an earlier run
 
     def offer(self, kept: editing.KeptWork, go_on: Callable[[], object]) -> None:
-        """Ask whether it is to be recovered, saying when it was kept and whether the file is newer.
+        """Offer to recover unsaved work, with its time and whether the file is newer.
 
-        To throw it away is asked about twice: nothing brings it back.
+        Discarding needs a confirmation, because it cannot be undone.
         """
         app, session, keeper = self._app, self._session, kept.keeper
 
         def recover() -> None:
             session.recover(kept)
-            self._taken_over("Recovered; save it to keep it")
+            self._taken_over("Recovered; save to keep it")
 
         def throw_away() -> None:
             session.file.discard(kept)
             go_on()
 
-        whose = "" if keeper.is_here else f" on {keeper.host}, where it may still be open"
+        whose = "" if keeper.is_here else f" on {keeper.host}, where the file may still be open"
         text = f"An earlier run ended before {session.name} was saved. It kept its work "
         text += f"{moment(kept.at)}{whose}."
         if session.file.is_of_another(kept):
             stamp = session.file.stamp
             text += (
-                " The file is gone since that work was begun: saving writes it again."
+                " The file was deleted after that work began: saving writes it again."
                 if stamp is None
-                else f" The file was changed, {moment(stamp[0] / 1e9)}, after that work was begun: "
-                "saving will ask."
+                else f" The file was changed, {moment(stamp[0] / 1e9)}, after that work began: "
+                "you will be asked when saving."
             )
 
         def ask_again() -> None:
-            yes = [Answer("y", "yes, throw it away for good", throw_away)]
+            yes = [Answer("y", "discard permanently", throw_away)]
             told = f"It was kept {moment(kept.at)}."
             choose(
                 app,
-                Question("Throw the work away?", told, yes, back=partial(self.offer, kept, go_on)),
+                Question("Discard the work?", told, yes, back=partial(self.offer, kept, go_on)),
             )
 
         answers = [
-            Answer("r", "recover it; undo goes back to the file", recover),
-            Answer("k", "keep it for later; go on with the file", go_on),
-            Answer("d", "throw it away", ask_again),
+            Answer("r", "recover; undo goes back to the file", recover),
+            Answer("k", "keep for later; go on with the file", go_on),
+            Answer("d", "discard", ask_again),
         ]
-        choose(app, Question("Work that was not saved", text, answers, must=True))
+        choose(app, Question("Unsaved work", text, answers, must=True))
 
     # the way out
 
@@ -217,7 +217,7 @@ class Saving:
             self._leave()
             return
         if isinstance(self._app.screen, Question):
-            return  # that one first
+            return  # the open question comes first
 
         def discard() -> None:
             self._session.file.forget()
@@ -229,12 +229,12 @@ class Saving:
         ]
         name, file = self._session.name, self._session.file
         is_gone = file.stamp is None and file.changed_on_disk()
-        told = "is gone from the disk" if is_gone else "has changes that are not saved"
+        told = "was deleted from the disk" if is_gone else "has unsaved changes"
         choose(self._app, Question("Not saved", f"{name} {told}.", answers))
 
 
 def chosen_path(text: str) -> Path:
-    """The file that a person means, with the suffix of a mooring file where it has none."""
+    """Return the path of a typed name, with the suffix `.yaml` if it has none."""
     path = Path(os.path.expanduser(text.strip()))
     is_named = path.name not in ("", "..") and not text.rstrip().endswith(("/", os.sep))
     bare = is_named and not path.suffix and not path.is_dir()
@@ -242,7 +242,7 @@ def chosen_path(text: str) -> Path:
 
 
 def _free_name(path: Path) -> Path:
-    """A free name like that of a file."""
+    """Return an unused name similar to that of a file."""
     number = 2
     while (free := path.with_name(f"{path.stem}-{number}{path.suffix}")).exists():
         number += 1
@@ -250,7 +250,7 @@ def _free_name(path: Path) -> Path:
 
 
 def _is_writable(text: str) -> Reading:
-    """Return whether a file of that name could be written."""
+    """Check of a name of a file to write."""
     tidy = text.strip()
     if not tidy:
         return Reading("", "a name is needed")
@@ -270,5 +270,5 @@ def _is_writable(text: str) -> Reading:
 
 
 def moment(seconds: float) -> str:
-    """A time [s since 1970] as the clock on the wall shows it, to the minute."""
+    """Format a time [s since 1970] as local date and time, to the minute."""
     return time.strftime("%Y-%m-%d at %H:%M", time.localtime(seconds))

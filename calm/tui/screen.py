@@ -1,4 +1,4 @@
-"""A screen that shows and edits the draft: title, what is made of it, keys."""
+"""Base of the screens that show and edit the draft, with title bar and key bar."""
 
 from collections.abc import Callable, Iterable
 
@@ -16,10 +16,10 @@ from calm.tui.workspace import Workspace
 
 
 class DraftScreen(Screen[None]):
-    """Show and edit the draft of a workspace: title, its parts, keys.
+    """Screen that shows and edits the draft of a workspace.
 
-    The application settles the screen on top before it saves or leaves, and has every one of them
-    read the draft again when that was replaced from outside.
+    The application calls `settle` on the top screen before it saves or quits, and `replaced` on all
+    screens after the draft was replaced from outside.
     """
 
     def __init__(self, workspace: Workspace) -> None:
@@ -27,76 +27,76 @@ class DraftScreen(Screen[None]):
         self.workspace, self.session = workspace, workspace.session
 
     def compose(self) -> ComposeResult:
-        """Title, what is shown, keys."""
+        """Yield the title, the parts and the keys."""
         yield TitleBar()
         yield from self.parts()
         yield KeyBar()
 
     def on_mount(self) -> None:
-        """Say what is shown."""
+        """Show the title."""
         self.show_title()
 
-    # what is made of it tells
+    # implemented by subclasses
 
     def parts(self) -> ComposeResult:
-        """Return what is between title and keys."""
+        """Return the widgets between title and keys."""
         raise NotImplementedError
 
     @property
     def is_typing(self) -> bool:
-        """Return whether something is typed that is not in the draft yet."""
+        """Whether typed text is not in the draft yet."""
         raise NotImplementedError
 
     def settle(self) -> bool:
-        """Take over what is being typed: the draft holds it when this returns True.
+        """Accept typed text; if this returns True, the draft contains it.
 
-        False where the value is bad: it stays to be corrected, and the reason is shown.
+        Returns False for an invalid value, which stays in its field, with a message.
         """
         raise NotImplementedError
 
     def show_draft(self) -> None:
-        """Show the draft as it is now, some steps further or back."""
+        """Show the draft after undo or redo."""
         raise NotImplementedError
 
     def replaced(self) -> None:
-        """Show the draft, another one: what is typed and marked was of the one before.
+        """Show a draft that replaced the previous one; typed text and marks are obsolete.
 
-        It may be one that cannot be read: the application then opens the text view.
+        If the draft cannot be parsed, the application opens the text view.
         """
         self.show_draft()
 
     def show_view(self) -> None:
-        """Show what a worker made of the draft."""
+        """Show the view that a worker computed from the draft."""
         raise NotImplementedError
 
     def titles(self) -> tuple[str, str]:
-        """Return what the first line says at its left and at its right end."""
+        """Return the texts at the left and right end of the title bar."""
         raise NotImplementedError
 
-    # what all have
+    # shared by all screens
 
     def show_title(self) -> None:
-        """Say again what is shown and how it stands, dimmed where that is of an earlier draft."""
+        """Update the title bar; the verdict is dimmed if it is of an earlier draft."""
         self.query_one(TitleBar).show(*self.titles(), old=not self.workspace.is_fresh)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Say something in the last line, until the next key."""
+        """Show a message in the last line until the next key."""
         self.query_one(KeyBar).tell(text, wrong=wrong)
 
     def action_undo(self) -> None:
-        """Take the last change back, once what is typed is taken."""
+        """Accept typed text, then undo the last change."""
         self._go("undone", self.session.history.undo)
 
     def action_redo(self) -> None:
-        """Make it again."""
-        self._go("done again", self.session.history.redo)
+        """Redo the last undone change."""
+        self._go("redone", self.session.history.redo)
 
     def _go(self, what: str, step: Callable[[], str | None]) -> None:
         if not self.settle():
             return
         label = step()
         if label is None:
-            self.tell(f"Nothing is left to be {what}")
+            self.tell(f"No changes left to be {what}")
         else:
             self.show_draft()
             self.tell(f"{what}: {label}")
@@ -118,13 +118,13 @@ class TitleBar(Widget):
         self._said = "", "", False
 
     def show(self, left: str, right: str, *, old: bool = False) -> None:
-        """Say something else; the right end is dimmed where it is of an `old` state of the line."""
+        """Show other texts; the right one is dimmed if `old`."""
         if (left, right, old) != self._said:
             self._said = left, right, old
             self.refresh()
 
     def render(self) -> Text:
-        """Both ends; the left one is cut where there is no room."""
+        """Render both texts; the left one is truncated if necessary."""
         width = self.content_size.width
         said, verdict, old = self._said
         right = Text(verdict, style="dim" if old else "", no_wrap=True)
@@ -135,7 +135,7 @@ class TitleBar(Widget):
 
 
 class KeyBar(Static):
-    """The keys that matter now; what was just done takes their place until the next key."""
+    """The keys of the focused widget, or a message until the next key."""
 
     DEFAULT_CSS = """
     KeyBar {
@@ -171,7 +171,7 @@ class KeyBar(Static):
         self._show()
 
     def on_resize(self) -> None:
-        """As many keys as there is room for."""
+        """Show as many keys as fit."""
         self._show()
 
     def _show(self) -> None:

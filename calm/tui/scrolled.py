@@ -1,7 +1,7 @@
-"""Scrolled rows that are drawn for the cells there are, texts, and tables with a cursor.
+"""Scrollable rows, texts, and tables with a cursor, all of fixed size.
 
-Textual lays the whole screen out where the length of anything in it changes, 10 to 20 ms at each
-key of a search. Nothing here has a size that depends on what it shows.
+Textual computes the layout of the whole screen again if the size of a widget changes, which takes
+10 to 20 ms at each key of a search. The size of these widgets is independent of their content.
 """
 
 from collections.abc import Iterable, Sequence
@@ -25,50 +25,50 @@ Row = list[Segment]
 
 
 class Scrolled(ScrollView, inherit_bindings=False):
-    """Lines of its own, drawn by `render_line`; `virtual_size` tells how many and how long."""
+    """Scrollable lines drawn by `render_line`; `virtual_size` is their number and length."""
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
 
     def watch_virtual_size(self, size: Size) -> None:
-        """The scroll bar follows, and what is shown where it is beyond the end now."""
+        """Update the scroll bar, and scroll back if the position is beyond the new end."""
         self._scroll_update(size)
         if self.scroll_offset.y > self.max_scroll_y:
             self.scroll_to(y=self.max_scroll_y, animate=False)
 
     def on_focus(self) -> None:
-        """The cursor is drawn where the focus is."""
+        """Draw the cursor."""
         self.refresh()
 
     def on_blur(self) -> None:
-        """And only there."""
+        """Remove the cursor."""
         self.refresh()
 
 
 class DrawnRows(Scrolled, can_focus=False):
-    """Rows that are drawn for the cells there are, anew where these are others."""
+    """Rows drawn to fit the widget, and drawn again after a change of size."""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
-        self._drawn: tuple[Size | None, list[Row]] = (None, [])  # the size that the rows are for
+        self._drawn: tuple[Size | None, list[Row]] = (None, [])  # rows and their size
 
     def rows_for(self, size: Size) -> list[Row]:
         """Draw the rows for a size."""
         raise NotImplementedError
 
     def draw_again(self) -> None:
-        """Draw what is shown now."""
+        """Draw the rows again."""
         self._drawn = (None, self._drawn[1])
         self.refresh()
 
     def drawn(self) -> list[Row]:
-        """Return the rows for the size of now."""
+        """Return the rows for the current size."""
         size = self.scrollable_content_region.size
         if size.width > 0 and size != self._drawn[0]:
             self._drawn = (size, self.rows_for(size))
         return self._drawn[1]
 
     def render_line(self, y: int) -> Strip:
-        """A row of the screen."""
+        """Return a line of the screen."""
         rows, number, left = self.drawn(), y + self.scroll_offset.y, self.scroll_offset.x
         width, style = self.scrollable_content_region.width, self.rich_style
         strip = Strip(rows[number] if number < len(rows) else []).apply_style(style)
@@ -76,14 +76,14 @@ class DrawnRows(Scrolled, can_focus=False):
 
 
 class ScrolledText(DrawnRows):
-    """Texts for people below each other, wrapped to the width; others begin at the top."""
+    """Texts one below the other, wrapped to the width; new texts are shown from the top."""
 
     DEFAULT_CSS = "ScrolledText { overflow-x: hidden; scrollbar-size-vertical: 1; }"
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self._texts: Sequence[RenderableType] = ()
-        self._numbers: list[int] = []  # of the text that each row is of
+        self._numbers: list[int] = []  # number of the text of each row
 
     def show(self, *texts: RenderableType) -> None:
         """Show other texts."""
@@ -93,7 +93,7 @@ class ScrolledText(DrawnRows):
         self.drawn()
 
     def on_resize(self) -> None:
-        """Wrap it to the new width."""
+        """Wrap the texts to the new width."""
         self.drawn()
 
     def rows_for(self, size: Size) -> list[Row]:
@@ -104,7 +104,7 @@ class ScrolledText(DrawnRows):
         return [row for _, row in wrapped]
 
     def _wrapped(self, width: int) -> list[tuple[int, Row]]:
-        """Return the rows in a width, each with the number of its text."""
+        """Return the wrapped rows, each with the number of its text."""
         console = self.app.console
         options = console.options.update(width=width, height=None)
         return [
@@ -116,9 +116,9 @@ class ScrolledText(DrawnRows):
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column has a name, a heading, its first cell on the screen, and a width.
+    """A column with a name, a heading, its first cell on the screen, and a width.
 
-    Of a text that is too long the last `tail` signs are kept.
+    A text that is too long keeps its last `tail` characters.
     """
 
     name: str
@@ -129,7 +129,7 @@ class TableColumn:
     tail: int = 0
 
     def fitted(self, text: str) -> str:
-        """A text as wide as the column; one that is too long is cut at an ellipsis."""
+        """Fit a text to the width of the column, with an ellipsis if it is too long."""
         excess = cell_len(text) > self.width
         if excess and self.tail:
             begin = set_cell_size(text, self.width - 1 - self.tail)
@@ -142,10 +142,10 @@ class TableColumn:
 
 
 class TableCells(Scrolled, inherit_bindings=False):
-    """Rows under a heading that stays, with a cursor on one cell of them.
+    """Table with a fixed heading and a cell cursor.
 
-    What is made of it says its `columns`, which of them are `editable`, and what stands in the
-    cells, in front of them and below the rows.
+    Subclasses define the `columns`, which of them are `editable`, and the text of cells, in front
+    of rows and below the table.
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {"table--heading", "table--cursor"}
@@ -159,7 +159,7 @@ class TableCells(Scrolled, inherit_bindings=False):
 
     HEADING: ClassVar[int] = 1
     BEYOND: ClassVar[int] = 0
-    """Rows kept in sight beyond the cursor."""
+    """Number of rows kept visible beyond the cursor."""
     GAP: ClassVar[int] = 1
     """Cells between two columns."""
 
@@ -177,44 +177,44 @@ class TableCells(Scrolled, inherit_bindings=False):
 
     @property
     def columns(self) -> Sequence[TableColumn]:
-        """The columns as wide as they are now."""
+        """Columns for the current width."""
         raise NotImplementedError
 
     @property
     def editable(self) -> Sequence[str]:
-        """The names of the columns that the cursor goes to, from the left."""
+        """Names of the columns that the cursor visits, from the left."""
         return ()
 
     def text_of(self, number: int, column: TableColumn) -> str:
-        """Return what stands in a cell of a row."""
+        """Return the text of a cell."""
         raise NotImplementedError
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return what stands in front of the first column of a row."""
+        """Return the segments in front of the first column of a row."""
         raise NotImplementedError
 
     def look(self, name: str) -> Style:
-        """Return what one of the component classes adds to a style."""
+        """Partial style of a component class."""
         return self.get_component_rich_style(name, partial=True)
 
     def row_style(self, number: int) -> Style:
-        """Return how a row looks."""
+        """Style of a row."""
         return self.rich_style
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
-        """Return how a cell looks that is not under the cursor, in a row of a style."""
+        """Style of a cell that is not under the cursor."""
         return style
 
     def below(self, y: int) -> list[Segment]:
-        """Return what a line of the screen has below the last row."""
+        """Return the segments of a screen line below the last row."""
         return []
 
     # rows and cursor
 
     def take_rows(self, rows: Sequence[Any], changed: Iterable[int] | None = None) -> None:
-        """Other rows, the cursor where it was if there is such a row.
+        """Replace the rows, keeping the cursor in its row if possible.
 
-        Only those that have `changed` are drawn, by their numbers; without them all are.
+        If the numbers of `changed` rows are given, only those are drawn.
         """
         self.rows = rows
         self.virtual_size = Size(0, len(rows) + self.HEADING)
@@ -225,31 +225,31 @@ class TableCells(Scrolled, inherit_bindings=False):
             self.refresh_rows(*changed)
 
     def validate_cursor(self, cursor: int) -> int:
-        """Keep it on the rows."""
+        """Limit the cursor to the rows."""
         return max(0, min(cursor, len(self.rows) - 1))
 
     def validate_column(self, column: int) -> int:
-        """Keep it on the columns that are edited."""
+        """Limit the cursor to the editable columns."""
         return max(0, min(column, len(self.editable) - 1))
 
     def watch_cursor(self, before: int, now: int) -> None:
-        """Keep the cursor in sight."""
+        """Keep the cursor visible."""
         if not self.follow():
             self.refresh_rows(before, now)
         self.post_message(self.Moved())
 
     def watch_column(self) -> None:
-        """Show it."""
+        """Draw the cursor in its new column."""
         self.refresh_rows(self.cursor)
         self.post_message(self.Moved())
 
     def refresh_rows(self, *numbers: int) -> None:
-        """Draw some rows only."""
+        """Draw only these rows."""
         for number in numbers:
             self.refresh_line(number + self.HEADING)
 
     def follow(self) -> bool:
-        """Scroll to the cursor; whether that was needed."""
+        """Scroll to the cursor; return whether this was necessary."""
         page = max(self.scrollable_content_region.height - self.HEADING, 1)
         beyond = min(self.BEYOND, (page - 1) // 2)
         top = self.scroll_offset.y
@@ -259,21 +259,22 @@ class TableCells(Scrolled, inherit_bindings=False):
         return wanted != top
 
     def row_at(self, y: int) -> int | None:
-        """The number of the row on a line of the widget; None on the heading and below the last."""
+        """Return the number of the row on a line of the widget, or None outside the rows."""
         row = y - self.HEADING + self.scroll_offset.y
         return row if y >= self.HEADING and row < len(self.rows) else None
 
     def cell_region(self) -> Region:
-        """Return where the cell under the cursor is, within the widget."""
+        """Return the region of the cell under the cursor within the widget."""
         shown = {each.name: each for each in self.columns}
         column = shown.get(self.editable[self.column], self.columns[0])
         y = self.cursor + self.HEADING - self.scroll_offset.y
         return Region(column.start, y, column.width, 1)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Put the cursor where the mouse is; a press on the cursor itself is told.
+        """Move the cursor to the mouse; a press on the cursor posts `Pressed`.
 
-        At once, as what is typed elsewhere is taken now, and the screen may be laid out anew.
+        This happens at once, because text typed elsewhere is accepted now, which may change the
+        layout of the screen.
         """
         place = event.get_content_offset(self)
         number = None if place is None else self.row_at(place.y)
@@ -290,7 +291,7 @@ class TableCells(Scrolled, inherit_bindings=False):
     # drawing
 
     def render_line(self, y: int) -> Strip:
-        """A row of the screen."""
+        """Return a line of the screen."""
         width, number = self.scrollable_content_region.width, self.row_at(y)
         ground = self.rich_style
         if y == 0:

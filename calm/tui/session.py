@@ -1,6 +1,6 @@
-"""The file being built: its text, its history, what was copied, and every verb that changes it.
+"""The edited file: its text, its history, the clipboard, and all editing operations.
 
-Nothing here knows of the screen; nothing is computed here.
+This module depends neither on the screen nor on the solver.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -13,32 +13,32 @@ from calm.files.yaml_document import Location
 from calm.tui.names import Named, Standing, followed, widened
 
 _OF_THE_ROW = frozenset({"use", "label", "count", "at", "clamps"})
-"""Keys of a row that hold whatever component is there."""
+"""Keys of a row that are independent of its component."""
 
 
 class Session:
-    """A mooring or tow file on its way.
+    """Editing session of a mooring or tow file.
 
     Parameters
     ----------
-    file : where it is read from and saved to
-    text : what it holds
+    file : the file on the disk
+    text : its text
     environment : see `Standing`
 
     Attributes
     ----------
     catalogs : catalogue files given with the command
-    copied : what `paste` puts in, as text: items of a line, or clamped instruments
-    standing : the environment that the line stands in
-    after_save : is given the path and the text of a file that has been saved
-    added : the rows that the last change has put in
-    followed : what the last change of the line made of labels that the file names elsewhere
+    copied : text of the copied items or clamps
+    standing : the current environment of the line
+    after_save : called with the path and text of a saved file
+    added : rows added by the last change
+    followed : messages on references to labels that the last change updated
 
     Raises
     ------
     EditError
-        By every verb that the text does not allow: it has mistakes, or is written in a way that
-        cannot be taken apart. Nothing is changed then.
+        By every operation that the text does not allow, because it has mistakes or a form that
+        cannot be edited. The text is then unchanged.
     NotWritten
         By `save` and `save_as`.
     """
@@ -55,7 +55,7 @@ class Session:
         self.file = file
         self.catalogs = tuple(catalogs)
         self.copied: tuple[str, ...] = ()
-        self._are_clamps = False  # what was copied
+        self._are_clamps = False  # whether the clipboard contains clamps
         self.followed: list[str] = []
         self.added: frozenset[Place] = frozenset()
         self.standing = Standing(self.history, environment)
@@ -63,44 +63,44 @@ class Session:
 
     @property
     def draft(self) -> Draft:
-        """The file as it is now."""
+        """The current draft of the file."""
         return self.history.draft
 
     @property
     def changed(self) -> bool:
-        """Return whether something is not saved yet."""
+        """Whether there are unsaved changes."""
         return self.history.changed
 
     @property
     def name(self) -> str:
-        """The file's name, for people."""
+        """Name of the file, for messages."""
         path = self.file.path
         return "unnamed" if path is None else path.name
 
     @property
     def components(self) -> dict[str, Any]:
-        """The components that the file defines, as written."""
+        """Components defined in the file, in their text form."""
         defined = self.draft.value(("components",))
         return defined if isinstance(defined, dict) else {}
 
     # the line
 
     def spots(self) -> list[Place]:
-        """Every row of the line, clamps below their piece."""
+        """Return all rows of the line, clamps below their piece."""
         return _rows_of(self.draft, 0, len(self.draft.items))
 
     def item(self, spot: Place) -> LineItem:
-        """The item, or clamp, of a row."""
+        """Return the item or clamp of a row."""
         item = self.draft.items[spot.item]
         return item.clamps[spot.clamp] if spot.is_clamp else item
 
     def written(self, spot: Place) -> dict[str, Any]:
-        """All that the file says of a row."""
+        """Return all keys of a row."""
         values = self.draft.value(location(spot))
         return values if isinstance(values, dict) else {}
 
     def do(self, draft: Draft, label: str) -> None:
-        """Take a draft as the next state; one that changes nothing is no step."""
+        """Make a draft the current state; an unchanged text adds no step to the history."""
         if draft.text != self.draft.text:
             self.history.do(draft, label)
             self.added = frozenset()
@@ -108,7 +108,7 @@ class Session:
     def _edit(
         self, draft: Draft, label: str, *, gone: Iterable[Place] = (), new: Iterable[Place] = ()
     ) -> None:
-        """Take a draft of which rows are `gone` and others `new`; what names the others follows."""
+        """Make a draft the current state, given its `gone` and `new` rows; update references."""
         gone, new, then = list(gone), set(new), _rows_of(draft, 0, len(draft.items))
         pairs = zip(
             [spot for spot in self.spots() if spot not in gone],
@@ -121,20 +121,20 @@ class Session:
         self.added = frozenset(new.difference(moved.values()))
 
     def write(self, text: str, label: str = "edit the text", *, further: bool = False) -> None:
-        """Take another text; `further` where it goes on with the last step."""
+        """Replace the text; `further` merges the change with the last step."""
         if further:
             self.history.undo()
         self.do(Draft(text), label)
 
     def insert(self, spot: Place | None, values: Mapping[str, str], *, below: bool) -> Place:
-        """A new piece beside a row; at the top of an empty line."""
+        """Add a piece next to a row, or at the top of an empty line."""
         index = 0 if spot is None else spot.item + below
         draft = self.draft.insert(index, dict(values), above=not below)
         self._edit(draft, f"add {values['use']}", new=_rows_of(draft, index, 1))
         return Place(index)
 
     def clamp(self, spot: Place, values: Mapping[str, str]) -> Place:
-        """A new instrument on the piece of a row, below the other ones."""
+        """Add a clamp to the piece of a row, below its other clamps."""
         index = spot.clamp + 1 if spot.is_clamp else len(self.draft.items[spot.item].clamps)
         draft = self.draft.insert(index, dict(values), clamps_of(spot.item))
         at = Place(spot.item, clamp=index)
@@ -142,7 +142,7 @@ class Session:
         return at
 
     def put(self, given: Mapping[Place, Mapping[str, Value | None]], label: str) -> None:
-        """Set keys of rows in one step; None takes one away."""
+        """Set keys of rows in one step; None deletes a key."""
         draft = self.draft
         for spot, values in given.items():
             rows, index = _listed(spot)
@@ -151,7 +151,7 @@ class Session:
         self._edit(draft, label)
 
     def replace(self, spot: Place, values: Mapping[str, str]) -> list[str]:
-        """Put another component on a row; returns what the row still overrides of the old one."""
+        """Replace the component of a row; return the remaining overrides of the old component."""
         kept = [
             f"{key} {value}" if isinstance(value, str) else key
             for key, value in self.written(spot).items()
@@ -161,7 +161,7 @@ class Session:
         return kept
 
     def delete(self, spots: Iterable[Place]) -> Place | None:
-        """Take rows out, a piece with its clamps; the row to go to, None where none is left."""
+        """Delete rows, pieces with their clamps; return the row for the cursor, if any."""
         chosen = _whole(spots)
         if not chosen:
             return None
@@ -180,9 +180,9 @@ class Session:
     def duplicate(
         self, spots: Iterable[Place], also: Sequence[Named] = (), times: int = 1
     ) -> Place | None:
-        """Repeat rows below the last of them, once or several times; the first of the copies.
+        """Copy rows below the last of them, once or several times; return the first copy.
 
-        Of what names them, `also` names the copies then.
+        The references in `also` are extended to the copies.
         """
         chosen = _whole(spots)
         if not chosen:
@@ -198,15 +198,15 @@ class Session:
         return self._put_clamps(last, last.clamp + 1, clamps, label)[0]
 
     def _put_clamps(self, spot: Place, first: int, texts: Sequence[str], label: str) -> list[Place]:
-        """Put clamps on the piece of a row, as the `first` and below; where they are."""
+        """Add clamps to the piece of a row from index `first`; return their rows."""
         new = [Place(spot.item, clamp=first + each) for each in range(len(texts))]
         self._edit(self.draft.paste(first, texts, clamps_of(spot.item)), label, new=new)
         return new
 
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
-        """Move pieces, or one clamp, up (-1) or down (1); where they are then.
+        """Move pieces, or one clamp, up (-1) or down (1); return their new rows.
 
-        At the end of the line, or of the clamps of the piece, they stay.
+        At the end of the line, or of the list of clamps, they do not move.
         """
         chosen = _whole(spots)
         moved = [spot for spot in chosen if not spot.is_clamp] or chosen
@@ -232,7 +232,7 @@ class Session:
         return tuple(map(there, moved))
 
     def copy(self, spots: Iterable[Place]) -> int:
-        """Keep rows for pasting; how many."""
+        """Copy rows for pasting; return their number."""
         chosen = _whole(spots)
         items = [spot.item for spot in chosen if not spot.is_clamp]
         if chosen:
@@ -241,8 +241,9 @@ class Session:
         return len(self.copied) if chosen else 0
 
     def paste(self, spot: Place | None, *, below: bool) -> Place | None:
-        """Put what was copied beside a row; its last row, where the next comes below, or its
-        first; None where nothing was copied.
+        """Paste the copied rows next to a row.
+
+        Returns the last pasted row if pasted below, else the first; None without copied rows.
         """
         count = len(self.copied)
         label = f"paste {count} row{'s' * (count != 1)}"
@@ -257,7 +258,7 @@ class Session:
         return self._put_clamps(spot, first, self.copied, label)[-1 if below else 0]
 
     def _clamps(self, chosen: Sequence[Place]) -> tuple[str, ...]:
-        """The text of clamps, of one piece or of several."""
+        """Return the text of clamps, which may be on different pieces."""
         copied = (self.draft.copy([spot.clamp], clamps_of(spot.item)) for spot in chosen)
         return tuple(text for texts in copied for text in texts)
 
@@ -267,7 +268,7 @@ class Session:
     # saving
 
     def save(self) -> str:
-        """Write the file whole, and forget what was kept; what could not be kept of it.
+        """Save the file and delete its backup; return a note on attributes that were lost.
 
         Raises
         ------
@@ -281,7 +282,7 @@ class Session:
         return lost
 
     def save_as(self, path: Path) -> str:
-        """Write another file and go on with that one; see `save`."""
+        """Save under another path and continue with that file; see `save`."""
         before, self.file = self.file, WorkingFile(path)
         try:
             lost = self.save()
@@ -291,21 +292,21 @@ class Session:
         before.forget()
         return lost
 
-    # what is kept in case of a crash
+    # backup in case of a crash
 
     def note_unsaved(self) -> WorkingFile:
-        """The file, which knows then what it has to `keep`."""
+        """Register the unsaved text with the file, for `keep`; return the file."""
         self.file.unsaved = self.draft.text if self.changed else None
         return self.file
 
     def recover(self, kept: editing.KeptWork) -> None:
-        """Go on with work that an earlier session has left; undo leads back to the file."""
+        """Continue with unsaved work of an earlier session; undo leads back to the file."""
         self.file.adopt(kept)
-        self.write(kept.text, "recover what was not saved")
+        self.write(kept.text, "recover unsaved work")
 
 
 def _rows_of(draft: Draft, first: int, count: int) -> list[Place]:
-    """The rows of some items that follow one another."""
+    """Return the rows of consecutive items."""
     return [
         Place(number, clamp=clamp)
         for number in range(first, first + count)
@@ -314,20 +315,20 @@ def _rows_of(draft: Draft, first: int, count: int) -> list[Place]:
 
 
 def _whole(spots: Iterable[Place]) -> list[Place]:
-    """The rows in order, without clamps whose piece is among them."""
+    """Return the rows in order, without clamps of pieces among them."""
     chosen = sorted(set(spots))
     pieces = {spot.item for spot in chosen if not spot.is_clamp}
     return [spot for spot in chosen if not spot.is_clamp or spot.item not in pieces]
 
 
 def location(spot: Place) -> Location:
-    """Return where a row stands in the file."""
+    """Return the location of a row in the file."""
     rows, index = _listed(spot)
     return (*rows, index)
 
 
 def _listed(spot: Place) -> tuple[Location, int]:
-    """The list of the file that a row stands in, and its index there."""
+    """Return the list of the file that contains a row, and the index in this list."""
     return (clamps_of(spot.item), spot.clamp) if spot.is_clamp else (LINE, spot.item)
 
 

@@ -1,4 +1,4 @@
-"""From a file, or none, to the running application."""
+"""Start of the builder, with or without a file."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ if TYPE_CHECKING:
 
 _TURN = 0.001  # seconds
 _GRACE = 3
-"""Most seconds for an orderly end: a terminal that is stuck takes no output any more."""
+"""Maximum time [s] for an orderly end: a blocked terminal accepts no output."""
 
 
 def open_session(
     path: Path | None, environment: str | None = None, catalogs: Sequence[Path] = ()
 ) -> tuple[Session, KeptWork | None]:
-    """The session of a file, and work that an earlier session has kept of it and not saved.
+    """Open a session of a file; also return unsaved work of an earlier session, if any.
 
     Parameters
     ----------
-    path : a file that need not exist yet; None for one without a name
+    path : a file that need not exist yet; None for an unnamed file
 
     Raises
     ------
     InputError, UsageError
         The file, an environment file or a catalogue cannot be read; the folder of a new file does
-        not exist; the file names no such environment.
+        not exist; the file has no such environment.
     """
     file = WorkingFile(path)
     if path is not None and file.stamp is not None:
@@ -54,7 +54,7 @@ def open_session(
 
 
 def _refuse_other_files(session: Session) -> None:
-    """Refuse mistakes in files other than that which is built: they cannot be mended here."""
+    """Reject mistakes in other files, which cannot be corrected in the builder."""
     Catalogue.load(session.catalogs)
     here, names = session.standing.environment, session.standing.environments
     if (lost := session.standing.lost_environment) is not None:
@@ -78,7 +78,7 @@ def _refuse_other_files(session: Session) -> None:
 
 
 def build(path: Path | None, environment: str | None = None, catalogs: Sequence[Path] = ()) -> int:
-    """Open a file in the line builder, until the person leaves it; the exit code of the command.
+    """Run the line builder on a file; return the exit code of the command.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def build(path: Path | None, environment: str | None = None, catalogs: Sequence[
     from calm.tui.app import BuildApp
 
     session, kept = open_session(path, environment, catalogs)
-    sys.setswitchinterval(_TURN)  # the worker that solves lets the keys through
+    sys.setswitchinterval(_TURN)  # so that the solving worker does not delay keys
     app = BuildApp(session, kept=kept)
     if os.name == "posix":
         for number in (signal.SIGHUP, signal.SIGTERM):
@@ -102,14 +102,14 @@ def build(path: Path | None, environment: str | None = None, catalogs: Sequence[
 
 
 def end(app: BuildApp, number: int, _frame: object) -> None:
-    """Keep the work and leave, the terminal or the process being ended by a signal.
+    """Keep unsaved work and quit after a signal that ends the terminal or the process.
 
-    The loop of the application is not waited for: it may itself wait for a terminal that is gone,
-    for ever. A closed terminal needs no restoring, and the process ends at once.
+    The event loop is not waited for, because it may wait for a closed terminal for ever. A closed
+    terminal needs no restoring, so the process ends at once.
     """
     try:
         app.take_typed()
-    finally:  # whatever the screen is at just then
+    finally:  # whatever the state of the screen
         app.keep_at_the_end()
     signal.signal(number, signal.SIG_DFL)
     if not (app.is_running and os.isatty(0)):

@@ -1,4 +1,4 @@
-"""A table of some rows that is edited cell by cell: of the water, of a form."""
+"""Tables edited cell by cell, in forms and on the screen of the water."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from calm.tui.scrolled import TableCells, TableColumn
 
 _WIDTH = 14
 _LEAD = 2
-_AS_TEXT = "this table is edited in the text of the file (t)"
+_AS_TEXT = "edit this table in the text of the file (t)"
 _NO_ROWS = "a  adds a row"
 _DIGITS = frozenset("0123456789.-+")
 
 
 class GridCells(TableCells, can_focus=True):
-    """Show the rows with a cursor on one cell."""
+    """Table of text cells with a cell cursor."""
 
     GAP = 2
 
@@ -33,7 +33,7 @@ class GridCells(TableCells, can_focus=True):
         self.rows: Rows = ()
 
     def show(self, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-        """Other rows, the cursor where it was if there is such a cell."""
+        """Replace headings and rows, keeping the cursor in its cell if possible."""
         self.headings = tuple(headings)
         self.set_reactive(TableCells.column, self.validate_column(self.column))
         self.take_rows(tuple(tuple(row) for row in rows))
@@ -41,7 +41,7 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def columns(self) -> list[TableColumn]:
-        """The columns, named by their numbers: a file may have two of one heading."""
+        """Columns, named by number because two may have the same heading."""
         return [*self._columns()] or [TableColumn("", _AS_TEXT, _LEAD, len(_AS_TEXT))]
 
     def _columns(self) -> Iterator[TableColumn]:
@@ -50,7 +50,7 @@ class GridCells(TableCells, can_focus=True):
             for number, heading in enumerate(self.headings)
         ]
         room = self.scrollable_content_region.width - _LEAD - self.GAP * len(widths)
-        while sum(widths) > room and max(widths) > _WIDTH:  # the widest are cut
+        while sum(widths) > room and max(widths) > _WIDTH:  # truncate the widest
             widths[widths.index(max(widths))] -= 1
         start = _LEAD
         for number, (heading, width) in enumerate(zip(self.headings, widths, strict=True)):
@@ -59,26 +59,26 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def editable(self) -> Sequence[str]:
-        """All columns, where there are any."""
+        """All columns, by number."""
         return [str(number) for number in range(len(self.headings))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
-        """Return what stands in a cell of a row."""
+        """Return the text of a cell."""
         return self.rows[number][int(column.name)]
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the cursor, where the table has the focus."""
+        """Return the cursor if the table has the focus."""
         here = number == self.cursor and self.has_focus
         return [Segment(f"{theme.CURSOR} " if here else "  ", style)]
 
     def below(self, y: int) -> list[Segment]:
-        """Return how an empty table is begun."""
+        """Return the hint that is shown in an empty table."""
         is_empty = y == self.HEADING and self.headings and not self.rows
         cursor = theme.CURSOR if self.has_focus else " "
         return [Segment(f"{cursor} {_NO_ROWS}", Style(dim=True))] if is_empty else []
 
     def go_on(self, by: int) -> bool:
-        """Go to the next value or the one before, over the rows; whether there is one."""
+        """Go to the next or previous value, across rows; return whether there is one."""
         count = len(self.headings)
         row, column = divmod(self.cursor * count + self.column + by, count)
         if is_there := 0 <= row < len(self.rows):
@@ -87,14 +87,14 @@ class GridCells(TableCells, can_focus=True):
 
 
 class Grid(cell_editor.EditableTable):
-    """Edit the cells and the rows of a table.
+    """Table with editing of cells and rows.
 
-    Values are texts as the file has them. Without columns nothing is shown and nothing can be
-    edited.
+    Values are texts of the file. Without columns, the table is empty and cannot be edited.
+
 
     Parameters
     ----------
-    changed : takes the table where its rows are other ones, and what was done to them
+    changed : called with the table and a label after a change of its rows
     """
 
     BINDINGS = key_table.bindings("grid")
@@ -104,7 +104,7 @@ class Grid(cell_editor.EditableTable):
     """
     LEAST_ROWS: ClassVar[int] = 0
     EDITS_ON: ClassVar[bool] = True
-    """Whether Enter edits the next value of a row that was added: where no digit begins one."""
+    """Whether Enter edits the next value of an added row (if digits do not start editing)."""
 
     def __init__(
         self,
@@ -117,9 +117,9 @@ class Grid(cell_editor.EditableTable):
         super().__init__(tell, self.cells, id=id)
         self._changed = changed
         self._columns: tuple[FormColumn, ...] = ()
-        self._place = 0, 0  # row and column that are edited
-        self._new = -1  # the row that was added last and is being filled
-        self._before: Rows | None = None  # the rows without the one that Enter has added
+        self._place = 0, 0  # row and column of the edited cell
+        self._new = -1  # the added row that is being filled
+        self._before: Rows | None = None  # rows without the row that Enter added
 
     def show(self, columns: Sequence[FormColumn], rows: Sequence[Sequence[str]]) -> None:
         """Show other rows."""
@@ -127,33 +127,33 @@ class Grid(cell_editor.EditableTable):
         self.cells.show([column.heading for column in columns], rows)
 
     def change(self, rows: Rows, label: str) -> None:
-        """Show other rows, and tell what was done to them."""
+        """Show changed rows, and report the change."""
         self.cells.show(self.cells.headings, rows)
         self._changed(self, label)
 
     def write(self, text: str) -> None:
-        """Put a good text where it was typed; nothing where there is no such cell any more."""
+        """Write a valid text into the edited cell, if it still exists."""
         rows, (row, column) = self.cells.rows, self._place
         if row < len(rows) and column < len(self.cells.headings):
             values = (*rows[row][:column], text, *rows[row][column + 1 :])
             self.change((*rows[:row], values, *rows[row + 1 :]), "a value")
 
     def new_row(self, at: int) -> tuple[str, ...]:
-        """The values that a row begins with, which is added at a place among the others."""
+        """Return the initial values of a row that is added at index `at`."""
         return ("",) * len(self._columns)
 
     def ends_at(self, at: int) -> bool:
-        """Return whether no row is proposed at a place."""
+        """Return whether no row should be proposed at index `at`."""
         return False
 
     # keys
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """The keys of the rows are not those of a value that is typed."""
+        """Disable row actions while a value is typed."""
         return not self.editor.is_open
 
     def action_move_row(self, by: int) -> None:
-        """Go up or down, at the ends out of the table."""
+        """Go up or down, leaving the table at its ends."""
         if 0 <= self.cells.cursor + by < len(self.cells.rows):
             self.cells.cursor += by
         elif by > 0:
@@ -162,19 +162,19 @@ class Grid(cell_editor.EditableTable):
             self.screen.focus_previous()
 
     def action_move_cell(self, by: int) -> None:
-        """Go to the next value; what is typed after the last goes into no other field."""
+        """Go to the next value, but do not leave the table after the last."""
         has_rows = bool(self.cells.headings) and bool(self.cells.rows)
         if has_rows and self.cells.go_on(by):
             return
         if by < 0:
             self.screen.focus_previous()
         elif has_rows:
-            self.tell("The table ends here: a adds a row, ↓ leaves it", wrong=True)
+            self.tell("End of the table: a adds a row, ↓ leaves the table", wrong=True)
         else:
             self.screen.focus_next()
 
     def on_key(self, event: events.Key) -> None:
-        """A digit begins a new value."""
+        """Start editing at a digit."""
         if event.character in _DIGITS and event.is_printable and self.cells.rows:
             event.stop()
             self._edit(event.character)
@@ -186,16 +186,16 @@ class Grid(cell_editor.EditableTable):
             self._edit()
 
     def _edit(self, begun: str | None = None) -> None:
-        """Edit the cell under the cursor, beginning with what it has or with what is `begun`."""
+        """Edit the cell under the cursor, starting with its text or with `begun`."""
         cells = self.cells
-        if not super().settle():  # the cell: the row may still lack values
+        if not super().settle():  # only the cell: the row may be incomplete
             return
         self._place = row, column = cells.cursor, cells.column
         text, check = begun or cells.rows[row][column], self._columns[column].check
         self.open_editor(text, check, least_width=12, begun=begun is not None)
 
     def action_add_row(self, below: int) -> None:
-        """Add a row beside this one."""
+        """Add a row above or below."""
         cells, rows = self.cells, self.cells.rows
         if not cells.headings:
             return
@@ -207,18 +207,18 @@ class Grid(cell_editor.EditableTable):
         self._edit()
 
     def action_drop_row(self) -> None:
-        """Take the row out."""
+        """Delete the row."""
         rows, here = self.cells.rows, self.cells.cursor
         if len(rows) > self.LEAST_ROWS:
             self.change((*rows[:here], *rows[here + 1 :]), "a row less")
 
-    # what is typed
+    # typed text
 
     def go_on(self, then: cell_editor.Then, text: str | None) -> None:
-        """Go up or down, or to the next value; add a row below one that was added and is filled."""
+        """Go up or down, or to the next value; add a row below a new row that is complete."""
         cells = self.cells
         if text is not None:
-            self._before = None  # it is filled
+            self._before = None  # the row is not empty any more
         if then in ("up", "down"):
             cells.cursor += 1 if then == "down" else -1
         elif then == "right":
@@ -236,25 +236,25 @@ class Grid(cell_editor.EditableTable):
             self._before = before
 
     def abandoned(self) -> None:
-        """Take out a row that was added and not filled."""
+        """Delete an added row that was not filled."""
         if self._before is not None:
             self.change(self._before, "a row less")
             self.cells.cursor -= 1
         self._new, self._before = -1, None
 
-    # what is pasted
+    # pasted text
 
     def on_paste(self, event: events.Paste) -> None:
-        """Rows from a spreadsheet or a text take the place of all rows."""
+        """Replace all rows by pasted rows."""
         event.stop()
         self.take_text(event.text)
 
     def take_text(self, text: str) -> None:
-        """Take the rows of a text, of as many columns, in the place of all rows."""
+        """Replace all rows by the rows of a text, which must have as many columns."""
         try:
             copied = copied_table(text).rows
         except NoTableError as error:
-            self.tell(f"Nothing is pasted: {error}", wrong=True)
+            self.tell(f"Not pasted: {error}", wrong=True)
             return
         rows = []
         for number, row in enumerate(copied, 1):
@@ -264,14 +264,14 @@ class Grid(cell_editor.EditableTable):
             if len(row) != len(self._columns):
                 bad = [f"{len(row)} values for {len(self._columns)} columns"]
             if bad:
-                self.tell(f"Nothing is pasted: row {number}: {bad[0]}", wrong=True)
+                self.tell(f"Not pasted: row {number}: {bad[0]}", wrong=True)
                 return
             rows.append(tuple(reading.text for reading in readings))
         self.change(tuple(rows), f"{len(rows)} rows pasted")
 
 
 class TableField(Grid):
-    """A table of a form, which is entered together with the other fields."""
+    """Table in a form."""
 
     def __init__(self, asked: Asked, tell: Callable[..., object]) -> None:
         super().__init__(tell, lambda *_: None)
@@ -282,13 +282,13 @@ class TableField(Grid):
 
     @property
     def text(self) -> str:
-        """Return the rows as they are to be written; as they were, where nothing was typed."""
+        """Text of the rows, or the initial text if they are unchanged."""
         rows = self.cells.rows
         return self.begun if rows == self._shown else text_of_rows(rows, self._columns)
 
     @property
     def reading(self) -> Reading:
-        """Return what the rows come to: a cell that was left blank may be needed."""
+        """Interpretation of the rows; required cells must not be blank."""
         for number, row in enumerate(self.cells.rows, 1):
             for column, text in zip(self._columns, row, strict=True):
                 reading = column.check(text)
@@ -298,11 +298,11 @@ class TableField(Grid):
 
     @property
     def input(self) -> GridCells:
-        """Return where the keys go to."""
+        """Widget that receives the keys."""
         return self.cells
 
     def settle(self) -> bool:
-        """Take what is typed; a row that lacks something stays to be completed."""
+        """Accept typed text; return False if a row is incomplete."""
         if not super().settle():
             return False
         if complaint := self.reading.complaint:

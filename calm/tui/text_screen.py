@@ -1,4 +1,4 @@
-"""The file as text, its mistakes below it: where a broken file is mended."""
+"""Text editor of the file, with a list of its mistakes."""
 
 import re
 
@@ -18,39 +18,39 @@ _LINE_BREAK = re.compile(r"\r\n?|\n")
 
 
 class YamlArea(TextArea):
-    """Text whose tabs are blanks, as YAML wants them."""
+    """Text editor that inserts blanks for tabs, as YAML requires."""
 
     BINDINGS = key_table.bindings("area")
 
     def action_indent(self) -> None:
-        """Blanks up to the next column that is even."""
+        """Insert blanks up to the next even column."""
         _, column = self.cursor_location
         self.insert(" " * (_INDENT - column % _INDENT))
 
     def action_end(self, way: int) -> None:
-        """To the beginning or the end of the text."""
+        """Go to the beginning or the end of the text."""
         self.move_cursor(self.document.end if way > 0 else (0, 0))
 
     def undo(self) -> None:
-        """Take back what was typed last."""
+        """Undo the last typing."""
         super().undo()
         self._wrap()
 
     def redo(self) -> None:
-        """Type it again."""
+        """Redo the last undone typing."""
         super().redo()
         self._wrap()
 
     def _wrap(self) -> None:
-        # textual wraps lines that are gone where a step began with a line break
+        # Textual wraps deleted lines if a step begins with a line break
         self.wrapped_document.wrap(self.wrap_width, self.indent_width)
         self.refresh()
 
 
 class TextScreen(screen.DraftScreen):
-    """The text of the file, judged at each pause.
+    """Text of the file, judged after each pause.
 
-    Lines that are not touched keep their line breaks.
+    Unchanged lines keep their line breaks.
     """
 
     BINDINGS = key_table.bindings("text")
@@ -75,13 +75,13 @@ class TextScreen(screen.DraftScreen):
         self._edited = False
 
     def parts(self) -> ComposeResult:
-        """Text and mistakes."""
+        """Yield the text and the mistakes."""
         yield self.text_area
         with VerticalScroll(id="mistakes", can_focus=False):
             yield Static(id="mistakes-text")
 
     def on_mount(self) -> None:
-        """The cursor to the first mistake, or to the piece that it was on."""
+        """Put the cursor on the first mistake, or on the piece it was on."""
         self.query_one(screen.KeyBar).show_keys(key_table.hints("text"))
         self.show_view()
         self.text_area.focus()
@@ -92,25 +92,25 @@ class TextScreen(screen.DraftScreen):
             self.text_area.move_cursor((row, 0), center=True)
 
     def show_view(self) -> None:
-        """List the mistakes that a worker has found."""
+        """List the mistakes found by a worker."""
         view, draft = self.workspace.view, self.session.draft
         known = self.workspace.is_fresh
         self._problems = tuple(draft.problems) or (view.problems if known and view else ())
         lines = [said(each, self.workspace.path) for each in self._problems]
         if not lines and known and view is not None:
-            good = Content.from_markup("[$text-success]✓[/] The text can be read.")
+            good = Content.from_markup("[$text-success]✓[/] The text is valid.")
             lines = [Content(f"? {each}") for each in view.missing] or [good]
         lines = lines or [Content("…")]
         self.query_one("#mistakes-text", Static).update(Content("\n").join(lines))
         self.show_title()
 
     def titles(self) -> tuple[str, str]:
-        """Return what is shown, and how many mistakes it has."""
+        """Return the title, and the number of mistakes."""
         return f"The text of {self.workspace.called}", mistakes(self._problems, self.workspace.path)
 
     @property
     def _here(self) -> list[Problem]:
-        """The mistakes in this text, not in a file that it names."""
+        """Mistakes in this text, not in other files."""
         return [each for each in self._problems if not is_elsewhere(each, self.workspace.path)]
 
     @on(TextArea.Changed)
@@ -123,13 +123,13 @@ class TextScreen(screen.DraftScreen):
             self.workspace.edited()
 
     def settle(self) -> bool:
-        """Take the text as it stands."""
+        """Accept the current text."""
         self._take()
         return True
 
     @property
     def is_typing(self) -> bool:
-        """Return whether the text that is shown is not in the draft yet."""
+        """Whether the displayed text is not in the draft yet."""
         return self._typed != self.session.draft.text
 
     @property
@@ -137,7 +137,7 @@ class TextScreen(screen.DraftScreen):
         return retyped(self._begun, self.text_area.document.lines)
 
     def show_draft(self) -> None:
-        """Show the draft anew, the cursor on the line where it was."""
+        """Load the draft again, keeping the cursor on its line."""
         area, text = self.text_area, self.session.draft.text
         self._begun, self._edited, self._next = text, False, 0
         row, column = area.cursor_location
@@ -147,13 +147,13 @@ class TextScreen(screen.DraftScreen):
         self.show_view()
 
     def find(self, words: str = "") -> None:
-        """Select where words are next, from the cursor on and then from the top; case is ignored.
+        """Select the next match after the cursor, then from the top; case is ignored.
 
-        Without any, those that were sought last.
+        Without words, repeat the last search.
         """
         self._sought = words or self._sought
         if not self._sought:
-            self.workspace.tell("Press Ctrl+F to type what to find")
+            self.workspace.tell("Press Ctrl+F to enter search words")
             return
         area, sought = self.text_area, self._sought.lower()
         lines, (row, column) = area.document.lines, area.selection.end
@@ -164,12 +164,12 @@ class TextScreen(screen.DraftScreen):
                 area.move_cursor((here, start), center=True)
                 area.move_cursor((here, start + len(sought)), select=True)
                 return
-        self.workspace.tell(f"{self._sought}: not in the text", wrong=True)
+        self.workspace.tell(f"{self._sought}: not found", wrong=True)
 
     def action_next_problem(self) -> None:
         """Put the cursor on the next mistake."""
         if self._problems and not self._here:
-            self.workspace.tell(f"There are no mistakes in {self.session.name} itself")
+            self.workspace.tell(f"{self.session.name} itself has no mistakes")
         placed = [each for each in self._here if each.line]
         if placed:
             problem = placed[self._next % len(placed)]
@@ -179,24 +179,24 @@ class TextScreen(screen.DraftScreen):
             self.text_area.move_cursor((min(row, last), max(problem.column - 1, 0)))
 
     def action_find(self) -> None:
-        """Ask for words, and go to them."""
+        """Ask for search words, and go to the first match."""
         asked = [forms.Asked("words", "Find", placeholder="a label, a key, a number")]
-        text, app = "F3 goes to the next place.", self.app
+        text, app = "F3 goes to the next match.", self.app
         dialogs.enter(app, "Find in the text", text, asked, lambda it: self.find(it["words"]))
 
     def action_find_next(self) -> None:
-        """To the next place of what was sought."""
+        """Go to the next match."""
         self.find()
 
     def action_back(self) -> None:
-        """To the line, if the text has one."""
+        """Return to the line if the text is valid."""
         if self.session.draft.problems:
-            self.tell("The line cannot be shown before the text can be read", wrong=True)
+            self.tell("Correct the text first: it is not valid", wrong=True)
         else:
             self.dismiss()
 
 
 def _row(text: str, line: int) -> int:
-    """Return where the editor, which knows more line breaks, has a line of the file."""
+    """Return the row of a line of the file in the editor, which knows more line breaks."""
     ends = [0, *(found.end() for found in _LINE_BREAK.finditer(text))]
     return len(text[: ends[min(line, len(ends)) - 1]].splitlines())

@@ -1,4 +1,4 @@
-"""The colours: a dark one and a light one, or those of a terminal that has but sixteen."""
+"""Colour themes: dark, light, or the sixteen colours of the terminal."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -17,7 +17,7 @@ from calm.checks.finding import State
 
 
 def _bars(ground: str, bar: str, lit: str) -> dict[str, str]:
-    """Scroll bars that do not shout."""
+    """Return the colours of unobtrusive scroll bars."""
     grounds = ("background", "background-hover", "background-active", "corner-color")
     bars = {"scrollbar": bar, "scrollbar-hover": lit, "scrollbar-active": lit}
     return bars | {f"scrollbar-{each}": ground for each in grounds}
@@ -59,7 +59,7 @@ _LIGHT_GROUNDS = frozenset({"7", *map(str, range(9, 16))})
 
 
 def _palette(ground: str, text: str, colours: str) -> TerminalTheme:
-    """A ground, what is written on it, and eight colours, each as red, green and blue."""
+    """Build a palette from a background, a text colour and eight colours (hex RGB)."""
     own, ink, *eight = (tuple(bytes.fromhex(each)) for each in (ground, text, *colours.split()))
     return TerminalTheme(own, ink, eight)  # type: ignore[arg-type]
 
@@ -70,15 +70,15 @@ PICTURE_DARK = _palette(
 PICTURE_LIGHT = _palette(
     "f7f9fa", "16222b", "16222b b3261e 1e7d34 8a6100 1f56a8 6a3fa0 0c7a70 e6ecf0"
 )
-"""What the eight colours of the pictures and of the verdict are in these themes."""
+"""The eight colours of pictures and verdict in these themes."""
 
 
 def choose_theme(environ: Mapping[str, str]) -> str:
-    """The name of the theme for a terminal.
+    """Return the name of the theme for a terminal.
 
-    One that reports 256 colours or more gets those of the application; another one keeps its own
-    sixteen, which its owner has chosen to be legible. The ground is light where `COLORFGBG`, which
-    many terminals set, names a light colour as the last of its two or three.
+    A terminal with 256 colours or more gets the colours of the application; any other keeps its own
+    sixteen colours, which its owner has chosen to be legible. The background is light if the last
+    field of `COLORFGBG`, which many terminals set, is a light colour.
     """
     announced = (environ.get("COLORTERM"), environ.get("TEXTUAL_COLOR_SYSTEM"))
     many = "256" in environ.get("TERM", "") or not _MANY.isdisjoint(announced)
@@ -88,22 +88,23 @@ def choose_theme(environ: Mapping[str, str]) -> str:
 
 
 _LEAST_CONTRAST = 4.5
-"""Of text (WCAG 2.2, success criterion 1.4.3)."""
+"""Minimum contrast of text (WCAG 2.2, success criterion 1.4.3)."""
 _OWN = Ink.default()
 _ON_DARK = {1: 9, 2: 2, 3: 11, 4: 6, 6: 6, 7: 7, 9: 9, 10: 10, 11: 11, 12: 6, 14: 14, 15: 15}
 _ON_LIGHT = {0: 0, 1: 1, 4: 4}
-"""What of the sixteen colours is shown on a ground; for all others the terminal's own of text.
+"""Displayed colour for each of the sixteen colours; all others become the terminal's text colour.
 
-The bright ones are not known to a terminal of eight colours, which keeps its own, too."""
+A terminal of eight colours does not know the bright ones, and also keeps its own colours.
+"""
 
 
 class Legible(LineFilter):
-    """Keeps every sign apart from its ground, whatever colours a theme or a picture asks for.
+    """Line filter that keeps text legible for any colours of a theme or a picture.
 
     Parameters
     ----------
-    dark : whether the terminal's own ground is dark
-    sixteen : whether its own colours are used: its ground is not known more closely then
+    dark : whether the background of the terminal is dark
+    sixteen : whether its own colours are used, in which case the exact background is unknown
     """
 
     def __init__(self, *, dark: bool, sixteen: bool) -> None:
@@ -111,7 +112,7 @@ class Legible(LineFilter):
         self._dark, self._sixteen = dark, sixteen
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the same in colours that can be read."""
+        """Return the segments in legible colours."""
         ground = background.rich_color
 
         def style(given: Style) -> Style:
@@ -127,13 +128,13 @@ class Legible(LineFilter):
 
 @lru_cache(4)
 def legible(dark: bool, sixteen: bool) -> Legible:
-    """The one for a ground: strips keep what it made of them."""
+    """Return the filter for a background, cached because strips cache its output."""
     return Legible(dark=dark, sixteen=sixteen)
 
 
 @lru_cache(1024)
 def _of_sixteen(style: Style, dark: bool) -> Style:
-    """A style of the terminal's own colours; on a coloured ground, and dimmed, none are sure."""
+    """Convert a style to the terminal's own colours, without dimming and backgrounds."""
     ink = style.color or _OWN
     if style.bgcolor is not None and not style.bgcolor.is_default:
         return style + Style(color=_OWN, bgcolor=_OWN, reverse=True, dim=False)
@@ -143,7 +144,7 @@ def _of_sixteen(style: Style, dark: bool) -> Style:
 
 @lru_cache(4096)
 def _apart(style: Style, ground: Ink) -> Style:
-    """Return a style whose colour is moved away from that of its ground, as far as is needed."""
+    """Return a style with enough contrast between colour and background."""
     on, ink = (style.bgcolor or ground).triplet, style.color and style.color.triplet
     if on is None or ink is None or _is_legible(ink, on):
         return style
@@ -155,20 +156,20 @@ def _apart(style: Style, ground: Ink) -> Style:
 
 
 def _is_legible(ink: ColorTriplet, on: ColorTriplet) -> bool:
-    """Return whether it is so in all colours, and in those of a terminal that has 256."""
+    """Whether a colour is legible, in true colour and in 256 colours."""
     pair = map(Ink.from_triplet, (ink, on))
     few = (each.downgrade(ColorSystem.EIGHT_BIT).get_truecolor() for each in pair)
     return min(contrast(ink, on), contrast(*few)) >= _LEAST_CONTRAST
 
 
 def contrast(one: ColorTriplet, other: ColorTriplet) -> float:
-    """The contrast of two colours, from 1 to 21 (WCAG 2.2, *contrast ratio*)."""
+    """Return the contrast of two colours, from 1 to 21 (WCAG 2.2, *contrast ratio*)."""
     less, more = sorted(map(_luminance, (one, other)))
     return (more + 0.05) / (less + 0.05)
 
 
 def _luminance(colour: ColorTriplet) -> float:
-    """The relative luminance (WCAG 2.2)."""
+    """Return the relative luminance (WCAG 2.2)."""
     red, green, blue = (
         part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4
         for part in colour.normalized
@@ -185,7 +186,7 @@ LOOKS = {
     State.NOT_JUDGED: "dim",
     State.PASS: "green",
 }
-"""The styles of rich that go with the signs of the states."""
+"""Rich styles of the signs of the states."""
 
 ROLES = {
     "float": "o",
@@ -195,7 +196,7 @@ ROLES = {
     "line": "│",
     "anchor": "█",
 }
-"""What stands for a component in front of its row."""
+"""Sign in front of a row, by the role of its component."""
 
 UNKNOWN_ROLE = "?"
 UNKNOWN_USE = "?"

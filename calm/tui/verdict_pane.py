@@ -1,4 +1,4 @@
-"""The verdict beside the picture; each of its lines leads to the rows that it is about."""
+"""The verdict next to the picture, with lines that lead to the rows concerned."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ _CHOSEN = Style(reverse=True)
 
 
 class VerdictPane(scrolled.ScrolledText, can_focus=True):
-    """Show what holds, what does not and why; the figures of the anchor and the top.
+    """Pane with the values of anchor and top, and with passes, failures and reasons.
 
     Parameters
     ----------
-    go_to : takes the rows that a chosen line is about, none to go back, and what it says
+    go_to : called with the rows of a chosen line, or () to go back, and with the text of the line
     """
 
     BINDINGS = key_table.bindings("verdict")
@@ -50,7 +50,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
         self._chosen = 0
 
     def say(self, view: View | None, note: str = "") -> None:
-        """Say what is to be said of a line, and a note below it."""
+        """Show the verdict of a view, and a note below."""
         parts = [*_parts(view, note)]
         self._said, self._texts = [each for each, _ in parts], [text for _, text in parts]
         self._chosen = min(self._chosen, len(self._said) - 1)
@@ -61,7 +61,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
             self.refresh(layout=True)
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
-        """As many lines as it has."""
+        """Return the number of lines."""
         size, rows = self._drawn
         return len(rows if size and size.width == width else self._wrapped(width))
 
@@ -73,12 +73,12 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
         return strip
 
     def on_focus(self) -> None:
-        """The line that is chosen is shown where the focus is."""
+        """Select a line that leads to a row."""
         if not self._is_a_way(self._chosen):
             self.action_move(1)
 
     def action_move(self, by: int) -> None:
-        """To the next line that leads to a row, or scroll where there is none."""
+        """Go to the next line that leads to a row, or scroll."""
         number = self._chosen + by
         while 0 <= number < len(self._said) and not self._is_a_way(number):
             number += by
@@ -90,18 +90,18 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
             self.scroll_relative(y=by, animate=False)
 
     def action_go(self) -> None:
-        """To the row that the line is about."""
+        """Go to the row of the selected line."""
         if self._is_a_way(self._chosen):
             said = self._said[self._chosen]
             text = f"{said.sign} {said.heading}: ".replace(" : ", " ") + said.text
             self._go_to(said.places, text)
 
     def action_leave(self) -> None:
-        """Back to the line as it was."""
+        """Go back to the line."""
         self._go_to(())
 
     def on_click(self, event: events.Click) -> None:
-        """A press on a line leads to its row."""
+        """Go to the row of the clicked line."""
         place = event.get_content_offset(self)
         at = len(self._numbers) if place is None else place.y + self.scroll_offset.y
         if at < len(self._numbers) and self._is_a_way(self._numbers[at]):
@@ -112,7 +112,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
         return 0 <= number < len(self._said) and bool(self._said[number].places)
 
     def _follow(self) -> None:
-        """Scroll to the line that is chosen."""
+        """Scroll to the selected line."""
         own = [at for at, number in enumerate(self._numbers) if number == self._chosen]
         top, height = self.scroll_offset.y, max(self.scrollable_content_region.height, 1)
         if own and not top <= own[0] <= own[-1] < top + height:
@@ -120,7 +120,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
 
 
 def _parts(view: View | None, note: str) -> Iterator[tuple[Saying, RenderableType]]:
-    """All that is said, and how it looks."""
+    """Yield the lines of the verdict with their rendering."""
     head = headline(view)
     style = "dim" if head.state is None else theme.LOOKS[head.state]
     yield head, Text(f"{head.sign} {head.text}", style=f"{style} bold")
@@ -139,6 +139,6 @@ def _parts(view: View | None, note: str) -> Iterator[tuple[Saying, RenderableTyp
 
 
 def state_word(view: View | None, *, old: bool = False) -> str:
-    """The headline in one line with its sign; dots for that where it is of an `old` draft."""
+    """Return the headline with its sign, or an ellipsis as sign if it is `old`."""
     sign = theme.ELLIPSIS if old else headline(view).sign.strip()
     return f"{sign} {headline(view).text}".strip()

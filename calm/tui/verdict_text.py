@@ -1,4 +1,4 @@
-"""Words on the line as it stands: figures and findings, or what is missing."""
+"""Text of the verdict: values and findings, or missing parts."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _MOST_PROBLEMS = 6
 
 @dataclass(frozen=True)
 class Saying:
-    """A line of the verdict: a sign in front, a heading, the text, and the state it reports.
+    """A line of the verdict with its sign, heading, text and state.
 
-    `pending` where the state may yet become another one; `places` are the rows it is about.
+    `pending` marks a state that may still change; `places` are the rows concerned.
     """
 
     text: str
@@ -37,14 +37,14 @@ class Saying:
 
     @property
     def sign(self) -> str:
-        """Return what stands in front."""
+        """Sign in front of the line."""
         if self.pending:
             return ELLIPSIS
         return " " if self.state is None else self.state.sign
 
 
 def headline(view: View | None) -> Saying:
-    """The whole verdict in some words."""
+    """Return the verdict in a few words."""
     if view is None:
         return Saying(ELLIPSIS, faint=True)
     if view.problems:
@@ -52,9 +52,9 @@ def headline(view: View | None) -> Saying:
     if view.missing:
         return Saying(f"incomplete: {view.missing[0]}", state=State.UNKNOWN)
     if view.failure is not None:
-        return Saying(f"does not stand: {view.failure.status}", state=State.FAIL)
+        return Saying(f"no equilibrium: {view.failure.status}", state=State.FAIL)
     if view.elsewhere:
-        return Saying("environments that cannot be read", state=State.FAIL)
+        return Saying("invalid environments", state=State.FAIL)
     said = _judged((*view.findings, *view.tighter), view)
     if view.complete:
         return said
@@ -63,7 +63,7 @@ def headline(view: View | None) -> Saying:
 
 
 def _judged(findings: Sequence[Finding], view: View) -> Saying:
-    """The verdict in the words of `calm check`."""
+    """Return the verdict in the wording of `calm check`."""
     from calm.files.pieces import parts_of
     from calm.report.open_items import verdict_of
 
@@ -75,7 +75,7 @@ def _judged(findings: Sequence[Finding], view: View) -> Saying:
 
 
 def sayings(view: View | None) -> Iterator[Saying]:
-    """All of it, the gravest first."""
+    """Yield all lines of the verdict, the most severe first."""
     if view is None:
         return
     if view.problems:
@@ -104,7 +104,7 @@ def sayings(view: View | None) -> Iterator[Saying]:
 
 
 def _placed(finding: Finding, view: View) -> Finding:
-    """A finding whose situation names its environment too, where the line stands in another."""
+    """Add the environment to the situation of a finding, unless it is the current one."""
     if finding.environment == view.here:
         return finding
     there = _environment(finding.environment)
@@ -113,11 +113,11 @@ def _placed(finding: Finding, view: View) -> Finding:
 
 
 def _environment(name: str) -> str:
-    return "own environment" if name == OWN else name
+    return "default environment" if name == OWN else name
 
 
 def _stand(stand: MooringInEnvironment, view: View) -> Saying:
-    """Return how the line does in one environment, in one line."""
+    """Return the verdict of one environment in one line."""
     said = _judged((*stand.findings, *stand.tighter, *stand.lacking), view)
     result = stand.result
     figures = ""
@@ -131,7 +131,7 @@ def _stand(stand: MooringInEnvironment, view: View) -> Saying:
 def _figures(
     result: Result | None, findings: Sequence[Finding], *, pending: bool
 ) -> Iterator[Saying]:
-    """The ends of the line; whoever has a result has loaded what solves it, the start has not."""
+    """Yield values at the ends of the line; the solver is imported already if there is a result."""
     if result is None:
         return
     if result.several:
@@ -147,7 +147,7 @@ def _figures(
 
 
 def _mooring(result: LegResult, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
-    """Return what the line does as given; what is judged shows the worst of its findings."""
+    """Yield anchor and top values as given; judged values show their most severe finding."""
     from calm.checks.posture import knockdown, reserve
     from calm.checks.strength import anchor_weight
 
@@ -174,7 +174,7 @@ def _mooring(result: LegResult, findings: Sequence[Finding], pending: bool) -> I
 
 
 def _holds(result: LegResult, worst: Finding | None, pending: bool) -> Saying:
-    """Return what the anchor is to weigh, and weighs; of a line without one the first alone."""
+    """Return required and actual anchor weight; without an anchor, only the required weight."""
     if worst is None:
         return Saying(
             f"needs {say('required_weight', result.anchor_load.required_weight)} in water"
@@ -186,13 +186,13 @@ def _holds(result: LegResult, worst: Finding | None, pending: bool) -> Saying:
 
 
 def _worst(findings: Sequence[Finding], rule: Rule) -> Finding | None:
-    """The gravest finding of a rule; of equal ones that with the greatest use."""
+    """Return the most severe finding of a rule, and among equals the one with the highest use."""
     own = [each for each in findings if each.rule == rule.name]
     return min(own, key=lambda each: each.rank, default=None)
 
 
 def _at_worst(worst: Finding, figure: str) -> str:
-    """The figure of the worst situation, where that is not the mooring as given."""
+    """Return the value of the governing situation, unless that is the mooring as given."""
     return "" if worst.situation == AS_GIVEN else f"; {figure} at worst{_situation(worst)}"
 
 
@@ -201,13 +201,13 @@ def _situation(finding: Finding) -> str:
 
 
 def _figure(text: str, heading: str, worst: Finding | None) -> Saying:
-    """A figure in words, which shows the state of the worst finding of it where that is grave."""
+    """Return a value with the state of its finding if that is a failure or warning."""
     state = worst.state if worst is not None and _graver(worst) else None
     return Saying(text, heading, state, places=_places([worst]))
 
 
 def _net(result: Result) -> Iterator[Saying]:
-    """Return what the anchors and held ends of a net bear, and where its nodes are."""
+    """Yield the loads on anchors and held ends of a net, and the depths of its nodes."""
     for end in (*result.anchors, *result.held):
         needs = end.required_weight
         said = "" if needs is None else f", needs {say('required_weight', needs)} in water"
@@ -220,10 +220,9 @@ def _net(result: Result) -> Iterator[Saying]:
 def _found(
     findings: Sequence[Finding], tighter: Sequence[Finding], *, pending: bool
 ) -> Iterator[Saying]:
-    """Failures and warnings with reason and remedy; what passes, with its greatest use, and what is
-    unknown in short.
+    """Yield failures and warnings with reason and remedy, and summaries of unknowns and passes.
 
-    A rule passes where it is met for every component: of a figure that is missing it is not known.
+    A rule passes if every component passes; with a missing value its state is unknown.
     """
     from calm.checks.finding import governing
     from calm.report.check_tables import grouped, named, named_components
@@ -238,11 +237,10 @@ def _found(
         if (figure := one.missing) is not None:
             needed = ", ".join(figure.needed_by)
             text = f"{figure.quantity} of {named(figure.pieces)}, needed by {needed}"
-            yield Saying(
-                text, f"Missing of {figure.component_id}", State.UNKNOWN, places=_places([one])
-            )
+            heading = f"Missing value of {figure.component_id}"
+            yield Saying(text, heading, State.UNKNOWN, places=_places([one]))
     for own in grouped((each for each in unknown if each.missing is None), _title):
-        text = f"not known of {named_components(own)}"
+        text = f"unknown for {named_components(own)}"
         yield Saying(text, _title(own[0]), State.UNKNOWN, places=_places(own))
     met = (State.PASS, State.NOT_JUDGED)
     other = {_title(each) for each in findings if each.state not in met}
@@ -263,7 +261,7 @@ def _found(
 
 
 def _used(finding: Finding) -> str:
-    """The title of a rule, and how much its finding uses of the limit."""
+    """Return the title of a rule with the use of its finding in percent."""
     from calm.report.open_items import percent_text
 
     used = finding.utilisation
@@ -271,7 +269,7 @@ def _used(finding: Finding) -> str:
 
 
 def why(view: View, row: Place) -> list[Saying]:
-    """All that was found of a row of the file, the gravest first, with what would mend it."""
+    """Return all findings of a row with their remedies, the most severe first."""
     found = [_placed(each, view) for each in (*view.findings, *view.tighter)]
     own = [each for each in found if row in _places([each])]
     return [_told(each) for each in sorted(own, key=lambda each: each.rank)]
@@ -291,7 +289,7 @@ def _told(finding: Finding) -> Saying:
 
 
 def _places(findings: Iterable[Finding | None]) -> tuple[Place, ...]:
-    """The rows that findings are of, each once."""
+    """Return the rows concerned by findings, each once."""
     found = (place.row for each in findings if each is not None for place in each.places)
     return tuple(dict.fromkeys(found))
 

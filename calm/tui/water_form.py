@@ -1,4 +1,4 @@
-"""Form of the water: where an environment is written in a file, how it is read and written."""
+"""Form of the water: reading and writing the keys of an environment in a file."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ from calm.units import QuantityError, QuantityRange
 CURRENT_FORMS = ("still", "uniform", "table", "file")
 DENSITY_FORMS = ("constant", "table", "temperature and salinity")
 TITLE = 24
-"""Cells of the names of the fields."""
+"""Width of the names of the fields [cells]."""
 PROFILE_FORMS = ("constant", "table")
-"""Of the temperature and of the salinity."""
+"""Forms of temperature and salinity."""
 
 _CURRENT = ("0.5", "90")
 _CONSTANTS = {
@@ -44,24 +44,24 @@ _CONSTANTS = {
     ("density", "temperature"): (profile_tables.TEMPERATURE, "degC", "10"),
     ("density", "salinity"): (profile_tables.SALINITY, "", "35"),
 }
-"""What can be a constant or a table: kind, unit, and the figure to begin with."""
+"""Quantities that can be a constant or a table: kind, unit, and initial value."""
 
 Place = tuple[str, ...]
-"""Keys that lead to something within an environment: ``("density", "salinity")``."""
+"""Path of a key within an environment: ``("density", "salinity")``."""
 
 
 class WaterForm:
-    """The water of one environment of a file.
+    """Access to the water of one environment of a file.
 
     Parameters
     ----------
     draft : the file
-    variant : a named environment, laid over that of the file; None for the file's own
+    variant : a named environment, merged with the default environment; None for the default
 
     Raises
     ------
     EditError
-        By all that gives another file, where the text does not allow it.
+        By all changes that the text of the file does not allow.
     """
 
     def __init__(self, draft: Draft, variant: str | None) -> None:
@@ -69,34 +69,34 @@ class WaterForm:
         self.place: Location = ("environments", variant) if variant else ("environment",)
 
     def at(self, *keys: str) -> Location:
-        """The location of a key."""
+        """Return the location of a key."""
         return (*self.place, *keys)
 
     def own(self, *keys: str) -> Any:
-        """Return what this environment says; None where nothing."""
+        """Return the value of a key in this environment alone, or None."""
         return self.draft.value(self.at(*keys))
 
     def value(self, *keys: str) -> Any:
-        """Return what holds: its own word, or that of the file's own environment below it."""
+        """Return the value of a key here or, if unset, in the default environment."""
         if self.own(keys[0]) is not None:
             return self.own(*keys)
         return self.draft.value(("environment", *keys))
 
     def text(self, *keys: str) -> str:
-        """Return the same as it is typed."""
+        """Return the typed form of a value."""
         return text_of(self.value(*keys))
 
     def is_own(self, key: str) -> bool:
-        """Return whether a key is this environment's own; those of the file always are."""
+        """Return whether this environment sets a key; always true for the default environment."""
         return self.variant is None or self.own(key) is not None
 
     @property
     def depth(self) -> float | None:
-        """The depth [m], above 0; None where none is given or it cannot be read."""
+        """Water depth [m], positive; None if it is unset or invalid."""
         return _read(POSITIVE_LENGTH, self.text("depth"))
 
     def form(self, *keys: str) -> str:
-        """Return how the current, the density, or the temperature or salinity of that is given."""
+        """Return the form of the current, the density, the temperature or the salinity."""
         value = self.value(*keys)
         if isinstance(value, dict) and {"columns", "rows"} & set(value):
             return "table"
@@ -109,10 +109,10 @@ class WaterForm:
         return "file" if CurrentFile.model_fields.keys() & set(value) else "uniform"
 
     def table(self, *keys: str) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-        """Columns and rows of a table, texts as written, each row of as many as there are columns.
+        """Return columns and rows of a table as texts, with missing cells empty.
 
-        What a row lacks is empty. There are neither columns nor rows where there is no table, or
-        one that only the text can show: rows longer than the columns, or of anything but texts.
+        Both are empty if there is no table, or if only the text view can show it: rows that are
+        longer than the columns, or that contain anything but texts.
         """
         table = self.value(*keys)
         columns = table.get("columns") if isinstance(table, dict) else None
@@ -123,10 +123,10 @@ class WaterForm:
             return (), []
         return tuple(columns), [*rows]
 
-    # changes: each gives the file with it
+    # changes, which return the new draft
 
     def put(self, keys: Sequence[str], text: str, *, is_needed: bool = False) -> Draft:
-        """A value; an empty one takes the key out, and what needs it: no speed, no wind."""
+        """Set a value; an empty text deletes the key, and its parent if the key is required."""
         if is_needed and len(keys) > 1 and not text:
             return self.draft.put_at(self.at(*keys[:-1]), None)
         return self.put_form(keys, value_of(text))
@@ -134,7 +134,7 @@ class WaterForm:
     def put_rows(
         self, keys: Sequence[str], columns: Iterable[str], rows: Iterable[Sequence[str]]
     ) -> Draft:
-        """A table; rows that are as `table` shows them stay as they are written."""
+        """Set a table; unchanged rows keep their text."""
         names = [*columns]
         given = self.value(*keys)
         old = given.get("rows") if isinstance(given, dict) and self.table(*keys)[0] else None
@@ -143,13 +143,13 @@ class WaterForm:
         return self._with_own(keys).put_table(self.at(*keys), names, new)
 
     def put_form(self, keys: Sequence[str], value: Value | None) -> Draft:
-        """The whole of the current or the density; None takes it out."""
+        """Set the current or the density as a whole; None deletes it."""
         return self._with_own(keys).put_at(self.at(*keys), value)
 
     def begun(self, keys: Place, form: str) -> Value | None:
-        """Return what another form begins with: what is known, else something usual.
+        """Return the initial value of another form: known or typical values.
 
-        None where nothing has to be said.
+        None means that the key can be omitted.
         """
         if keys == ("current",):
             return self._begun_current(form)
@@ -164,7 +164,7 @@ class WaterForm:
         return {name[-1]: self.begun(name, "constant") for name in _CONSTANTS if len(name) > 1}
 
     def _begun_current(self, form: str) -> Value | None:
-        """Begin with a uniform current as it is, or with what a table has in its first row."""
+        """Start from the uniform current, or from the first row of the table."""
         place = {name: self.text("current", name) for name in ("speed", "toward")}
         columns, rows = self.table("current")
         for column, text in zip(columns, rows[0] if rows else (), strict=False):
@@ -181,7 +181,7 @@ class WaterForm:
             return {"columns": [*water_tables.CURRENT_COLUMNS], "rows": rows_begun}
         if form == "uniform":
             return {"speed": f"{speed} m/s", "toward": f"{toward} deg"}
-        # one that flows in the file's own environment would be there in this one, too
+        # otherwise the current of the default environment would apply here, too
         return {"speed": "0 m/s", "toward": "0 deg"} if self.variant else None
 
     @property
@@ -189,9 +189,9 @@ class WaterForm:
         return f"{self.depth or water_tables.USUAL_DEPTH:g}"
 
     def _with_own(self, keys: Sequence[str]) -> Draft:
-        """The file with what its own environment says under the first key said here, too.
+        """Return the draft with the first key copied from the default environment, if needed.
 
-        A key of a named environment stands in place of the whole of it.
+        A key of a named environment replaces the whole value of the default environment.
         """
         inherited = self.value(keys[0])
         if len(keys) == 1 or self.is_own(keys[0]) or not isinstance(inherited, dict):
@@ -200,27 +200,27 @@ class WaterForm:
 
 
 def _read(kind: QuantityRange, text: str) -> float | None:
-    """A quantity in SI units; None where it cannot be read."""
+    """Return a quantity in SI units, or None if it is invalid."""
     try:
         return kind.read(text) if text else None
     except QuantityError:
         return None
 
 
-_TAKE_IT = "Enter takes it"
+_TAKE_IT = "Enter accepts"
 
 
 class FormChoice(Cycle):
-    """A name and a form; the arrows show other ones, Enter takes what is shown.
+    """Choice of a form: the arrows show other forms, Enter accepts the form shown.
 
-    When it is left without, it shows the form there is again.
+    When the focus leaves without Enter, the current form is shown again.
     """
 
     BINDINGS = key_table.bindings("given")
 
     @dataclass
     class Taken(Message):
-        """Another form is wanted."""
+        """Another form was chosen."""
 
         choice: FormChoice
         form: str
@@ -230,7 +230,7 @@ class FormChoice(Cycle):
         self._given = forms[0]
 
     def show(self, word: str) -> None:
-        """Show the form there is."""
+        """Show the current form."""
         self._given = word
         super().show(word)
 
@@ -239,7 +239,7 @@ class FormChoice(Cycle):
         super().show(self.next_word(by))
 
     def action_take(self) -> None:
-        """Choose the form shown, and go on."""
+        """Choose the form shown, or move on."""
         if self.word != self._given:
             self.post_message(self.Taken(self, self.word))
         else:
@@ -247,7 +247,7 @@ class FormChoice(Cycle):
 
     @on(events.Click)
     def _press(self, event: events.Click) -> None:
-        """The mouse goes on, or takes the form by a press on the words that say so."""
+        """Show the next form by mouse, or accept by a press on the hint."""
         event.prevent_default()
         if self.word != self._given and event.x >= self.render().cell_len - len(_TAKE_IT):
             self.action_take()
@@ -255,12 +255,12 @@ class FormChoice(Cycle):
             self.action_turn(1)
 
     def on_blur(self) -> None:
-        """Do what was not taken is not there."""
+        """Show the current form again."""
         self.show(self._given)
 
     @property
     def hint(self) -> str:
-        """Return how the form that is shown is taken, where it is another one."""
+        """Hint how to accept the form shown, if it is not the current form."""
         return _TAKE_IT if self.word != self._given else super().hint
 
 
@@ -285,16 +285,16 @@ class ProfileGrid(Grid):
     def show_profile(
         self, columns: Sequence[str], rows: Sequence[Sequence[str]], seabed: float | None
     ) -> None:
-        """Show other rows; new ones are not proposed below the `seabed` [m]."""
+        """Show other rows; new rows are not proposed below the `seabed` [m]."""
         self._seabed = seabed
         self.show(
             [FormColumn("", heading, water_tables.check_of(heading)) for heading in columns], rows
         )
 
     def new_row(self, at: int) -> tuple[str, ...]:
-        """Values half-way between those above and below, where both are numbers.
+        """Return the mean of the rows above and below, if both are numbers.
 
-        Below the last row they are its own, a step deeper but not below the seabed.
+        Below the last row, return its values, a step deeper but not below the seabed.
         """
         columns, rows = self.cells.headings, self.cells.rows
         if not rows:
@@ -314,7 +314,7 @@ class ProfileGrid(Grid):
         return tuple(f"{half:g}" for half in halves)
 
     def ends_at(self, at: int) -> bool:
-        """Return whether a row at a place would be of a depth below the seabed."""
+        """Return whether a row at index `at` would be below the seabed."""
         rows = self.cells.rows
         if self._seabed is None or not rows or at < len(rows):
             return False
@@ -324,27 +324,27 @@ class ProfileGrid(Grid):
             return False
 
     def take_text(self, text: str) -> None:
-        """Read the rows of a text by its headings, and have them shown before they are taken."""
+        """Read the rows of a text by its headings, and show a preview."""
         columns = self.cells.headings
         try:
             copied = copied_table(text)
             headings = water_tables.offered_headings(copied.headings, columns)
             water_tables.rows_in(columns, headings, copied.rows)
         except water_tables.UnknownColumns:
-            pass  # the person says what they are
+            pass  # the user names the columns
         except (NoTableError, water_tables.NoRows) as error:
-            self.tell(f"Nothing is pasted: {error}", wrong=True)
+            self.tell(f"Not pasted: {error}", wrong=True)
             return
         self._preview(self, copied, headings)
 
 
 _STEP = 10.0
-"""How much deeper [m] a row below the last is."""
+"""Depth step [m] of a row below the last."""
 _FIRST = ("depth", "density", "current", "wind")
 
 
 def fields_of_water(towed: bool, grid: Callable[..., ProfileGrid]) -> Iterator[Widget]:
-    """The form of an environment, tables made by `grid`; ids tell their places in it."""
+    """Yield the widgets of an environment form; their ids are the paths of their keys."""
     asked = form_of(TowEnvironmentKeys if towed else EnvironmentKeys, needed=False)
     asked = [each for each in asked if each.key != "fluid" or towed]
     groups = {each.key.partition(".")[0]: [] for each in asked}  # type: dict[str, list[Asked]]
@@ -363,7 +363,7 @@ def fields_of_water(towed: bool, grid: Callable[..., ProfileGrid]) -> Iterator[W
 
 
 def _density(asked: Asked, grid: Callable[..., ProfileGrid]) -> Iterator[Widget]:
-    """The density, its temperature and its salinity: each a constant or a table."""
+    """Yield the widgets of density, temperature and salinity, each a constant or a table."""
     of_sea_water = {each.key: each for each in form_of(SeaWaterKeys, "density.")}
     for place, (kind, _, _) in _CONSTANTS.items():
         id, is_inner = "-".join(place), len(place) > 1
@@ -375,7 +375,7 @@ def _density(asked: Asked, grid: Callable[..., ProfileGrid]) -> Iterator[Widget]
 
 
 def _fields(asked: Iterable[Asked]) -> Iterator[Widget]:
-    """Fields, those of a model within the environment indented below its name."""
+    """Yield fields; fields of a nested model are indented below its name."""
     for each in asked:
         if each.above:
             yield Static(each.above, classes="above", markup=False)

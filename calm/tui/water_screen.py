@@ -1,4 +1,4 @@
-"""The water of an environment as a form, the profile of its current beside; environments."""
+"""Screen of the water: a form for each environment, with the profile of its current."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -43,14 +43,14 @@ from calm.tui.water_tables import (
 from calm.tui.workspace import Workspace, said
 
 _ELSEWHERE = (
-    "The line stands in {0}: the profile and the verdict are of that. Below is the file's own "
-    "environment; what {0} gives takes its place."
+    "The line is solved in {0}, which profile and verdict refer to. Below is the default "
+    "environment; values of {0} override it."
 )
-_INHERITED = "as in the file's own environment"
+_INHERITED = "as in the default environment"
 
 
 class WaterScreen(screen.DraftScreen):
-    """Depth, density, current and wind of each environment; the line stands in the one shown."""
+    """Depth, density, current and wind of each environment; the line is solved in the one shown."""
 
     BINDINGS = key_table.bindings("water")
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide")]  # noqa: RUF012
@@ -70,13 +70,13 @@ class WaterScreen(screen.DraftScreen):
 
     def __init__(self, workspace: Workspace) -> None:
         super().__init__(workspace)
-        # what was written in forms that others took the place of, to be had back
+        # values of replaced forms, to restore them
         self._left: dict[tuple[str | None, Place, str], Value | None] = {}
-        # to the first value of a form, which leaves the message that is shown
+        # the focus moves to the first value of a form and keeps the message
         self._goes_on = False
 
     def parts(self) -> ComposeResult:
-        """Return the form at the left, the profile of the current at the right."""
+        """Yield the form at the left and the profile of the current at the right."""
         with Horizontal():
             with VerticalScroll(id="water-form", can_focus=False):
                 yield Static(id="environment-names", markup=False)
@@ -87,38 +87,38 @@ class WaterScreen(screen.DraftScreen):
                 yield pictures.ProfilePicture()
 
     def on_mount(self) -> None:
-        """Show what the file says."""
+        """Show the environment."""
         self.show_draft()
         self.query_one("#depth", Field).input.focus()
 
     @property
     def water(self) -> WaterForm:
-        """The environment that is shown, as the file has it now."""
+        """The displayed environment in the current draft."""
         standing = self.session.standing
         here = standing.environment
         return WaterForm(self.session.draft, here if here in standing.environments else None)
 
     @property
     def environment_file(self) -> str | None:
-        """The environment file that the line stands in, given with the command; None where not."""
+        """The environment file given with the command, if it is the current environment."""
         standing, draft = self.session.standing, self.session.draft
         here = standing.environment
         return None if here in standing.environments or draft.problems else here
 
     def titles(self) -> tuple[str, str]:
-        """Return what is shown, and the verdict."""
+        """Return the title and the verdict."""
         state = verdict_pane.state_word(self.workspace.view, old=not self.workspace.is_fresh)
         return f"The water of {self.workspace.called}", state
 
     def show_view(self) -> None:
-        """The profile of a line as judged, dimmed where it is of what is edited no more."""
+        """Show the profile of the last view, dimmed if it is of an earlier draft."""
         view, fresh = self.workspace.view, self.workspace.is_fresh
         self._show_notes(view.problems if view is not None and fresh else ())
         self.query_one(pictures.ProfilePicture).show(view, old=self.workspace.is_old)
         self.show_title()
 
     def _show_notes(self, problems: Sequence[Problem]) -> None:
-        """Do what keeps the line from standing in the water that the form shows."""
+        """Show mistakes, and a note if an environment file is in use."""
         file, path = self.environment_file, self.workspace.path
         notes = [Content.styled(_ELSEWHERE.format(file), "$text-warning")] if file else []
         notes += [said(each, path) for each in problems]
@@ -127,13 +127,13 @@ class WaterScreen(screen.DraftScreen):
         shown.update(Content("\n").join(notes))
 
     def show_draft(self) -> None:
-        """Show what the file says now, but where something is being typed."""
+        """Show the current draft, except in fields in which text is typed."""
         self.show_view()
         water = self.water
         file = self.environment_file
-        names = ["own" if name is None else name for name in self.session.standing.environments]
+        names = ["default" if name is None else name for name in self.session.standing.environments]
         names += [file] if file else []
-        here = file or water.variant or "own"
+        here = file or water.variant or "default"
         listing = "   ".join(f"[{name}]" if name == here else name for name in names)
         self.query_one("#environment-names", Static).update(
             f"Environment     {listing}", layout=False
@@ -157,7 +157,7 @@ class WaterScreen(screen.DraftScreen):
             grid.show_profile(*water.table(*place), water.depth)
 
     def _is_shown(self, place: Place, form: str = "") -> bool:
-        """Return whether a part of the form is of use as the water is given."""
+        """Return whether a part of the form applies to the current forms of the water."""
         water, key = self.water, place[0]
         if key == "density" and place[1:] and water.form(key) != DENSITY_FORMS[2]:
             return False
@@ -168,7 +168,7 @@ class WaterScreen(screen.DraftScreen):
         return not form or key not in ("density", "current") or water.form(*place) == form
 
     def replaced(self) -> None:
-        """Show another draft; what is typed, and what other forms held, was of the one before."""
+        """Show another draft; discard typed text and values of replaced forms."""
         self._left.clear()
         self.drop_typing()
         self.show_draft()
@@ -176,7 +176,7 @@ class WaterScreen(screen.DraftScreen):
     # changes
 
     def change(self, make: Callable[[WaterForm], Draft], label: str, message: str = "") -> bool:
-        """Change the file; a refusal is reported. Whether it was changed."""
+        """Change the file, or report why this failed; return whether it was changed."""
         is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
         self.show_draft()
         if is_made:
@@ -185,10 +185,10 @@ class WaterScreen(screen.DraftScreen):
         return is_made
 
     def put_table(self, columns: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> None:
-        """Make the current a table of these rows."""
+        """Set the current to a table of these rows."""
         self.change(lambda water: water.put_rows(("current",), columns, rows), label)
 
-    # what is typed
+    # typed text
 
     @property
     def is_typing(self) -> bool:
@@ -196,7 +196,7 @@ class WaterScreen(screen.DraftScreen):
         return any(part.is_typing for part in (*self.query(Field), *self.query(ProfileGrid)))
 
     def settle(self) -> bool:
-        """Take what is typed; the first bad value stays to be corrected, and is reported."""
+        """Accept typed text; the first invalid value stays in its field and is reported."""
         if not all(grid.settle() for grid in self.query(ProfileGrid)):
             return False
         for field in self.query(Field):
@@ -206,13 +206,14 @@ class WaterScreen(screen.DraftScreen):
             with field.prevent(Field.Committed):
                 if not field.settle():
                     field.input.focus()
-                    self.workspace.tell(f"Not taken yet, {field.key}: {reading.note}", wrong=True)
+                    text = f"Not accepted yet, {field.key}: {reading.note}"
+                    self.workspace.tell(text, wrong=True)
                     return False
             self._take(field, reading.text)
         return True
 
     def drop_typing(self) -> None:
-        """Take away what is typed and not in the draft."""
+        """Discard typed text that is not in the draft."""
         for field in self.query(Field):
             field.reset(field.begun)
         for grid in self.query(ProfileGrid):
@@ -236,7 +237,7 @@ class WaterScreen(screen.DraftScreen):
         self.change(lambda water: water.put_rows(place, cells.headings, cells.rows), label)
 
     def _preview(self, grid: ProfileGrid, copied: CopiedTable, headings: list[str]) -> None:
-        """Show what would be taken, under which columns; these can be corrected."""
+        """Show a preview of pasted rows, with columns that can be corrected."""
         columns = grid.cells.headings
 
         def taken(text: str) -> Rows:
@@ -253,16 +254,16 @@ class WaterScreen(screen.DraftScreen):
             grid.change(rows, f"{len(rows)} rows pasted: {chosen}")
             self.call_after_refresh(grid.cells.focus)  # a table may not be shown yet
 
-        text = "It takes the place of all rows."
+        text = "This replaces all rows."
         if copied.headings is None:
-            text += " It has no headings: are these its columns?"
+            text += " The pasted table has no headings: check the columns below."
         first = "   ".join(copied.rows[0])
-        text += f" Its first row reads  {first}"
+        text += f" Its first row is  {first}"
         asked = Asked("columns", "Columns", ", ".join(headings), check)
-        dialogs.enter(self.app, "A table is pasted", text, [asked], take)
+        dialogs.enter(self.app, "Paste a table", text, [asked], take)
 
     def on_paste(self, event: events.Paste) -> None:
-        """A table that is pasted into no table of the form is the current, however it was given."""
+        """Use a table pasted outside the tables of the form as the current, in any form."""
         if len(event.text.splitlines()) > 1 and self.settle():
             grid = self.query_one("#current-table", ProfileGrid)
             if self.water.form("current") != "table":
@@ -271,7 +272,7 @@ class WaterScreen(screen.DraftScreen):
 
     @on(FormChoice.Taken)
     def _take_form(self, event: FormChoice.Taken) -> None:
-        """Give the current or the density in another form: as it was in it, or begun anew."""
+        """Change the form of the current or the density, restoring earlier values if any."""
         place, form, message = _place(event.choice), event.form, ""
         if form == "file":
             self.action_load_current()
@@ -284,15 +285,15 @@ class WaterScreen(screen.DraftScreen):
         is_new = key not in self._left
         value = water.begun(place, form) if is_new else self._left[key]
         if is_new and value is not None:
-            message = "Filled with typical figures, to be replaced"
+            message = "Filled with typical values; replace them with your own"
             if water.depth is None:
-                message += f"; no depth is given, so tables go down to {USUAL_DEPTH:g} m"
+                message += f"; the depth is not set, so tables go down to {USUAL_DEPTH:g} m"
         self.change(lambda water: water.put_form(place, value), f"{place[-1]}: {form}", message)
         self._goes_on = True
         self.call_after_refresh(self._first_of(place, form).focus)
 
     def _first_of(self, place: Place, form: str) -> Widget:
-        """Return where the value of a form begins; below it, where it has none."""
+        """Return the first widget of a form's value, or the next widget below."""
         key = "-".join(place)
         if form == "table":
             return self.query_one(f"#{key}-table GridCells")
@@ -301,7 +302,7 @@ class WaterScreen(screen.DraftScreen):
         where = {"uniform": "current-speed", "still": "wind-speed"}.get(form, key)
         return self.query_one(f"#{where}", Field).input
 
-    # environments, currents, and the way back
+    # environments, currents, and closing the screen
 
     @on(DescendantFocus)
     def _show_keys(self) -> None:
@@ -316,12 +317,12 @@ class WaterScreen(screen.DraftScreen):
         self._goes_on = False
 
     def action_next_environment(self) -> None:
-        """Show the next environment, and stand the line in it."""
+        """Show the next environment, and solve the line in it."""
         if self.settle():
             self._stand_in(self.session.standing.next_environment)
 
     def action_new_environment(self) -> None:
-        """A named environment with the current of the one that is shown."""
+        """Add a named environment with the current of the one shown."""
 
         def take(texts: dict[str, str]) -> None:
             name, water = texts["name"], self.water
@@ -332,7 +333,7 @@ class WaterScreen(screen.DraftScreen):
             current = known or water.begun(("current",), "uniform")
             place = ("environments", name, "current")
             if self.change(lambda _: water.draft.put_at(place, current), f"environment {name}"):
-                told = "" if known else "Filled with a typical current, to be replaced"
+                told = "" if known else "Filled with a typical current; replace it with your own"
                 self._stand_in(name)
                 self.workspace.tell(told)
 
@@ -340,14 +341,14 @@ class WaterScreen(screen.DraftScreen):
             asked = [
                 Asked("name", "Name", check=checking.needed("a name"), placeholder="e.g. storm")
             ]
-            text = "It says only what differs from the file's own environment."
-            dialogs.enter(self.app, "Another environment", text, asked, take)
+            text = "It contains only values that differ from the default environment."
+            dialogs.enter(self.app, "New environment", text, asked, take)
 
     def action_drop_environment(self) -> None:
-        """Take the named environment out of the file."""
+        """Delete the named environment from the file."""
         name = self.water.variant
         if name is None:
-            self.workspace.tell("The file's own environment stays; F5 goes to a named one")
+            self.workspace.tell("The default environment cannot be removed; F5 goes to a named one")
             return
         self.drop_typing()
         if self.change(lambda water: water.draft.put_at(water.place, None), f"drop {name}"):
@@ -357,11 +358,11 @@ class WaterScreen(screen.DraftScreen):
         before, self.session.standing.environment = self.environment_file, name
         self.drop_typing()
         self.show_draft()
-        self.workspace.tell(f"The line no longer stands in {before}" if before else "")
+        self.workspace.tell(f"The line is no longer solved in {before}" if before else "")
         self.workspace.edited()
 
     def action_preset(self) -> None:
-        """A profile to begin with."""
+        """Choose a typical current profile."""
 
         def take(speed: Callable[[float], float]) -> None:
             deep = self.water.depth or USUAL_DEPTH
@@ -370,7 +371,7 @@ class WaterScreen(screen.DraftScreen):
 
         if self.settle():
             depth = self.water.depth
-            down = f"{USUAL_DEPTH:g} m, as no depth is given" if depth is None else f"{depth:g} m"
+            down = f"{USUAL_DEPTH:g} m, since no depth is set" if depth is None else f"{depth:g} m"
             answers = dialogs.numbered(
                 (name, partial(take, each)) for name, each in PRESETS.items()
             )
@@ -378,7 +379,7 @@ class WaterScreen(screen.DraftScreen):
             dialogs.choose(self.app, dialogs.Question("A current to start from", text, answers))
 
     def action_load_current(self) -> None:
-        """A current from CSV or NetCDF: referred to, or its profile copied."""
+        """Read a current from CSV or NetCDF: as a reference, or as a copy of its profile."""
 
         def take(texts: dict[str, str] | None) -> None:
             if texts is None:
@@ -398,7 +399,7 @@ class WaterScreen(screen.DraftScreen):
             self.app.push_screen(import_sheet(self._folder), take)
 
     def _read(self, water: WaterForm, path: str, time: str) -> None:
-        """Read a file for an environment in a thread; what comes of it is taken by the form."""
+        """Read a current file in a thread, and put its profile into the form."""
         tell = self.workspace.tell
 
         def put(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
@@ -406,13 +407,13 @@ class WaterScreen(screen.DraftScreen):
                 tell(f"{path} was read for another environment; read it again", wrong=True)
             else:
                 self.put_table(columns, rows, f"current of {path}")
-                tell(f"The current of {path} is in the table")
+                tell(f"The current of {path} was copied to the table")
 
         try:
             table = imported(self._folder / path, time, water.depth or USUAL_DEPTH)
         except CalmError as error:
             self.call_later(tell, str(error).partition("\n")[0], wrong=True)
-        except Exception as error:  # the libraries that read NetCDF raise whatever they like
+        except Exception as error:  # NetCDF libraries may raise any exception
             self.call_later(tell, f"{path} cannot be read: {unexpected(error)}", wrong=True)
         else:
             self.call_later(put, *table)
@@ -423,7 +424,7 @@ class WaterScreen(screen.DraftScreen):
         return Path.cwd() if path is None else path.absolute().parent
 
     def action_undo(self) -> None:
-        """Take the last change back, or what is typed where that is bad."""
+        """Undo the last change, or discard typed text that is invalid."""
         if self.settle():
             super().action_undo()
         else:
@@ -431,12 +432,12 @@ class WaterScreen(screen.DraftScreen):
             self.show_draft()
 
     def action_back(self) -> None:
-        """Back to the line; what is typed is taken where it is good, and dropped elsewhere."""
+        """Return to the line; valid typed text is accepted, invalid text discarded."""
         self.settle()
-        self.dismiss()  # not waited for: it ends the very loop that would wait
+        self.dismiss()  # not awaited, because this ends the loop that would wait
 
 
 def _place(part: DOMNode | None) -> Place:
-    """Return where in an environment the value of a part of the form is written."""
+    """Return the path of the key that a widget of the form edits."""
     name = part.id if part else None
     return tuple((name or "").removesuffix("-form").removesuffix("-table").split("-"))

@@ -1,7 +1,7 @@
-"""Tables to begin with: typical currents, those of files, and rows copied from elsewhere.
+"""Initial tables: typical currents, currents of files, and pasted rows.
 
-What is copied from a spreadsheet, a CSV file or a page is read as files are: by its headings, their
-units, and which way a direction points.
+Rows copied from a spreadsheet, a CSV file or a web page are read like files, by headings, units and
+sense of directions.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 CURRENT_COLUMNS = ("depth m", "speed m/s", "toward deg")
 
 USUAL_DEPTH = 100.0
-"""How far down [m] tables are begun where no depth is given."""
+"""Depth [m] of the last row of new tables if the water depth is not set."""
 
 SHARES = (0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
 _POWER = 1 / 7
@@ -43,19 +43,19 @@ PRESETS: Mapping[str, Callable[[float], float]] = {
     "boundary current, 1.2 m/s at the surface, decaying by e in a fifth of the depth":
         lambda share: 0.05 + 1.15 * exp(-share / 0.2),
 }  # fmt: skip
-"""Profiles to begin with: the speed [m/s] at a share of the depth, 0 at the surface, 1 at the bed.
+"""Typical profiles: speed [m/s] at a share of the depth, 0 at the surface, 1 at the bed.
 """
 
 
 _SPEEDS = ("depth m", "u m/s", "v m/s", "w m/s")
-_NOISE = 1e-12  # of computing a speed and a direction in doubles, and then some
+_NOISE = 1e-12  # rounding of speed and direction in doubles, with a margin
 
 
 def import_sheet(folder: Path) -> InputSheet:
-    """Ask for a file, a time, and how it is to stand in the mooring file."""
+    """Return the sheet for a current file: name, time, and reference or copy."""
     return InputSheet(
         "A current from a file",
-        f"CSV or CF NetCDF, from {folder} unless another is named. `refer` keeps the file's "
+        f"CSV or CF NetCDF, relative to {folder}. `refer` keeps the file's "
         "name in the mooring file; `copy` writes its profile as a table.",
         [
             forms.Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
@@ -66,25 +66,25 @@ def import_sheet(folder: Path) -> InputSheet:
 
 
 def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
-    """The profile of a file as columns and rows of a table.
+    """Read the profile of a file as columns and rows of a table.
 
     Parameters
     ----------
     path : CSV, NetCDF or zarr
-    time : which profile of a record, as ISO 8601; empty where there is one only
-    depth : of the water [m]
+    time : time of the profile in a record, as ISO 8601; empty for a single profile
+    depth : water depth [m]
 
     Returns
     -------
     columns : depth [m]; speed [m/s] and direction [degrees], or eastward and northward speed
-        [m/s], whichever needs fewer digits, as a rule that of the file; with an upward speed
-        [m/s] where the water rises or sinks
-    rows : a level each, from the top, with all digits of the file
+        [m/s], whichever needs fewer digits, usually the form of the file; with an upward speed
+        [m/s] if it is not zero
+    rows : one row per level, from the top, with all digits of the file
 
     Raises
     ------
     CalmError
-        The file, or the time, cannot be used.
+        The file or the time is invalid.
     """
     from calm.records.current_file import read_current_file
     from calm.records.current_terms import Terms, TimeChoiceError
@@ -103,7 +103,7 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
 
 
 def _written(value: float) -> str:
-    """All digits of a value that was read, as 32 bits where it came of such, and no noise."""
+    """Format a value with all its digits, as a 32-bit number if it was one, without noise."""
     short = float32(value)
     if isclose(short, value, rel_tol=_NOISE):
         return f"{float(str(short)) + 0.0:.12g}"
@@ -117,7 +117,7 @@ def _existing(folder: Path) -> Check:
             return Reading("", "a file is needed")
         try:
             is_there = (folder / tidy).exists()
-        except (OSError, ValueError):  # no file can have such a name
+        except (OSError, ValueError):  # not a valid file name
             is_there = False
         return Reading(tidy) if is_there else Reading(tidy, "no such file")
 
@@ -129,15 +129,15 @@ _OF_A_CURRENT = {"u", "v", "w", "speed", "toward"}
 
 
 class NoRows(ValueError):
-    """A text is not the rows of a table; says which row, and what is wrong with it."""
+    """A text is not a table; the message gives the row and the mistake."""
 
 
 class UnknownColumns(NoRows):
-    """The headings do not tell what the columns are; says what is wrong with them."""
+    """The headings do not identify the columns; the message gives the mistake."""
 
 
 def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> list[str]:
-    """Headings for what was copied: its own, with units where it gives none; else the table's."""
+    """Return headings for copied rows: their own, with missing units added, or the table's."""
     if headings is None:
         return list(columns)
     units = {name: unit for name, unit in map(heading, columns)}
@@ -150,16 +150,16 @@ def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> 
 
 
 def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
-    """Copied rows under their headings as rows of a table with other columns.
+    """Convert copied rows to the columns of a table.
 
-    Where both are the same the values stay as they were written.
+    If the columns are the same, the texts are unchanged.
 
     Raises
     ------
     UnknownColumns
         The headings are not those of such a table.
     NoRows
-        A row has a value that is none.
+        A row has an invalid value.
     """
     if [heading(one) for one in headings] == [heading(one) for one in columns]:
         return tuple(_as_written(i, row, columns) for i, row in enumerate(rows, 1))
@@ -171,7 +171,7 @@ def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequ
 
 
 def previewed(columns: Sequence[str], rows: Rows) -> str:
-    """Rows under their columns as they would be taken, of many the first and the last."""
+    """Format rows for a preview; long tables show the first rows and the last."""
     lines: list[Sequence[str]] = [columns, *rows]
     if len(rows) > _MOST_SHOWN:
         between = f"{theme.ELLIPSIS} {len(rows) - _MOST_SHOWN} more"
@@ -197,7 +197,7 @@ def _as_written(number: int, row: Sequence[str], columns: Sequence[str]) -> tupl
 def _by_name(
     columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]
 ) -> dict[str, Sequence[float]]:
-    """The copied values in SI by the names that the table's columns may have."""
+    """Return the copied values in SI units by the names of possible columns."""
     problems: list[tuple[bool, str]] = []
 
     def report(location: Sequence[str | int], message: str) -> Problem:
@@ -224,7 +224,7 @@ def _by_name(
     if isinstance(table, profile_tables.DepthTable):
         return {"depth": table.depth, next(iter(names - {"depth"})): table.value}
     if "w" not in names and any(table.w):
-        raise UnknownColumns("the current has an upward speed `w`, and the table no column for it")
+        raise UnknownColumns("the current has an upward speed `w`, but the table no column `w`")
     flows = [speed_and_direction(*uv) for uv in zip(table.u, table.v, strict=True)]
     return {
         "depth": table.depth,
@@ -237,7 +237,7 @@ def _by_name(
 
 
 def _column(column: str, values: dict[str, Sequence[float]]) -> list[str]:
-    """The values of a column in its unit; each with its own where the column has none."""
+    """Return the values of a column in its unit, or with units if the column has none."""
     name, unit = heading(column)
     dimension = _KINDS[name].dimension
     usual = DIMENSIONS[dimension].unit
@@ -263,7 +263,7 @@ _KINDS: dict[str, QuantityRange] = {
 
 
 def check_of(column: str) -> Check:
-    """Return what judges values of a column: numbers where it gives its unit, else quantities."""
+    """Return the check of a column: numbers if it has a unit, else quantities."""
     name, unit = heading(column)
     kind = _KINDS.get(name)
     if kind is None:
@@ -281,7 +281,7 @@ def check_of(column: str) -> Check:
 
 
 def half_way(column: str, one: float, other: float) -> float:
-    """The value between two of a column; between directions on the shorter way round."""
+    """Return the mean of two values; for directions, on the shorter arc."""
     name, unit = heading(column)
     half = (one + other) / 2
     if name != "toward":

@@ -1,4 +1,4 @@
-"""The file that is built as all screens have it: its mistakes, its view, and who judges it."""
+"""State shared by all screens: the edited file, its mistakes, its view, and the judging workers."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 
 def is_elsewhere(problem: Problem, path: Path) -> bool:
-    """Return whether a mistake is in another file than that of the path, which is edited."""
+    """Return whether a mistake is in a file other than the edited file."""
     return problem.path not in ("", str(path))
 
 
 def place_of(problem: Problem, path: Path) -> str:
-    """Return where a mistake is: ``line 4:2``, with the file where it is not that of the path."""
+    """Return the position of a mistake, ``line 4:2``, with the name of any other file."""
     place = f"line {problem.line}:{problem.column}" if problem.line else ""
     if not is_elsewhere(problem, path):
         return place
@@ -35,13 +35,13 @@ def place_of(problem: Problem, path: Path) -> str:
 
 
 def said(problem: Problem, path: Path) -> Content:
-    """A mistake with its sign and its place."""
+    """Return a mistake with its sign and its position."""
     parts = filter(None, (place_of(problem, path), problem.message))
     return Content.assemble(("!", "bold $text-error"), f" {'  '.join(parts)}")
 
 
 def mistakes(problems: Sequence[Problem], path: Path) -> str:
-    """Return how many there are, and in which file; empty of none."""
+    """Return the number of mistakes and their files, or ""."""
     count = len(problems)
     files = {each.path for each in problems if is_elsewhere(each, path)}
     if not count:
@@ -54,22 +54,21 @@ def mistakes(problems: Sequence[Problem], path: Path) -> str:
 
 
 class Workspace:
-    """Hold what all screens and their parts are handed.
+    """State shared by all screens.
 
     Parameters
     ----------
-    session : the file that is built
-    tell : says something in the last line of the screen, until the next key; `wrong` where
-        something cannot be done
-    edited : has the draft judged and kept, another one now
+    session : the editing session of the file
+    tell : shows a message in the last line of the screen until the next key; `wrong` marks an error
+    edited : has the changed draft judged and kept
 
     Attributes
     ----------
-    index : the catalogue with the file's own components; None until it is read
-    view : what was last made of the file; None until it is
-    good : the last one that stood
-    is_late : whether the view has been that of an earlier draft for some time
-    papers_elsewhere : how to get reports and sheets if the builder cannot run a command for them
+    index : the catalogue with the components of the file; None until it is loaded
+    view : last view of the file; None before the first
+    good : last view with an equilibrium
+    is_late : whether the view has been out of date for some time
+    papers_elsewhere : how to get reports and sheets if the builder cannot run commands
     """
 
     def __init__(
@@ -85,12 +84,12 @@ class Workspace:
         self._defined: Any = None
 
     def take_catalogue(self, catalogue: Catalogue) -> None:
-        """Search a catalogue, with what the file defines itself."""
+        """Use a catalogue, with the components of the file."""
         self._catalogue, self.index = catalogue, None
         self.refresh_index()
 
     def refresh_index(self) -> None:
-        """Make the index anew where the file's own components are others."""
+        """Rebuild the index if the components of the file have changed."""
         draft = self.session.draft
         defined = draft.value(("components",))
         if self._catalogue is not None and (self.index is None or defined != self._defined):
@@ -99,14 +98,14 @@ class Workspace:
 
     @property
     def is_fresh(self) -> bool:
-        """Return whether the view is of the text, the path and the environment of now."""
+        """Whether the view is of the current text, path and environment."""
         session, view = self.session, self.view
         return view is not None and view.is_of(
             session.draft.text, session.file.path, session.standing.environment
         )
 
     def judged(self, otherwise: str) -> View | None:
-        """Return the view of what is edited; None where there is none yet, which is told."""
+        """Return the current view, or None with the message `otherwise`."""
         if not self.is_fresh:
             self.tell(otherwise)
             return None
@@ -114,21 +113,21 @@ class Workspace:
 
     @property
     def is_old(self) -> bool:
-        """Return whether the figures are to be shown dimmed, those of an earlier draft."""
+        """Whether values should be dimmed because they are of an earlier draft."""
         return self.is_late and not self.is_fresh
 
     @property
     def path(self) -> Path:
-        """Return that of the file, as its problems have it."""
+        """Path of the file, as in its mistakes."""
         return Path() if self.view is None else self.view.path
 
     @property
     def called(self) -> str:
-        """The name of the file, and that it is not saved where it is not."""
+        """Name of the file, with a note on unsaved changes."""
         return self.session.name + (" (not saved)" if self.session.changed else "")
 
     def attempt(self, change: Callable[[], object]) -> tuple[bool, Place | None]:
-        """Make a change; whether it was made, and the row it leads to. A refusal is reported."""
+        """Make a change, or report why it failed; return whether it was made, and its row."""
         try:
             spot = change()
         except CalmError as error:
@@ -137,51 +136,51 @@ class Workspace:
         return True, spot if isinstance(spot, Place) else None
 
 
-_DIMMED_AFTER = 0.3  # seconds: what is solved sooner is not dimmed for it
+_DIMMED_AFTER = 0.3  # seconds; faster solutions cause no dimming
 _FULLY_AFTER = 0.5  # seconds without a change before launch, recovery and breaks are judged
 
 
 class Judging:
-    """Has workers of the application judge the draft of a workspace, and takes what they find.
+    """Judges the draft of a workspace in workers of the application.
 
     Parameters
     ----------
-    app : whose workers they are
-    workspace : takes what they find
-    show : shows the workspace as it is; `is_first` where its first view is there
+    app : application that runs the workers
+    workspace : receives the views
+    show : updates the screens; `is_first` for the first view
     """
 
     def __init__(self, app: App[int], workspace: Workspace, show: Callable[..., object]) -> None:
         self._app, self._workspace, self._show = app, workspace, show
         self._is_judging = False
-        self._is_stale = False  # a change is not asked about yet
-        self._is_wanted = False  # another text is to be judged when the worker comes back
-        self._checked: View | None = None  # what is being judged fully
+        self._is_stale = False  # a change is not judged yet
+        self._is_wanted = False  # judge the newest text when the worker returns
+        self._checked: View | None = None  # the view that is being judged fully
         self._fully: Timer | None = None
         self._dimming: Timer | None = None
 
     @property
     def is_idle(self) -> bool:
-        """Return whether the draft has been judged, and nothing is under way."""
+        """Whether the draft has been judged and no worker is running."""
         busy = self._is_judging or self._is_stale or self._checked is not None
         return not busy and self._workspace.view is not None
 
     def after_an_edit(self) -> None:
-        """Judge the new draft, after what was typed is shown."""
+        """Judge the new draft after the screen shows the typed text."""
         self._is_stale = True
         self._app.call_after_refresh(self.ask)
         if self._dimming is None:
             self._dimming = self._app.set_timer(_DIMMED_AFTER, self.dim)
 
     def dim(self) -> None:
-        """Show that the figures are still of an earlier draft."""
+        """Dim values that are still of an earlier draft."""
         self._dimming = None
         if not self._workspace.is_fresh:
             self._workspace.is_late = True
             self._show()
 
     def ask(self) -> None:
-        """Have the draft judged, now or when the worker comes back; only its last state counts."""
+        """Judge the draft now or when the worker returns; intermediate states are skipped."""
         self._is_stale = False
         self._stop_waiting()
         if self._is_judging:
@@ -196,7 +195,7 @@ class Judging:
             )
 
     def ask_fully(self) -> None:
-        """Have the launch, the recovery and the breaks judged, too."""
+        """Also judge launch, recovery and breaks."""
         self._stop_waiting()
         view = self._workspace.view
         is_free = not self._is_judging and self._checked is None
@@ -206,7 +205,7 @@ class Judging:
             self._work(lambda live: live.judge_fully(view, catalogs), fully=True)
 
     def _take(self, view: View, fully: bool) -> None:
-        """Take what a worker has found, `fully` with launch, recovery and breaks."""
+        """Accept a view from a worker, `fully` with launch, recovery and breaks."""
         workspace = self._workspace
         is_first, is_late = workspace.view is None, fully and self._checked is not workspace.view
         if fully:
@@ -225,7 +224,7 @@ class Judging:
             self._show(is_first=is_first)
 
     def _fail(self, reason: str) -> None:
-        """Report a failure of CALM itself; later drafts are judged all the same."""
+        """Report an internal error; later drafts are still judged."""
         self._workspace.tell(f"internal error ({reason}); please report it", wrong=True)
         self._is_judging, self._checked = False, None
         if self._is_wanted:
@@ -234,7 +233,7 @@ class Judging:
     def _work(self, judge: Callable[[Any], View], *, fully: bool) -> None:
         def work() -> None:
             try:
-                from calm.tui import live  # with what solves, after the first screen
+                from calm.tui import live  # imports the solver, after the first screen
 
                 view = judge(live)
             except Exception as error:

@@ -1,4 +1,4 @@
-"""What Python programs use of CALM, by autodoc."""
+"""Public Python interface of CALM, by autodoc."""
 
 HEAD = """# Python API
 

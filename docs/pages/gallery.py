@@ -1,4 +1,4 @@
-"""The gallery: a page for each file of `lines/`, made from it."""
+"""The gallery: one generated page per file of `lines/`."""
 
 import contextlib
 import io
@@ -32,12 +32,12 @@ LEADING = ("tall-array-mooring", "compact-adcp", "s-tether", "profiler-mooring")
 """The designs that most groups build today come first."""
 
 CASES = ("bourget-marichal-sphere", "braconnot-buoy", "cdms-1", "s1000")
-"""What papers and other programs have solved; no designs to copy."""
+"""Cases published in articles or solved by other programs; not designs to copy."""
 
 
 @dataclass(frozen=True)
 class Try:
-    """One thing to try: why, the commands, and where what they print gets interesting."""
+    """An example to try: its purpose, the commands, and the interesting part of their output."""
 
     why: str
     commands: tuple[str, ...]
@@ -49,7 +49,7 @@ class Try:
 _SPEEDS = "calm run {file} --speeds"
 TRIES = {
     "a-frame-sheared-tow": Try(
-        "What counts is the speed past the line. Tow it faster:",
+        "The drag depends on the speed of the water relative to the line. Tow it faster:",
         (f'{_SPEEDS} "1 knot:4 knot:1 knot"',),
         picture=pictures.out_and_back,
         seen="Out with the current and back against it at the same speed over the ground: the net "
@@ -225,7 +225,7 @@ def _page(file: Path, name: str, made: dict[str, str | bytes]) -> str:
     if tried.picture is not None:
         picture = f"{file.stem}-seen.svg"
         made[picture] = figure_svg(tried.picture()).encode()
-        parts.append(f"![What is to be seen]({picture})\n\n{tried.seen}")
+        parts.append(f"![Picture]({picture})\n\n{tried.seen}")
     text = file.read_text(encoding="utf-8").rstrip()
     parts.append(f"## The file\n\n`lines/{file.name}`:\n\n```yaml\n{text}\n```")
     parts.append(f"## Its schematic\n\n![The schematic of {name}]({file.stem}-schematic.svg)")
@@ -233,7 +233,7 @@ def _page(file: Path, name: str, made: dict[str, str | bytes]) -> str:
 
 
 def _comment(file: Path) -> str:
-    """The comment at the head of a file, which says what it shows; what is set in, as a listing."""
+    """Comment at the head of a file; indented lines become a listing."""
     lines = []
     for line in file.read_text(encoding="utf-8").splitlines():
         if not line.startswith("#"):
@@ -244,7 +244,7 @@ def _comment(file: Path) -> str:
 
 
 def _printed(command: str) -> str:
-    """What a command prints on a page of 100 columns, without the blanks at the ends of lines.
+    """Output of a command on a page of 100 columns, without trailing blanks.
 
     Raises
     ------
@@ -262,6 +262,6 @@ def _printed(command: str) -> str:
 
 
 def _text(stream: io.TextIOWrapper) -> str:
-    """What was written to a stream."""
+    """Text written to a stream."""
     stream.seek(0)
     return stream.read()

@@ -145,7 +145,7 @@ def _takes(form: Schema) -> Iterator[str]:
 
 
 def _yaml(value: object) -> str:
-    """A value as YAML in one line, quoted only where it must be."""
+    """Format a value as YAML on one line, quoted only if necessary."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{key}: {_yaml(part)}" for key, part in value.items()) + "}"
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""Markdown of the made pages: tables, and text that stays as it is written."""
+"""Markdown of the generated pages: tables and literal text."""
 
 from collections.abc import Iterable, Sequence
 
@@ -11,7 +11,7 @@ def plain(text: str) -> str:
 
 
 def code(text: str) -> str:
-    """Text as typed, for a cell; empty where there is none."""
+    """Format literal text for a table cell; empty without text."""
     return f"`{text.replace('|', '∣')}`" if text else ""
 
 

@@ -64,7 +64,7 @@ def hero() -> Figure:
 
 
 def _current(axes: Axes3D, level: Floats, u: Floats, v: Floats) -> None:
-    """Arrows of the current at some depths, on a mast beside the line."""
+    """Arrows of the current at several depths, on a mast next to the line."""
     depth = np.linspace(0.0, 860.0, 15)
     east, north = (np.interp(depth, level, speed) for speed in (u, v))
     mast = np.full_like(depth, 22.0), np.full_like(depth, 10.0)
@@ -104,7 +104,7 @@ def thumbnail(result: calm.Result) -> str:
 
 
 def veering_plan() -> Figure:
-    """The line from above, beside the current from above: each turns as the other does."""
+    """The line and the current, both seen from above."""
     result = _moored("veering-current").solve()
     shape, water = result.shape, result.design.water
     figure = Figure(figsize=(10, 5), layout="constrained")
@@ -149,7 +149,7 @@ def _coloured(axes: Axes, x: Floats, y: Floats, depth: Floats, bed: float):
 
 
 def year() -> Figure:
-    """Every hour of a year of a mooring: the depth of its top, and how often it is how deep."""
+    """Depth of the top of a mooring in every hour of a year, and its distribution."""
     mooring = _moored(_YEAR_OF)
     time, depth, u, v = made_year(mooring.water.depth)
     solved = calm.solve_profiles(mooring, u, v, depth)
@@ -182,7 +182,7 @@ def year() -> Figure:
 
 
 def made_year(bed: float) -> tuple[Floats, Floats, Floats, Floats]:
-    """A year of hours of current, made: tides, a mean flow, and eddies of some weeks that pass.
+    """A synthetic year of hourly currents: tides, a mean flow, and eddies that last weeks.
 
     Parameters
     ----------

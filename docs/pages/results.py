@@ -34,7 +34,7 @@ _MEANINGS = {
     "iterations": ("", "number of marches along the line until it closed"),
     "segments": ("", "number of segments of the line"),
     "miss": ("m", "distance of the end of the line from its anchor"),
-    "closure": ("", "remaining sum of the forces, as a share of the greatest"),
+    "closure": ("", "remaining sum of the forces, as a share of the maximum"),
     "strumming": ("", "`frequency`, `cn_min` and `cn_max`, where a law of strumming is chosen"),
     "strumming_band": ("", "`null` where a law of strumming is chosen"),
     "strumming_band.factor": ("", "factor on the Cn of every cable"),
@@ -47,7 +47,7 @@ _MEANINGS = {
     "warnings": ("", "[sentences](messages.md#warnings)"),
     "toward": ("deg", "where the ship goes to, clockwise from north"),
     "cn_min": ("", "least Cn of the cables as they strum"),
-    "cn_max": ("", "greatest Cn of the cables as they strum"),
+    "cn_max": ("", "maximum Cn of the strumming cables"),
 }
 
 
@@ -78,7 +78,7 @@ def page() -> str:
         table(("column", "meaning"), _csv()),
         "## NetCDF of one equilibrium",
         table(("variable", "dimensions", "unit", "meaning"), _netcdf(result_netcdf(moored))),
-        "A tow has these in place of the figures of its ends:",
+        "A tow has these values instead of the values at its ends:",
         table(
             ("variable", "dimensions", "unit", "meaning"),
             [row for row in _netcdf(result_netcdf(towed)) if "ship" in row[3] or "tow" in row[3]],
@@ -92,7 +92,7 @@ def page() -> str:
 
 
 def _keys(document: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
-    """The keys of a JSON object down to its values; of a list of objects, those of the first."""
+    """Paths of all values in a JSON object; a list of objects is described by its first item."""
     for key, value in document.items():
         if isinstance(value, dict):
             yield from _keys(value, f"{before}{key}.")
@@ -160,7 +160,7 @@ def _batch() -> Iterator[tuple[str, ...]]:
         code("status"),
         "time",
         "",
-        "0 where there is an equilibrium; `flag_meanings` explains the other values",
+        "0 if there is an equilibrium; `flag_meanings` explains the other values",
     )
 
 

@@ -33,7 +33,7 @@ def test_a_line_that_lifts_its_anchor_is_told_what_holds_it():
     assert len(offers(view, CATALOGUE)) == 2
 
 
-@pytest.mark.parametrize("begin", ["anchor: weight made", "anchor: "])
+@pytest.mark.parametrize("begin", ["anchor: weight with", "anchor: "])
 def test_an_anchor_is_made_what_all_findings_need(begin):
     view = fully(LIGHT)
     assert State.FAIL in states(view, "anchor-weight")
@@ -135,14 +135,14 @@ def test_what_changed_since_the_file_was_saved(drive, folder, painted):
 
     async def story(driver):
         await driver.press("ctrl+d")
-        assert "Nothing has changed" in driver.screen
+        assert "There are no changes since" in driver.screen
         await driver.press("down", "l")
         await driver.type("50")
         await driver.press("enter")
         await driver.settle()
         await driver.press("ctrl+d")
         await driver.settle()
-        assert "Beside what was saved" in driver.screen
+        assert "Compared with the saved file" in driver.screen
         assert "-    length: 60 m" in driver.screen and "+    length: 50 m" in driver.screen
         assert "top 39" in driver.screen or "top 4" in driver.screen
         await driver.press("b")
@@ -154,7 +154,7 @@ def test_what_changed_since_the_file_was_saved(drive, folder, painted):
 def test_many_changed_lines_are_counted():
     before = "\n".join(map(str, range(40)))
     told = changed_lines(before, "")
-    assert len(told) == 25 and told[-1] == "and 16 lines more"
+    assert len(told) == 25 and told[-1] == "and 16 more lines"
     assert changed_lines(before, before) == []
 
 
@@ -162,6 +162,6 @@ def test_what_does_not_stand_is_not_judged_and_not_without_warnings():
     stands = judge(MOORING)
     sinks = judge(MOORING.replace("buoyancy: 2000 N", "buoyancy: 5 N"))
     assert stands.result is not None and sinks.result is None
-    assert differences(stands, sinks)[-1] == "findings: not judged now, as it does not stand"
-    assert differences(sinks, stands)[-1] == "findings: not judged before, as it does not stand"
+    assert differences(stands, sinks)[-1] == "findings: not judged now (no equilibrium)"
+    assert differences(sinks, stands)[-1] == "findings: not judged before (no equilibrium)"
     assert not any("→" in each for each in differences(stands, sinks))

@@ -31,7 +31,7 @@ def test_an_empty_line_begins_with_a_mooring(drive, number):
 def test_the_history_goes_back_to_before_any_change(drive, small):
     async def story(driver):
         await driver.press("h")
-        assert "There is nothing to undo yet" in driver.screen
+        assert "No changes to undo yet" in driver.screen
         await driver.press("d", "delete", "d")
         done = driver.text
         await driver.press("h")
@@ -84,7 +84,7 @@ def test_a_component_of_the_catalogue_is_not_changed(drive, folder):
 
     async def story(driver):
         await driver.press("end", "up", "O")
-        assert "is not of this file" in driver.screen
+        assert "is not defined in this file" in driver.screen
 
     drive(story, path)
 

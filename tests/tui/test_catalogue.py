@@ -49,7 +49,9 @@ def test_what_stays_of_the_component_before_is_told(drive, small):
     async def story(driver):
         await driver.press("down")
         told = await replace(driver, "weight")
-        assert "now weight; kept from the one before: length 60 m, breaking_load 15 kN" in told
+        assert (
+            "now weight; kept from the previous component: length 60 m, breaking_load 15 kN" in told
+        )
         await driver.press("home")
         told = await replace(driver, "releaser")
         assert "now releaser" in told and "kept" not in told
@@ -78,7 +80,7 @@ def test_an_id_of_the_file_is_not_defined_again(drive, small):
         assert driver.app.screen is form
         next(field for field in form.query(Field) if field.key == "id").input.value = "sbe37"
         await driver.pilot.pause()
-        assert "sbe37 is in the catalogue" in driver.screen
+        assert "sbe37 exists in the catalogue" in driver.screen
         assert "It can be used" in driver.screen
         await driver.press("escape")
         assert driver.text == before

@@ -67,7 +67,7 @@ def test_a_column_of_lengths_judges_each_and_leaves_out_what_has_none(drive, sma
 def test_codes_are_those_of_releases_that_have_serial_numbers(drive, small):
     async def story(driver):
         await driver.press("ctrl+a", "number_sign", "c")
-        assert "None of these rows has such a value" in driver.screen
+        assert "These rows cannot have such a value" in driver.screen
         await driver.press("ctrl+a", "end", "up", "number_sign", "s", *"917", "enter")
         await driver.press("number_sign", "c", *"0A1B", "enter")
         assert driver.session.draft.value(("releases",)) == [{"serial": "917", "codes": "0A1B"}]
@@ -123,7 +123,7 @@ def test_words_are_found_in_ids_labels_serials_and_makers(drive):
         await driver.press("less_than_sign")
         assert driver.table.cursor == here
         nowhere = await find("zzz")
-        assert nowhere == here and "Nothing in the line has `zzz`" in driver.screen
+        assert nowhere == here and "No row of the line contains `zzz`" in driver.screen
         makers = {driver.app.workspace.index.get(use.split()[-1]).maker for use in uses}
         maker = next(each for each in sorted(makers) if each)
         await find(maker)
@@ -144,7 +144,7 @@ def test_the_weakest_piece_is_found(drive):
             if each.rule == strength.name and each.utilisation is not None
         ]
         assert driver.table.spot == max(strengths)[1]
-        assert "The weakest" in driver.screen
+        assert "Highest use of strength" in driver.screen
 
     drive(story, shipped_folder("lines") / "deep-current-meters.yaml")
 
@@ -169,6 +169,6 @@ def test_an_assembly_is_asked_for_no_serial_number_which_the_file_could_not_have
         await driver.press("end", "up", "N")
         assert "pack is an assembly" in driver.screen
         await driver.press("number_sign", "s")
-        assert "None of these rows has such a value" in driver.screen
+        assert "These rows cannot have such a value" in driver.screen
 
     drive(story, path)

@@ -113,7 +113,7 @@ def test_the_figures_of_another_environment_are_dimmed(drive, small, monkeypatch
     small.write_text(MOORING + STORM)
 
     async def story(driver):
-        assert "own environment" in title(driver)
+        assert "default environment" in title(driver)
         before = strengths(driver)
         with nothing_judged(monkeypatch):
             await driver.press("e")

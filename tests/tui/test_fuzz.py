@@ -59,11 +59,11 @@ UGLY = (
 )  # fmt: skip
 
 OF_THE_LINE = ("add ", "clamp ", "use ", "delete ", "duplicate ", "move ", "paste ", "change ")
-ELSEWHERE = ("edit the text", "read the file again", "recover")
+ELSEWHERE = ("edit the text", "reload the file", "recover")
 
 
 class Steps:
-    """What was done to the file, as the history was told of it."""
+    """Changes to the file, as the history was told of it."""
 
     def __init__(self, monkeypatch):
         self.done = []

@@ -85,7 +85,7 @@ def test_the_form_writes_what_was_typed_and_refuses_what_is_no_figure(drive, fol
         await driver.press("ctrl+s")
         await driver.settle()
         assert "buoyancy: 2000 N, depth_rating: 500 m" in driver.text
-        assert "1 figure filled in" in driver.screen
+        assert "1 value filled in" in driver.screen
         await driver.press("u")
         assert driver.text == UNKNOWN
 
@@ -107,7 +107,7 @@ def test_where_nothing_is_missing_that_is_said(drive, folder):
 
     async def story(driver):
         await driver.press("f")
-        assert "No figure of a component is missing" in driver.screen
+        assert "All component values are present" in driver.screen
 
     drive(story, path)
 

@@ -42,7 +42,7 @@ def test_a_renamed_label_is_followed_where_the_file_names_it(drive, naming):
         await driver.type("buoy")
         await driver.press("enter")
         assert opens(driver) == (["buoy", "logger*"], ["deep logger"])
-        assert "checks: accept now names buoy" in driver.screen
+        assert "checks: accept now refers to buoy" in driver.screen
         await driver.press("down", "down", "down", "n", "ctrl+u")
         await driver.type("old one")
         await driver.press("enter")
@@ -74,7 +74,7 @@ def test_a_piece_without_a_label_is_followed_by_its_component_and_its_number(dri
 def test_to_duplicate_what_is_named_asks(drive, naming, answer, named):
     async def story(driver):
         await driver.press("d")
-        assert "checks: accept names top float" in driver.screen
+        assert "checks: accept refers to top float" in driver.screen
         await driver.press("escape")
         assert driver.uses[:2] == ["ball", "rope"]
         await driver.press("d", answer)
@@ -87,9 +87,11 @@ def test_to_duplicate_what_is_named_asks(drive, naming, answer, named):
 def test_what_names_a_piece_that_is_deleted_is_told_and_saving_says_it_again(drive, naming):
     async def story(driver):
         await driver.press("down", "down", "down", "delete")
-        assert "deployed: items still names `deep logger`, which is gone" in driver.screen
+        assert (
+            "deployed: items still refers to `deep logger`, which no longer exists" in driver.screen
+        )
         await driver.press("ctrl+s")
-        assert "saved, but it cannot be opened as it is: line" in driver.screen
+        assert "saved, but the file cannot be opened: line" in driver.screen
         assert "no piece or clamp is called" in driver.screen
         await driver.press("u", "ctrl+s")
         assert driver.screen.splitlines()[-1].strip() == "naming.yaml saved"
@@ -102,7 +104,7 @@ def test_leaving_with_a_file_that_cannot_be_opened_stays_to_say_so(drive, naming
     async def story(driver):
         await driver.press("down", "down", "down", "delete", "q", "s")
         assert driver.app.is_running and not driver.app._exit
-        assert "cannot be opened as it is" in driver.screen
+        assert "the file cannot be opened" in driver.screen
         await driver.press("q")
         assert driver.app._exit
 

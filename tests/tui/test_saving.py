@@ -251,7 +251,7 @@ def test_recovery_says_that_the_file_is_gone(drive, small, of_another):
     small.unlink()
 
     async def story(driver):
-        assert "is gone since that work was begun" in " ".join(driver.screen.split())
+        assert "was deleted after that work began" in " ".join(driver.screen.split())
         await driver.press("r", "ctrl+s")
         assert small.read_text() == text
 
@@ -275,9 +275,9 @@ def test_throwing_away_is_confirmed(drive, small, of_another):
 
     async def story(driver):
         await driver.press("d", "d", "d")  # typed ahead
-        assert place.exists() and "for good" in driver.screen
+        assert place.exists() and "discard permanently" in driver.screen
         await driver.press("escape")
-        assert "keep it for later" in driver.screen
+        assert "keep for later" in driver.screen
         await driver.press("d", "y")
         assert not place.exists()
         assert not driver.session.changed
@@ -289,7 +289,7 @@ def test_a_machine_that_cannot_be_asked_is_named(drive, small, of_another):
     of_another(small, small.read_text() + "# more\n", host="ship")
 
     async def story(driver):
-        assert "on ship, where it may still be open" in " ".join(driver.screen.split())
+        assert "on ship, where the file may still be open" in " ".join(driver.screen.split())
 
     drive(story, small)
 
@@ -397,7 +397,7 @@ def test_a_file_changed_by_another_program_is_read_again(drive, small):
     async def story(driver):
         await theirs(driver, small)
         assert driver.session.draft.items[1].values["length"] == "55 m"
-        assert "another program has changed it" in driver.screen
+        assert "the file was changed by another program" in driver.screen
 
     drive(story, small)
 
@@ -429,7 +429,7 @@ def test_what_is_being_typed_is_not_replaced(drive, small):
     async def story(driver):
         await driver.press("n", "x")
         text = await theirs(driver, small)
-        assert driver.text == before and "changed by another program" in driver.screen
+        assert driver.text == before and "Another program changed the file" in driver.screen
         await driver.press("y", "ctrl+s")
         assert isinstance(driver.app.screen, Question) and small.read_text() == text
         assert "label: xy}" in driver.text
@@ -457,13 +457,13 @@ def test_a_change_is_told_once(drive, small):
     async def story(driver):
         await rename(driver)
         await theirs(driver, small)
-        assert "changed by another program" in driver.screen
+        assert "Another program changed the file" in driver.screen
         await driver.press("down")
         driver.app.saving.look_at_disk()
         await driver.settle()
-        assert "changed by another program" not in driver.screen
+        assert "Another program changed the file" not in driver.screen
         await theirs(driver, small, "55 m", "554 m")
-        assert "changed by another program" in driver.screen
+        assert "Another program changed the file" in driver.screen
 
     drive(story, small)
 
@@ -475,7 +475,7 @@ def test_a_file_that_is_gone_is_not_saved_any_more(drive, small):
         small.unlink()
         driver.app.saving.look_at_disk()
         await driver.settle()
-        assert "gone from the disk" in driver.screen and "not saved" in driver.screen
+        assert "deleted from the disk" in driver.screen and "not saved" in driver.screen
         await driver.press("q")
         assert isinstance(driver.app.screen, Question)
         await driver.press("s")
@@ -495,7 +495,7 @@ def test_the_last_copy_of_a_file_that_is_gone_is_kept(drive, small):
         await until(driver, lambda: copies(small))
         assert kept(small) == before
         await driver.press("q")
-        assert "small.yaml is gone from the disk" in driver.screen and not driver.app._exit
+        assert "small.yaml was deleted from the disk" in driver.screen and not driver.app._exit
         await driver.press("escape", "ctrl+s")
         assert small.read_text() == before and not copies(small)
         await driver.press("q")
@@ -542,7 +542,7 @@ def test_a_changed_file_is_not_overwritten_unasked(drive, small):
         small.write_text(theirs)
         driver.app.saving.look_at_disk()
         await driver.pilot.pause()
-        assert "changed by another program" in driver.screen
+        assert "Another program changed the file" in driver.screen
         await driver.press("ctrl+s")
         assert isinstance(driver.app.screen, Question)
         await driver.press("t")
@@ -598,7 +598,7 @@ def test_the_same_name_typed_in_a_conflict_asks_again(drive, small):
         await driver.type("../work/small")
         await driver.press("enter")
         assert isinstance(driver.app.screen, Question)
-        assert "changed by another program" in driver.screen
+        assert "Another program changed the file" in driver.screen
         assert small.read_text() == text
 
     drive(story, small)

@@ -41,7 +41,7 @@ def test_a_broken_file_opens_as_text_with_its_mistakes_and_is_mended(drive, smal
         area = driver.app.screen.text_area
         area.load_text(MOORING)
         await driver.settle()
-        assert "The text can be read" in driver.screen
+        assert "The text is valid" in driver.screen
         await driver.press("escape")
         await driver.settle()
         assert driver.app.screen is driver.builder
@@ -84,7 +84,7 @@ def test_a_mistake_in_another_file_is_told_with_its_name(drive, small, folder):
         assert "1 mistake in now.csv" in driver.screen.splitlines()[0]
         await driver.press("ctrl+home", "down", "f8")
         assert screen.text_area.cursor_location[0] == 1
-        assert "no mistakes in small.yaml itself" in driver.screen.splitlines()[-1]
+        assert "small.yaml itself has no mistakes" in driver.screen.splitlines()[-1]
         await driver.press("escape")
         assert "now.csv, line 3:5" in driver.screen
         assert "1 mistake in now.csv" in driver.screen.splitlines()[0]
@@ -150,15 +150,15 @@ def test_to_look_at_the_text_changes_nothing_of_it(drive, small, before, after):
 
 def test_what_is_missing_is_said_and_the_last_picture_stays_dimmed(drive, small):
     async def story(driver):
-        assert "the last complete line" not in driver.screen
+        assert "last valid line" not in driver.screen
         await driver.press("home", "delete")
         await driver.settle()
         assert driver.view.missing
         assert driver.view.missing[0] in driver.screen
-        assert "the last complete line" in driver.screen
+        assert "last valid line" in driver.screen
         await driver.press("u")
         await driver.settle()
-        assert "the last complete line" not in driver.screen
+        assert "last valid line" not in driver.screen
 
     drive(story, small)
 

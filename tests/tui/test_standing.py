@@ -23,7 +23,7 @@ def test_an_environment_that_is_undone_leaves_the_line_in_the_own_one(drive, sma
         await driver.press("u")
         await driver.settle()
         assert driver.view.environment is None and not driver.view.problems
-        assert "no environment storm now; the line stands in the file's own" in driver.screen
+        assert "no environment storm now; the default environment is used" in driver.screen
         await driver.press("U")
         await driver.settle()
         assert driver.view.environment == "storm"
@@ -39,7 +39,7 @@ def test_an_environment_that_another_program_takes_out(drive, stormy):
         stormy.write_text(without)
         driver.app.saving.look_at_disk()
         await driver.settle()
-        assert "[own]" in driver.screen and "no environment storm now" in driver.screen
+        assert "[default]" in driver.screen and "no environment storm now" in driver.screen
         assert driver.view.environment is None and not driver.view.problems
 
     drive(story, stormy, environment="storm")

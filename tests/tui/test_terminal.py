@@ -139,9 +139,9 @@ def test_killed_in_mid_edit_and_recovered(tmp_path):
     assert file.read_bytes() == original
 
     second = Terminal(file)
-    second.wait("Work that was not saved")
+    second.wait("Unsaved work")
     second.press("r")
-    second.wait("a name of mine", gone=["Work that was not saved"])
+    second.wait("a name of mine", gone=["Unsaved work"])
     second.press(SAVE)
     second.wait("m.yaml saved")
     second.press("q")

@@ -118,7 +118,7 @@ def test_all_environments_are_judged_and_the_worst_is_named():
     told = list(sayings(view))
     lines = {each.heading: each for each in told}
     assert lines["In storm"].state is State.FAIL
-    assert lines["In own environment"].state is not State.FAIL
+    assert lines["In default environment"].state is not State.FAIL
     assert headline(view).state is State.FAIL
     grave = [each.heading for each in told if each.state is State.FAIL and each.heading]
     assert any("(storm" in heading for heading in grave)
@@ -156,7 +156,7 @@ def test_an_environment_that_fails_is_named_and_each_has_its_line():
     gale = "environments:\n  gale: {current: {speed: 4 m/s, toward: 0 deg}}\n"
     view = judge_fully(judge(MOORING.replace("line:\n", f"{gale}line:\n")))
     lines = [each for each in sayings(view) if each.heading.startswith("In ")]
-    assert [each.heading for each in lines] == ["In own environment", "In gale"]
+    assert [each.heading for each in lines] == ["In default environment", "In gale"]
     assert lines[1].state is State.FAIL and lines[0].state is not State.FAIL
     assert headline(view).state is State.FAIL
     assert any("gale" in each.heading for each in sayings(view) if each.state is State.FAIL)

@@ -164,7 +164,7 @@ def test_rows_of_a_spreadsheet_are_pasted(drive, small):
         first = "depth m\tspeed m/s\ttoward deg\n0\t0.9\t70\n100\t0.1\t60\n"
         before = value(driver, "current", "rows")
         assert await paste(driver, first) == before  # it is shown before it is taken
-        assert "A table is pasted" in driver.screen and "100      0.1" in driver.screen
+        assert "Paste a table" in driver.screen and "100      0.1" in driver.screen
         await driver.press("enter")
         await driver.settle()
         rows = value(driver, "current", "rows")
@@ -176,7 +176,7 @@ def test_rows_of_a_spreadsheet_are_pasted(drive, small):
         cells(driver).focus()
         before = driver.text
         await paste(driver, "0\t0.9\t70\n50\tn/a\t70\n100\t0.1\t60")
-        assert "Nothing is pasted: row 2: `n/a` is not a plain number" in driver.screen
+        assert "Not pasted: row 2: `n/a` is not a plain number" in driver.screen
         assert driver.text == before
 
     drive(story, small)
@@ -190,7 +190,7 @@ def test_columns_without_headings_are_asked_for(drive, small):
         await driver.pilot.pause()
         before = value(driver, "current", "rows")
         assert await paste(driver, "0,0.8,70\n\n90,0.1,60") == before
-        assert "It has no headings" in driver.screen
+        assert "has no headings" in driver.screen
         await driver.press("enter")
         await driver.settle()
         rows = [["0", "0.8", "70"], ["90", "0.1", "60"]]
@@ -289,7 +289,7 @@ def test_the_arrows_change_nothing_before_enter(drive, small):
         form = driver.app.screen.query_one("#current-form")
         form.focus()
         await driver.press("right")
-        assert "table ›   Enter takes it" in driver.screen
+        assert "table ›   Enter accepts" in driver.screen
         await driver.press("right", "right", "tab")
         assert driver.text == before
         assert form.word == "uniform"
@@ -390,7 +390,7 @@ def test_a_table_of_other_things_is_left_to_the_text(drive, small):
     async def story(driver):
         await driver.press("escape", "w")
         cells(driver).focus()
-        assert "edited in the text of the file" in driver.screen
+        assert "edit this table in the text" in driver.screen
         await driver.press("enter", "a", "A", "delete", "1")
         assert driver.text == odd
 
@@ -402,7 +402,7 @@ def test_wind_needs_a_direction_and_goes_without_a_speed(drive, small):
         await driver.press("w")
         await enter(driver, "wind-speed", "12")
         assert value(driver, "wind") == {"speed": "12 m/s"}
-        assert "is needed: where" in driver.screen
+        assert "is needed: clockwise" in driver.screen
         assert driver.app.focused is field(driver, "wind-toward").input
         await driver.type("45")
         await driver.press("enter")
@@ -444,11 +444,11 @@ def test_what_is_changed_in_a_named_environment_has_the_rest_of_the_files_own(
         key = id.partition("-")[0]
         assert driver.session.draft.value(("environments", "storm", key)) == expected
         assert driver.view.problems == ()
-        # an empty wind is that of the file's own environment, not one of no direction
+        # an empty wind is that of the file's default environment, not one of no direction
         if id == "wind-speed":
             await enter(driver, id, "")
             assert field(driver, id).input.value == "10 m/s"
-            assert "as in the file's own" in driver.screen
+            assert "as in the default" in driver.screen
             assert driver.session.draft.value(("environments", "storm")) == {"depth": "110 m"}
 
     drive(story, small, environment=None)
@@ -478,12 +478,12 @@ def test_what_is_being_typed_is_taken_before_anything_else(drive, small):
         await driver.press("ctrl+u")
         await driver.type("140 kg")
         await driver.press("f6")
-        assert driver.app.screen is screen and "Not taken yet, depth: is" in driver.screen
+        assert driver.app.screen is screen and "Not accepted yet, depth: is" in driver.screen
         assert not screen.settle() and screen.is_typing
         await driver.press("ctrl+u")
         await driver.type("140")
         await driver.press("f6")
-        assert "Another environment" in driver.screen
+        assert "New environment" in driver.screen
         assert value(driver, "depth") == "140 m"
 
     drive(story, small)
@@ -526,7 +526,7 @@ def test_a_value_left_with_the_mouse_is_taken_where_it_was_typed(drive, small):
         await driver.pilot.click(cells(driver), offset=(4, 1))
         await driver.settle()
         assert value(driver, "current", "rows")[1][0] == "100"
-        assert "`7x` is not taken: has an unknown unit" in driver.screen
+        assert "`7x` was not accepted: has an unknown unit" in driver.screen
 
     drive(story, small)
 
@@ -590,7 +590,7 @@ def test_a_current_of_a_netcdf_file(drive, small, how):
                 "columns": ["depth m", "u m/s", "v m/s"],
                 "rows": [["0", "0.3", "0.4"], ["100", "0", "0.2"]],
             }
-            assert "The current of adcp.nc is in the table" in driver.screen
+            assert "The current of adcp.nc was copied" in driver.screen
         assert driver.view.file.environment.current.v[0] == pytest.approx(0.4, abs=1e-4)
 
     drive(story, small)
@@ -670,10 +670,10 @@ def test_a_depth_that_is_assumed_is_told(drive, small):
 
     async def story(driver):
         await driver.press("w", "ctrl+t")
-        assert "down to 100 m, as no depth is given" in driver.screen
+        assert "down to 100 m, since no depth is set" in driver.screen
         await driver.press("escape")
         await turn(driver, "current-form")
-        assert "no depth is given, so tables go down to 100 m" in driver.screen
+        assert "the depth is not set, so tables go down to 100 m" in driver.screen
 
     drive(story, small)
 
@@ -720,14 +720,14 @@ def test_the_environment_file_that_the_line_stands_in_is_told(drive, small):
     async def story(driver):
         await driver.press("w")
         assert driver.view.file.environment.depth == 140.0
-        assert "The line stands in lab.yaml: the profile and" in driver.screen
-        assert "own   [lab.yaml]" in driver.screen
+        assert "The line is solved in lab.yaml" in driver.screen
+        assert "default   [lab.yaml]" in driver.screen
         await driver.press("f5")
         await driver.settle()
         assert driver.view.file.environment.depth == 100.0
-        assert "[own]" in driver.screen
+        assert "[default]" in driver.screen
         assert "stands in lab.yaml:" not in driver.screen
-        assert "The line no longer stands in lab.yaml" in driver.screen
+        assert "The line is no longer solved in lab.yaml" in driver.screen
 
     drive(story, small, environment="lab.yaml")
 
@@ -765,7 +765,7 @@ def test_tab_goes_through_a_table_and_never_out_of_its_end(drive, folder):
         await driver.press("tab")  # takes it and edits the direction
         await driver.type("100")
         await driver.press("tab", "tab")
-        assert "The table ends here" in driver.screen and driver.app.focused is grid
+        assert "End of the table" in driver.screen and driver.app.focused is grid
         await driver.press("tab")
         await driver.type("0.9")  # of the table, not of the wind
         await driver.press("escape", "shift+tab", "shift+tab")
@@ -873,7 +873,7 @@ def test_every_key_of_an_environment_has_its_field(drive, small):
         await driver.press("w")
         await enter(driver, "depth_range", "[98 m, 104 m]")
         await enter(driver, "fouling-depth", "50")
-        assert "is needed: of the growth" in driver.screen
+        assert "is needed: thickness" in driver.screen
         await enter(driver, "fouling-thickness", "20")
         await enter(driver, "seabed", "{slope: 3 deg, toward: 120 kg}")
         assert "is a mass" in driver.screen

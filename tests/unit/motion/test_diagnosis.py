@@ -47,13 +47,10 @@ def diagnosis(change=lambda depth: depth, seed=3):
         raw,
         raw,
         expected,
-        0.0 * expected,
         fixed,
         np.ones((TIMES, 3)),
-        0.0 * expected,
     )
-    none, never = np.zeros(3), np.full(3, "NaT", "M8[ns]")
-    common = Common({"cable_drag": 1.0}, 0.0, none, none, never, np.eye(8), 1.0, np.eye(1))
+    common = Common({"cable_drag": 1.0}, 0.0, np.zeros(3), np.eye(5))
     water = SimpleNamespace(water=SimpleNamespace(depth=300.0))
     measured = SimpleNamespace(time=TIME, label=LABELS, depth=depth)
     return Diagnosis(SimpleNamespace(measured=measured, common=common, mooring=water), law)
@@ -99,6 +96,7 @@ CASES = {
     "settles": (changed(1, -4.0 * np.minimum(SHARE / 0.3, 1.0)), "middle", "drift", -4.0),
     "slip": (changed(1, np.where(HOURS >= 100, 4.0, 0.0)), "middle", "slip", 4.0),
     "gain": (lambda d: d * [1.03, 1.0, 1.0], "upper", "gain", 1.03),
+    "moved": (lambda d: d + np.where(HOURS >= 90, 12.0, 0.0)[:, None], ALL, "moved", 12.0),
     "all gains": (lambda d: d * 1.06, ALL, "gain", 1.06),
 }
 

@@ -24,8 +24,7 @@ TIME = np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, 
 
 def common(offset):
     count = len(offset)
-    none, never = np.zeros(count), np.full(count, "NaT", "M8[ns]")
-    return Common({}, 0.0, np.array(offset), none, never, np.eye(2 * count + 1), 1.0, np.eye(3))
+    return Common({}, 0.0, np.array(offset), np.eye(count + 1))
 
 
 def test_currents_that_look_false_are_listed_with_their_times():

@@ -44,10 +44,8 @@ def measured():
 
 def common(offset):
     count = len(offset)
-    never, none = np.full(count, "NaT", "M8[ns]"), np.zeros(count)
-    covariance = np.diag([0.1, 0.2, 0.5, *[1.0] * count, *none]) ** 2
-    return Common({"cable_drag": 1.1, "rigid_drag": 0.9}, 0.4, offset, none, never,
-                  covariance, 1.0, np.eye(1))  # fmt: skip
+    covariance = np.diag([0.1, 0.2, 0.5, *[1.0] * count]) ** 2
+    return Common({"cable_drag": 1.1, "rigid_drag": 0.9}, 0.4, offset, covariance)
 
 
 def rms(values):
@@ -144,7 +142,8 @@ def test_used_sensors_are_judged_without_their_offsets_and_hidden_ones_too(line)
 def test_each_sensor_is_hidden_in_turn_beside_those_that_are_anyway(line, monkeypatch):
     seen = []
     estimate = np.stack([READ[:, 0] + 1.0, np.full(TIMES, 0.3)])
-    monkeypatch.setattr(module, "estimate_common", lambda m, used, n: common(np.zeros(1)))
+    smoother = SimpleNamespace(solve=lambda: None, common=lambda: common(np.zeros(1)))
+    monkeypatch.setattr(module, "CurrentSmoother", lambda *_: smoother)
 
     def in_memory(task, points, workers):
         seen.append((task.measured.label, points))

@@ -11,7 +11,6 @@ from calm.batch.statuses import STATUSES
 from calm.motion.common_unknowns import Common
 from calm.motion.correction import MeasuredRecord, Task, plain
 from calm.motion.currents_law import ReadCurrents
-from calm.motion.estimate import Estimate
 from calm.motion.matching import without
 from calm.motion.measurements import MooringMeasurements
 
@@ -63,51 +62,40 @@ def measured(**more):
 
 
 def common():
-    never = np.full(2, "NaT", "M8[ns]")
-    none = np.zeros(2)
-    return Common({"cable_drag": 1.2}, 2.0, np.array([0.5, -0.4]), none, never,
-                  np.eye(6), 1.0, np.eye(2))  # fmt: skip
+    return Common({"cable_drag": 1.2}, 2.0, np.array([0.5, -0.4]), np.eye(4))
 
 
 def test_a_block_has_the_estimated_depths_and_what_is_known_besides(monkeypatch):
     depth = STILL + 5.0 + np.arange(16.0).reshape(4, 4)
-    depth[2] = np.nan
-    sea = np.array([0.3, -0.2, 0.0, 0.1])
-    found = Estimate(
-        depth,
-        0.1 * depth,
-        sea,
-        np.array([1.1, 0.9, 1.0, 1.2]),
-        np.full((4, 2), 0.01),
-        ReadCurrents(np.full((4, 2), 7.0), U, V, np.zeros((4, 2, 2))),
-    )
-    asked = []
-    monkeypatch.setattr(module, "estimated", lambda *asked_of: asked.append(asked_of) or found)
-    monkeypatch.setattr(module, "forwards_of", lambda *_: (Line(), {}))
+    surface = 2.0 + np.array([0.3, -0.2, 0.0, 0.1])
+    offset = np.array([[0.5, -0.4], [0.5, -0.3], [0.6, -0.4], [0.7, 0.1]])
+    speeds = np.where(np.isfinite(U), U, 0.2)
+    smoother = SimpleNamespace(
+        best=Line(), offset=offset, depth=depth, deviation=0.1 * depth, surface=surface,
+        way=lambda times: ReadCurrents(np.full((4, 2), 7.0), speeds, V, np.zeros((4, 0, 0))),
+        lost=np.array([False, False, True, False]), doubt=np.full((4, 2), 0.01),
+        current_factor=np.array([1.1, 0.9, np.nan, 1.2]),
+    )  # fmt: skip
     monkeypatch.setattr(module, "Forward", lambda mooring, factors: Line() if not factors else None)
-    false = np.array([False, True, True, False])
-    one = measured(false=false)
-    profiles, more = Task(None, one, common()).columns(0, 4)
-    assert asked[0][1].datum == 2.0 and asked[0][0].measured.time.tolist() == one.time.tolist()
-    likely = Line().solve(np.full((4, 2), 7.0), U, V)
-    assert profiles.clamp_depth == pytest.approx(depth[:, :2], nan_ok=True)
-    assert profiles.depth_top == pytest.approx(depth[:, 2:], nan_ok=True)
+    one = measured(false=np.array([False, True, True, False]))
+    profiles, more = Task(None, one, common(), smoother).columns(0, 4)
+    likely = Line().solve(np.full((4, 2), 7.0), speeds, V)
+    lost = np.array([1.0, 1.0, np.nan, 1.0])[:, None]
+    assert profiles.clamp_depth == pytest.approx(depth[:, :2] * lost, nan_ok=True)
+    assert profiles.depth_top == pytest.approx(depth[:, 2:] * lost, nan_ok=True)
     # the top is above the upper end of the first component by what it is in the likely currents
-    assert profiles.top_depth == pytest.approx(depth[:, 2] - 1.5, nan_ok=True)
-    down = depth - STILL - 2.0 - sea[:, None]
+    assert profiles.top_depth == pytest.approx((depth[:, 2] - 1.5) * lost[:, 0], nan_ok=True)
+    down = (depth - STILL - surface[:, None]) * lost
     assert profiles.clamp_knockdown == pytest.approx(down[:, :2], nan_ok=True)
     assert profiles.knockdown == pytest.approx(down[:, 2:], nan_ok=True)
-    assert profiles.tension == pytest.approx(likely.tension, nan_ok=True)
+    assert profiles.tension == pytest.approx(likely.tension * lost, nan_ok=True)
     names = [STATUSES[code] for code in profiles.status.tolist()]
     assert names == [STATUSES[0], STATUSES[0], "implausible-current", STATUSES[0]]
-    assert likely.status[2] == STATUSES.index("no-current")
-    lost = np.array([1.0, 1.0, np.nan, 1.0])[:, None]
     assert more["clamp_depth_sd"] == pytest.approx(0.1 * depth[:, :2] * lost, nan_ok=True)
     assert more["depth_sd"] == pytest.approx(0.1 * depth[:, 2:] * lost, nan_ok=True)
-    assert more["current_factor"] == pytest.approx(found.current * lost[:, 0], nan_ok=True)
+    assert more["current_factor"] == pytest.approx(smoother.current_factor, nan_ok=True)
     assert more["current_doubt"] == pytest.approx(0.01 * lost * np.ones(2), nan_ok=True)
-    left = READ - np.array([0.5, -0.4]) - depth[:, [0, 3]]
-    assert more["residual"] == pytest.approx(left, nan_ok=True)
+    assert more["residual"] == pytest.approx(READ - offset - depth[:, [0, 3]], nan_ok=True)
     assert more["plain_depth"] == pytest.approx(plain(Line(), one)[:, [0, 3]], nan_ok=True)
 
 

@@ -7,12 +7,10 @@ from calm.errors import UsageError
 from calm.motion.measurements import MooringMeasurements
 from calm.motion.sensors import unusable
 from calm.motion.suspects import torn
-from calm.motion.whole_record import _widened
 
 STILL = np.array([50.0, 120.0, 250.0])
 LABELS = ("upper", "middle", "lower")
 HOURS = np.datetime64("2026-03-01", "ns") + np.arange(240) * np.timedelta64(1, "h")
-RANDOM = np.random.default_rng(3)
 
 
 def knocked(shift=0):
@@ -47,16 +45,6 @@ def test_exchanged_labels_are_refused_by_their_names():
     said = str(refused.value)
     assert said.startswith("--pressures: `upper` is at 12") and said.endswith("are exchanged")
     assert unusable(LABELS[: len(STILL)], knocked() + 8.0, STILL) == {}
-
-
-def test_bands_widen_with_the_misfit_of_usual_times():
-    expected = np.tile(np.eye(2), (400, 1, 1))
-    left = RANDOM.standard_normal((400, 2))
-    known = np.ones((400, 2), bool)
-    assert _widened(left, expected, known) == 1.0
-    assert _widened(5.0 * left, expected, known) == pytest.approx(5.0, rel=0.1)
-    spikes = np.where(RANDOM.random((400, 1)) < 0.08, 30.0 * left, left)
-    assert _widened(spikes, expected, known) == 1.0
 
 
 def measured(depth):

@@ -1,48 +1,14 @@
-"""What is common to a record, by closed forms: its scale, its memory, its times, its factors."""
+"""What is common to a record, by closed forms: its memory, its times, its factors."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import multivariate_t, norm
 
+from calm.motion.common_unknowns import repeated
 from calm.motion.line_response import with_factors
 from calm.motion.measurements import MOST_TIMES, MooringMeasurements, chosen_times
-from calm.motion.whole_record import SCALES, _scale, _worst, repeated
 from calm.physics.line import Line
-
-
-def test_the_scale_of_the_currents_is_the_likeliest_by_students_law():
-    random = np.random.default_rng(4)
-    rest, currents = np.diag([1.0, 0.5]), np.array([[4.0, 1.5], [1.5, 1.0]])
-    tried = np.exp(np.linspace(np.log(0.5), np.log(2.5), 41))
-    for true, given in ((0.4, 1.0), (0.9, 1.3), (1.3, 0.8), (3.0, 1.0)):
-        covariance = rest + true**2 * currents
-        left = random.multivariate_normal(np.zeros(2), covariance, 40)
-        likely = [
-            multivariate_t(shape=rest + scale**2 * currents, df=4).logpdf(left).sum()
-            + norm(0.0, 0.15).logpdf(np.log(scale))
-            for scale in tried
-        ]
-        expected = np.tile(rest + given**2 * currents, (40, 1, 1))
-        found, best = _scale(left, expected, given**2 * np.tile(currents, (40, 1, 1)), given)
-        assert found == pytest.approx(tried[int(np.argmax(likely))])
-        constant = multivariate_t(shape=np.eye(2), df=4).logpdf([0.0, 0.0])
-        assert best == pytest.approx(max(likely) - 40 * constant - norm(0.0, 0.15).logpdf(0.0))
-    assert SCALES == (0.5, 2.5)
-
-
-def test_the_error_of_the_line_is_that_of_the_pressures():
-    """Left as drawn with a share of a knockdown, beside noise: the share is found again."""
-    random = np.random.default_rng(5)
-    down = random.uniform(20.0, 120.0, (400, 1, 1))
-    bent = down**2 * np.array([[1.0, 0.3], [0.3, 1.0]])
-    rest = np.tile(0.04 * np.eye(2), (400, 1, 1))
-    for share in (0.02, 0.06, 0.1):
-        root = np.linalg.cholesky(rest + share**2 * bent)
-        left = (root @ random.standard_t(4.0, (400, 2, 1)))[:, :, 0]  # Student's law, as assumed
-        # 800 draws of 4 degrees know their size to 4 %
-        assert _worst(left, rest + 0.07**2 * bent, bent, 0.07) == pytest.approx(share, rel=0.2)
 
 
 @pytest.mark.parametrize(("memory", "lags"), [(0.6, 24), (0.95, 24), (0.0, 0)])

@@ -1,0 +1,642 @@
+"""Currents that were measured: one smoother for currents, line, sensors and tide.
+
+At each time the unknowns are the current vector at knots in depth, the share by which the knockdown
+of each stretch of the line is wrong, and the tide. For the whole record they are factors on the
+drag, the datum and an offset of each sensor, which seldom step. All are normal, and fade with time
+or stay. Errors of meters and sensors follow Student's law, by weights. How large those of meters
+are for each quality flag, and the error of the line, come from the record by expectation and
+maximisation (Dempster, Laird and Rubin 1977). Steps of Gauss and Newton over the whole record take
+depths and slopes from the march.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.case import Design
+from calm.motion import common_unknowns, line_response
+from calm.motion.common_unknowns import Common, LinearLaw
+from calm.motion.currents_law import ReadCurrents
+from calm.motion.line_response import Forward, LineResponse
+from calm.motion.measurements import FREE, MooringMeasurements, chosen_times
+from calm.motion.smoother import StateSpace, smoothed
+from calm.physics.line import Floats
+
+TURNS, ENOUGH, PLACED = 20, 0.05, (1, 3, 5, 8, 11)
+"""Steps of Gauss and Newton at most; fewer where none moves a depth by more than this [m]; and
+those after which the factors take one."""
+SLOPE_STEP = 0.05
+"""Of a current [m/s] and of the logarithm of a factor, by which slopes are found."""
+STALE = 0.03
+"""How far a current may be from that at which its slopes were found [m/s]."""
+LONGEST = 0.5
+"""Of a current, what one step changes at most [m/s]."""
+
+MOST_LEVELS, KNOTS, APART = 8, 12, 2.0
+"""Levels that are knots themselves, with the depths half-way between; of more, so many are chosen.
+Levels closer than this are one knot [m]."""
+ABOVE, BELOW = 5.0, 20.0
+"""How far the line must reach beyond the outermost levels for a knot there [m]."""
+
+METER = 0.02, 0.10
+"""Error of a current meter [m/s], and as a share of its speed; times the factor of its flag."""
+FLAGGED: Mapping[int, float] = {0: 1.0, 1: 1.0, 2: 1.5, 3: 2.0, 4: 4.0, 8: 3.0}
+"""That factor, where the record does not say it."""
+FLAG_RANGE, FEWEST = (0.3, 15.0), 20
+"""Least and greatest such factor, and readings from which the record says it."""
+STUDENT = 4.0
+"""Degrees of freedom of the errors of a reading."""
+ALIKE_HOURS = 1.0
+"""Over which the error of a meter is the same [h]."""
+LEAST_SPREAD = 0.02
+"""Of a current about its mean, at least [m/s]."""
+CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
+"""Time [h] and depth [m] over which a current is correlated, where the record does not say."""
+
+STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
+"""Stretches whose knockdown is wrong each by its own share, the part of the line over which these
+are alike, and the share of its own knockdown that a point is wrong by besides."""
+SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
+"""Such a share beforehand, its limits, and how long it lasts [h]."""
+TIDE_HOURS = 6.0
+"""How long tide and air pressure last [h]."""
+STEP = 0.02
+"""Usual size of what datum and offsets change by in an hour [m]; of this, and of what they begin
+with, Student's law of one degree of freedom also knows values many times as large."""
+SETTLED = 6
+"""Turns before the error of the line is learnt: it would take up steps of sensors."""
+LONGER = 30.0
+"""Times a step of the error of the line is lengthened, at most."""
+FURTHEST = 0.7
+"""Logarithm of a factor, at most."""
+
+
+@dataclass(frozen=True)
+class Knots:
+    """The depths at which the current is unknown, and how levels are read off there.
+
+    Attributes
+    ----------
+    depth : (K,) at rest, rising [m]
+    level : (k, K) weights of the knots in the current of a level
+    hung : the levels that are knots, and the knots they are
+    """
+
+    depth: Floats
+    level: Floats
+    hung: tuple[NDArray[np.int64], NDArray[np.int64]]
+    seabed: float
+
+    def at(self, levels: Floats) -> Floats:
+        """Return (n, K) depths of the knots where the levels are (n, k); others follow these."""
+        level, knot = self.hung
+        place = np.append(self.depth[knot], self.seabed)
+        off = np.pad(levels[:, level] - self.depth[knot], ((0, 0), (0, 1)))
+        after = np.clip(np.searchsorted(place, self.depth), 1, len(place) - 1)
+        share = (self.depth - place[after - 1]) / np.maximum(place[after] - place[after - 1], 1e-9)
+        share = np.clip(share, 0.0, 1.0)
+        there = self.depth + (1.0 - share) * off[:, after - 1] + share * off[:, after]
+        apart = 1e-3 * np.arange(len(self.depth))
+        rising: Floats = np.maximum.accumulate(np.maximum(there, 0.1) + apart, axis=1)
+        return rising
+
+
+def knots_of(place: Floats, top: float, seabed: float) -> Knots:
+    """Return the knots of levels.
+
+    Parameters
+    ----------
+    place : (k,) depths of the levels at rest, in any order [m]
+    top, seabed : depths of the top of the line and of the seabed [m]
+    """
+    order = np.argsort(place, kind="stable")
+    chosen: list[int] = []
+    for i in order.tolist():
+        if not chosen or place[i] - place[chosen[-1]] > APART:
+            chosen.append(i)
+    if len(chosen) > MOST_LEVELS:
+        few = np.unique(np.linspace(0, len(chosen) - 1, KNOTS).round().astype(np.int64))
+        chosen = [chosen[i] for i in few.tolist()]
+    own = place[chosen]
+    ends = [max(top - ABOVE, 1.0)] * bool(own[0] - top > 0.0)
+    ends += [0.5 * (own[-1] + seabed)] * bool(seabed - own[-1] > BELOW)
+    depth = np.unique(np.concatenate([own, ends]))
+    weights = np.stack([np.interp(place, depth, one) for one in np.eye(len(depth))], axis=1)
+    return Knots(depth, weights, (np.array(chosen), np.searchsorted(depth, own)), seabed)
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Where each unknown is in the state.
+
+    Attributes
+    ----------
+    current, share, tide, factor, datum, offset : slices of the q columns
+    """
+
+    current: slice
+    share: slice
+    tide: slice
+    factor: slice
+    datum: slice
+    offset: slice
+
+    @classmethod
+    def made(cls, *counts: int) -> Columns:
+        """Return the slices of so many columns each."""
+        ends = np.cumsum([0, *counts]).tolist()
+        return cls(*(slice(*pair) for pair in pairwise(ends)))
+
+    @property
+    def count(self) -> int:
+        """Return how many there are."""
+        return int(self.offset.stop)
+
+    @property
+    def stays(self) -> slice:
+        """Return datum and offsets, which step."""
+        return slice(self.datum.start, self.offset.stop)
+
+
+@dataclass(frozen=True)
+class ErrorScales:
+    """How large the errors are, as far as the record has said.
+
+    Attributes
+    ----------
+    flag : factor on the errors of a meter by its flag
+    share : of the knockdown of each stretch by which the line is wrong
+    hours, reach : over which a current is correlated [h, m]
+    """
+
+    flag: Mapping[int, float]
+    share: float = SHARE
+    hours: float = CURRENT_HOURS
+    reach: float = CURRENT_REACH
+
+
+class CurrentSmoother:
+    """A record with measured currents, estimated as a whole."""
+
+    def __init__(
+        self, mooring: Design, measured: MooringMeasurements, names: Sequence[str]
+    ) -> None:
+        self.mooring, self.measured, self.names = mooring, measured, tuple(names)
+        self.still = Forward(mooring, {}).still
+        self.seabed = float(mooring.water.depth)
+        one = measured
+        self.places = place = np.array(
+            [
+                self.still[point] if point != FREE else np.nanmean(one.level_depth[:, k])
+                for k, point in enumerate(one.level_point.tolist())
+            ]
+        )
+        self.hours = (one.time - one.time[:1]) / np.timedelta64(1, "h")
+        self.knots = knots_of(place, float(self.still.min()), self.seabed)
+        count, sensors = len(self.knots.depth), len(one.label)
+        self.columns = Columns.made(2 * count, STRETCHES, 1, len(self.names), 1, sensors)
+        flow = np.stack([one.u, one.v])
+        self.mean = np.concatenate([self._along(place, np.nanmean(each, axis=0)) for each in flow])
+        spread = np.sqrt(0.5 * np.nanvar(flow, axis=1).sum(axis=0))
+        self.spread = np.maximum(self._along(place, spread), LEAST_SPREAD)
+        flags = np.unique(one.flag[np.isfinite(one.u)])
+        self.scales = ErrorScales({f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()})
+        self.levels = np.where(np.isfinite(one.level_depth), one.level_depth, place)
+        self.knot_depth = self.knots.at(self.levels)
+        self.state = np.zeros((len(one.time), self.columns.count))
+        self.state[:, self.columns.current] = self._measured_state(place)
+        self.meter_weight = np.ones(one.u.shape)
+        self.sensor_weight = np.ones(one.depth.shape)
+        usual = [common_unknowns.DATUM * self.seabed, *[common_unknowns.OFFSET] * sensors]
+        self.begin = np.square(usual)
+        self.first = self.begin.copy()
+        self._last, self._longer = 0.0, 4.0
+        self.factor = np.zeros(len(self.names))
+        known = [common_unknowns.FACTORS[name][1] ** 2 for name in self.names]
+        self.common_covariance = np.diag([*known, *self.begin])
+        step = np.diff(self.hours, prepend=self.hours[:1])
+        self.usual = STEP**2 * step[:, None] * np.ones(1 + sensors)
+        self.stepped = self.usual.copy()
+        self.bend = np.zeros((len(one.time), len(self.still)))
+        self._slopes_at = np.full((len(one.time), 2 * count), np.inf)
+        self._slopes_factor = np.full(len(self.names), np.inf)
+        self.slope = np.zeros((len(one.time), len(self.still), 2 * count + len(self.names)))
+
+    def _along(self, place: Floats, value: Floats) -> Floats:
+        order = np.argsort(place, kind="stable")
+        order = order[np.isfinite(value[order])]
+        return np.interp(self.knots.depth, place[order], value[order])
+
+    def _measured_state(self, place: Floats) -> Floats:
+        """Return (n, 2 K) what was measured less its mean, between levels linear in depth."""
+        one, depth = self.measured, np.tile(place, (len(self.measured.time), 1))
+        known = np.isfinite(one.u) & np.isfinite(one.v)
+        parts = []
+        for i, each in enumerate((one.u, one.v)):
+            whole = line_response.filled(depth, each, known)
+            mine = self.mean[i * len(self.knots.depth) : (i + 1) * len(self.knots.depth)]
+            order = np.argsort(place, kind="stable")
+            rows = [np.interp(self.knots.depth, place[order], row[order]) for row in whole]
+            parts.append(np.nan_to_num(np.array(rows) - mine))
+        return np.hstack(parts)
+
+    # --- the line
+
+    def currents(self, state: Floats) -> tuple[Floats, Floats]:
+        """Return (n, K) u and v at the knots."""
+        count = len(self.knots.depth)
+        whole = self.mean + state
+        return whole[:, :count], whole[:, count:]
+
+    def depths(self, state: Floats, factor: Floats, times: NDArray[np.int64] | slice) -> Floats:
+        """Return (n, p) depths of the points at currents (n, 2 K), logarithms of factors (f,)."""
+        forward = self.forward(factor)
+        return forward.depths(self.knot_depth[times], *self.currents(state))
+
+    def forward(self, factor: Floats) -> Forward:
+        """Return the mooring with factors of these logarithms."""
+        return Forward(self.mooring, dict(zip(self.names, np.exp(factor).tolist(), strict=True)))
+
+    def linear(self) -> Floats:
+        """Return (n, p) depths at the state, and renew the slopes where it has moved far."""
+        now, factor = self.state[:, self.columns.current], self.factor
+        there = self.depths(now, factor, slice(None))
+        far = np.abs(now - self._slopes_at).max(axis=1) > STALE
+        far |= (np.abs(factor - self._slopes_factor) > SLOPE_STEP).any()
+        times = np.flatnonzero(far)
+        if len(times):
+            self.slope[times] = self._slopes(there[times], now[times], factor, times)
+            self._slopes_at[times], self._slopes_factor = now[times], factor.copy()
+        return there
+
+    def _slopes(
+        self, there: Floats, state: Floats, factor: Floats, times: NDArray[np.int64]
+    ) -> Floats:
+        """Return (n, p, 2 K + f) slopes of the depths with currents and logarithms of factors."""
+        steps = SLOPE_STEP * np.eye(state.shape[1]), SLOPE_STEP * np.eye(len(factor))
+        columns = [self.depths(state + ahead, factor, times) for ahead in steps[0]]
+        columns += [self.depths(state, factor + ahead, times) for ahead in steps[1]]
+        return np.nan_to_num((np.stack(columns, axis=2) - there[:, :, None]) / SLOPE_STEP)
+
+    @cached_property
+    def _stretches(self) -> tuple[Floats, NDArray[np.int64], Floats]:
+        """Depths at rest between the stretches, from the seabed up; the stretch of each point; how
+        alike their shares are."""
+        edges = np.linspace(self.still.max(), self.still.min(), STRETCHES + 1)
+        own = np.clip(np.searchsorted(-edges, -self.still, "right") - 1, 0, STRETCHES - 1)
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        span = max(SPAN * float(np.ptp(self.still)), 1.0)
+        return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
+
+    def by_line(self, there: Floats) -> Floats:
+        """Return (n, p, z) change of the depths with the shares that the stretches are wrong by."""
+        edges, own, _ = self._stretches
+        order = np.argsort(self.still, kind="stable")
+        down = np.maximum(np.nan_to_num(there - self.still), 0.0)
+        place = self.still[order]
+        after = np.clip(np.searchsorted(place, edges), 1, len(place) - 1)
+        share = np.clip(
+            (edges - place[after - 1]) / np.maximum(place[after] - place[after - 1], 1e-9), 0, 1
+        )
+        sorted_down = down[:, order]
+        at_edge = (1.0 - share) * sorted_down[:, after - 1] + share * sorted_down[:, after]
+        part = np.diff(at_edge, axis=1)
+        number = np.arange(STRETCHES)
+        result = part[:, None, :] * (number < own[:, None])
+        mine = down - at_edge[:, own] + LOCAL * down
+        result[:, np.arange(len(own)), own] = mine
+        return result
+
+    # --- the law
+
+    def law(self, there: Floats, sensors: bool = True) -> tuple[StateSpace, Floats]:
+        """Return the linear law about the state, and (n, p, q) slopes of all points."""
+        one, at, scales = self.measured, self.columns, self.scales
+        n, count = len(one.time), len(self.knots.depth)
+        steady = np.zeros((at.count, at.count))
+        apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
+        alike = np.exp(-apart / scales.reach) * np.outer(self.spread, self.spread)
+        steady[at.current, at.current] = np.kron(np.eye(2), alike)
+        steady[at.share, at.share] = self._stretches[2]
+        tide = common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
+        steady[at.tide, at.tide] = tide**2
+        first = steady.copy()
+        first[at.factor, at.factor] = self.common_covariance[: len(self.names), : len(self.names)]
+        first[at.stays, at.stays] = np.diag(self.first)
+        fade = np.ones((n, at.count))
+        step = np.diff(self.hours, prepend=self.hours[:1])[:, None]
+        fade[:, at.current] = np.exp(-step / scales.hours)
+        fade[:, at.share] = np.exp(-step / LINE_HOURS)
+        fade[:, at.tide] = np.exp(-step / TIDE_HOURS)
+        stepped = np.zeros((n, at.count))
+        stepped[:, at.stays] = self.stepped
+        slope = np.zeros((n, len(self.still), at.count))
+        slope[:, :, at.current] = self.slope[:, :, : 2 * count]
+        slope[:, :, at.factor] = self.slope[:, :, 2 * count :]
+        slope[:, :, at.share] = scales.share * self.by_line(there)
+        slope[:, :, at.tide] = slope[:, :, at.datum] = 1.0
+        weights = np.zeros((1, 2 * len(self.knots.level), at.count))
+        weights[0, :, at.current] = np.kron(np.eye(2), self.knots.level)
+        flow = np.hstack([one.u, one.v]) - weights[0, :, at.current] @ self.mean
+        noise = np.tile(self.alike * self.meter_noise / self.meter_weight, (1, 2))
+        if not sensors:
+            return StateSpace(fade, steady, stepped, first, (weights,), flow, noise), slope
+        seen = slope[:, one.point].copy()
+        seen[:, :, at.offset] = np.eye(len(one.label))
+        base = (there + self.bend)[:, one.point]
+        base -= np.einsum("nsq,nq->ns", seen[:, :, at.current], self.state[:, at.current])
+        read = one.depth - base - one.surface[:, None]
+        error = common_unknowns.NOISE**2 / self.sensor_weight
+        whole = StateSpace(
+            fade,
+            steady,
+            stepped,
+            first,
+            (weights, seen),
+            np.hstack([flow, read]),
+            np.hstack([noise, error]),
+        )
+        return whole, slope
+
+    @cached_property
+    def alike(self) -> float:
+        """Return how many readings of a meter in a row have the same error."""
+        step = float(np.median(np.diff(self.hours))) if len(self.hours) > 1 else ALIKE_HOURS
+        return max(ALIKE_HOURS / max(step, 1e-3), 1.0)
+
+    @property
+    def meter_noise(self) -> Floats:
+        """Return (n, k) variances of the errors of each component of the currents [m²/s²]."""
+        one = self.measured
+        table = np.array([self.scales.flag.get(f, FLAGGED[4]) for f in range(256)])
+        speed = np.nan_to_num(np.hypot(one.u, one.v))
+        noise: Floats = (METER[0] ** 2 + (METER[1] * speed) ** 2) * table[
+            one.flag.astype(np.uint8)
+        ] ** 2
+        return noise
+
+    # --- turns
+
+    def solve(self) -> None:
+        """Take steps until the depths stay."""
+        before = np.full((len(self.measured.time), len(self.still)), np.inf)
+        for turn in range(TURNS):
+            there = self.linear()
+            if turn == 0:
+                off = np.nan_to_num(
+                    np.nanmedian(self.measured.depth - there[:, self.measured.point], axis=0)
+                )
+                usual = float(np.median(off)) if len(off) else 0.0
+                self.first = self._heavy(np.append(usual**2, np.zeros(len(off))))
+            law, slope = self.law(there)
+            self._turn(law, slope, there, turn)
+            if turn in PLACED:
+                self._place()
+            elif turn > max(PLACED) and np.nanmax(np.abs(self.depth - before)) < ENOUGH:
+                break
+            before = self.depth
+
+    @property
+    def _steps(self) -> Floats:
+        """Return (n, s) how far datum and offsets are from their medians at each time [m]."""
+        stay = self.state[:, self.columns.stays]
+        gone = stay - np.median(stay, axis=0)
+        return np.asarray(gone[:, :1] + gone[:, 1:])
+
+    def _place(self) -> None:
+        """Take a step of Gauss and Newton of the factors, datum and offsets, beside the meters.
+
+        Beside currents that the pressures have a part in, these would shrink and the drag grow.
+        Times whose errors repeat count as fewer, and steps of datum and offsets are taken off.
+        """
+        times = chosen_times(self.measured)
+        if not self.names or not len(times):
+            return
+        law, *_ = self.by_meters(times, self.factor)
+        of_sensors = self._steps[np.searchsorted(self.measured.time, law.time)]
+        raw = np.where(law.known, law.raw - of_sensors, 0.0)
+        left = np.where(law.known, law.left - of_sensors, 0.0)
+        law = replace(law, raw=raw, left=left)
+        known = [common_unknowns.FACTORS[name][1] ** 2 for name in self.names]
+        before = np.diag(1.0 / np.array([*known, *self.first]))
+        pulls = law.pulls(law.fixed, raw)
+        alike = common_unknowns.repeated(law.pulls(law.fixed, left)[:, 0])
+        self.common_covariance = np.linalg.inv(law.normal(law.fixed) / alike + before)
+        value = self.common_covariance @ (pulls.sum(axis=0) / alike)
+        self.factor = np.clip(value[: len(self.names)], -FURTHEST, FURTHEST)
+
+    def _grown(self, step: float) -> float:
+        """Return the share of the line's error after a step of its logarithm.
+
+        Those of expectation and maximisation are short where the pressures say little of it: they
+        are lengthened while they lead the same way.
+        """
+        same = step * self._last > 0.0
+        self._longer = min(1.5 * self._longer, LONGER) if same else max(self._longer / 3.0, 1.0)
+        self._last = step
+        whole = float(np.clip(self._longer * step, -0.4, 0.4))
+        return float(np.clip(self.scales.share * np.exp(whole), *SHARES))
+
+    def _heavy(self, square: Floats) -> Floats:
+        """Return variances of the beginning by Student's law, where such squares are expected."""
+        return np.maximum(self.begin, 0.5 * (self.begin + square))
+
+    def _turn(self, law: StateSpace, slope: Floats, there: Floats, turn: int) -> None:
+        one, at, count = self.measured, self.columns, len(self.measured.time)
+        now = np.empty_like(self.state)
+        variance, curved = np.empty_like(there), np.empty_like(there)
+        wide = np.empty((count, law.read.shape[1]))
+        stay = np.zeros_like(self.stepped)
+        alike = np.linalg.inv(self._stretches[2])
+        share = np.zeros(count)
+        for each in smoothed(law):
+            t, spread = each.time, each.covariance
+            now[t] = each.mean
+            seen = law.slopes(t)
+            wide[t] = np.einsum("mq,mq->m", seen @ spread, seen)
+            variance[t] = np.einsum("pq,pq->p", slope[t] @ spread, slope[t])
+            flow = slope[t][:, at.current]
+            curved[t] = np.einsum("pq,pq->p", flow @ spread[at.current, at.current], flow)
+            if t + 1 < count:
+                stay[t + 1] = each.moved[at.stays]
+            z = each.mean[at.share]
+            share[t] = z @ alike @ z + np.sum(alike * spread[at.share, at.share])
+            if t == 0:
+                begun = each.mean[at.stays] ** 2 + spread.diagonal()[at.stays]
+        left = law.read - np.einsum(
+            "nmq,nq->nm", np.stack([law.slopes(t) for t in range(count)]), now
+        )
+        wide[:, : 2 * one.u.shape[1]] /= self.alike
+        square = left**2 + wide
+        levels = one.u.shape[1]
+        noise = self.meter_noise
+        self.off = square[:, :levels] + square[:, levels : 2 * levels]
+        ratio = self.off / noise
+        self.meter_weight = np.nan_to_num((STUDENT + 2.0) / (STUDENT + ratio), nan=1.0)
+        own = square[:, 2 * levels :] / common_unknowns.NOISE**2
+        self.sensor_weight = np.nan_to_num((STUDENT + 1.0) / (STUDENT + own), nan=1.0)
+        if turn >= 2:
+            ratio = 0.5 * self.meter_weight * ratio
+            flag = dict(self.scales.flag)
+            for f in flag:
+                mine = (one.flag == f) & np.isfinite(ratio)
+                if mine.sum() >= FEWEST:
+                    flag[f] = float(np.clip(flag[f] * ratio[mine].mean(), *FLAG_RANGE))
+            self.scales = replace(self.scales, flag=flag)
+        if turn >= SETTLED:
+            grown = self._grown(float(0.5 * np.log(share.mean() / STRETCHES)))
+            self.scales = replace(self.scales, share=grown)
+        if turn >= 1:
+            self.first = self._heavy(begun)
+            self.stepped = 0.5 * (self.usual + np.maximum(stay, 0.0))
+            self.stepped[0] = 0.0
+        moving = self.state[:, at.current]
+        now[:, at.current] = moving + np.clip(now[:, at.current] - moving, -LONGEST, LONGEST)
+        self.state = now
+        there = self.depths(now[:, at.current], self.factor, slice(None))
+        self.levels = self._hung(there)
+        self.knot_depth = self.knots.at(self.levels)
+        down = np.maximum(there - self.still, 1.0)
+        self.bend = np.minimum(0.5 * curved / down, down)
+        beside = np.r_[at.share, at.factor]
+        self.depth = (
+            there
+            + self.bend
+            + self.surface[:, None]
+            + np.einsum("npz,nz->np", slope[:, :, beside], now[:, beside])
+        )
+        self.deviation = np.sqrt(np.maximum(variance, 0.0))
+
+    def _hung(self, there: Floats) -> Floats:
+        levels = self.levels.copy()
+        for k, point in enumerate(self.measured.level_point.tolist()):
+            if point != FREE:
+                levels[:, k] = np.where(np.isfinite(there[:, point]), there[:, point], levels[:, k])
+        return levels
+
+    # --- what is found
+
+    def common(self) -> Common:
+        """Return what is common to the record, datum and offsets as they are in the median."""
+        at = self.columns
+        stay = np.median(self.state[:, at.stays], axis=0)
+        factors = np.exp(self.factor).tolist()
+        named = dict(zip(self.names, factors, strict=True))
+        return Common(named, float(stay[0]), stay[1:], self.common_covariance, self.scales.share)
+
+    @cached_property
+    def best(self) -> Forward:
+        """Return the mooring with the estimated factors."""
+        return self.forward(self.factor)
+
+    def way(self, times: slice) -> ReadCurrents:
+        """Return the currents that are estimated, at the knots."""
+        u, v = self.currents(self.state[times, self.columns.current])
+        return ReadCurrents(self.knot_depth[times], u, v, np.zeros((len(u), 0, 0)))
+
+    @property
+    def offset(self) -> Floats:
+        """Return (n, s) offset of each sensor at each time [m]."""
+        return self.state[:, self.columns.offset]
+
+    @property
+    def surface(self) -> Floats:
+        """Return (n,) what is added to the depths of the line: datum, tide and steps [m]."""
+        at = self.columns
+        return self.state[:, at.datum.start] + self.state[:, at.tide.start] + self.measured.surface
+
+    @cached_property
+    def lost(self) -> NDArray[np.bool_]:
+        """Return (n,) which times are too far from any current to say anything of it."""
+        there = (np.isfinite(self.measured.u) & np.isfinite(self.measured.v)).any(axis=1)
+        known = self.hours[there]
+        after = np.clip(np.searchsorted(known, self.hours), 0, len(known) - 1)
+        before = np.maximum(after - 1, 0)
+        near = np.minimum(np.abs(known[after] - self.hours), np.abs(known[before] - self.hours))
+        return np.asarray(near > self.scales.hours)
+
+    @property
+    def current_factor(self) -> Floats:
+        """Return (n,) the currents that are estimated as a share of those measured."""
+        one = self.measured
+        u, v = (
+            each @ self.knots.level.T for each in self.currents(self.state[:, self.columns.current])
+        )
+        along, own = u * one.u + v * one.v, one.u**2 + one.v**2
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray(np.nansum(along, axis=1) / np.nansum(own, axis=1), np.float64)
+
+    @property
+    def doubt(self) -> Floats:
+        """Return (n, k) probability that what a level reads has nothing to do with its current.
+
+        By the odds of both beforehand, and by normal laws: of the error of a meter, and of this and
+        the current.
+        """
+        one, noise = self.measured, self.meter_noise
+        spread = np.square(self.knots.level @ self.spread)
+        false = common_unknowns.FALSE
+        odds = np.array([false.get(f, false[4]) for f in range(256)])[one.flag.astype(np.uint8)]
+        wide = noise + spread
+        log = np.log(odds / (1.0 - odds)) + np.log(noise / wide)
+        log += 0.5 * self.off * (1.0 / noise - 1.0 / wide)
+        doubt: Floats = np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0))))
+        return doubt
+
+    def by_meters(
+        self, times: NDArray[np.int64], factor: Floats
+    ) -> tuple[LinearLaw, ReadCurrents, LineResponse]:
+        """Return what the pressures of some times say beside the meters alone.
+
+        The law is about the currents as the meters have them, smoothed; besides, these at the
+        knots, and the times. `factor` are the logarithms of the factors (f,) on the line.
+        """
+        one, at, count = self.measured, self.columns, len(times)
+        law, _ = self.law(self.depth, sensors=False)
+        flow = slice(0, at.current.stop)
+        now, spread = np.empty((count, flow.stop)), np.empty((count, flow.stop, flow.stop))
+        row = {int(t): i for i, t in enumerate(times)}
+        for each in smoothed(law):
+            if each.time in row:
+                now[row[each.time]] = each.mean[flow]
+                spread[row[each.time]] = each.covariance[flow, flow]
+        part = one.at(times)
+        there = self.depths(now, factor, times)
+        slope = self._slopes(there, now, factor, times)[:, one.point]
+        current, factors = slope[:, :, flow], slope[:, :, flow.stop :]
+        good = np.isfinite(there).all(axis=1)
+        by_currents = current @ spread @ current.transpose(0, 2, 1)
+        down = np.maximum(there - self.still, 1.0)[:, one.point]
+        bend = np.minimum(0.5 * np.einsum("nss->ns", by_currents) / down, down)
+        known = np.isfinite(part.depth)
+        bent = self.by_line(there)[:, one.point]
+        expected = by_currents + self.scales.share**2 * bent @ self._stretches[2] @ bent.transpose(
+            0, 2, 1
+        )
+        sea = common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
+        noise = np.where(known, common_unknowns.NOISE**2, line_response.UNMEASURED**2)
+        expected += sea**2 + noise[:, :, None] * np.eye(len(one.label))
+        fixed = common_unknowns.fixed_slopes(factors)
+        value = np.concatenate([factor, np.median(self.state[:, at.stays], axis=0)])
+        raw = part.depth - there[:, one.point] - bend - part.surface[:, None] + factors @ factor
+        raw = np.where(known, raw, 0.0)
+        left = np.where(known, raw - fixed @ value, 0.0)
+        span = one.time[[0, -1]]
+        share = (part.time - span[0]) / max(span[1] - span[0], np.timedelta64(1, "ns"))
+        fall = common_unknowns.fall(there, self.still, one.point)
+        found = LinearLaw(
+            part.time[good], share[good], known[good], raw[good], left[good], expected[good],
+            fixed[good], fall[good],
+        )  # fmt: skip
+        way = ReadCurrents(self.knot_depth[times], *self.currents(now), np.zeros((count, 0, 0)))
+        near = np.abs(self.knots.depth[:, None] - self.places).argmin(axis=1)
+        common = self.common()
+        named = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
+        forwards = line_response.forwards_of(self.mooring, replace(common, factors=named))
+        return found, way, LineResponse(part, *forwards, group=one.group[near])

@@ -1,0 +1,147 @@
+"""Kalman filter and fixed-interval smoother, forward and backward once over a whole record.
+
+The state goes on as x(t+1) = f x(t) + e with a diagonal f; readings are y = H x + noise, whose
+errors are independent. The backward recursion is that of Durbin and Koopman (2012, Time Series
+Analysis by State Space Methods, section 4.4): it needs no inverse of a covariance of the state. The
+filter is kept at the beginning of blocks of times and repeated within each, so that memory does not
+grow with the square of the state at every time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from calm.physics.line import Floats
+
+BLOCK = 256
+"""Times between which the filter is kept."""
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """A linear law of n times, q states and m readings.
+
+    Attributes
+    ----------
+    fade : (n, q) share of each state that is left since the time before; the first row is not used
+    gained : (n, q) what its steady variances grow by since then, as a share of `steady`
+    steady : (q, q) covariance of states that fade
+    stepped : (n, q) variances of what is added to states that stay, since the time before
+    first : (q, q) covariance at the first time; the mean is 0 throughout
+    seen : (n, m, q) slopes of the readings; rows that hold at every time may come as (1, m, q)
+    read, noise : (n, m) readings, NaN for none, and their variances
+    """
+
+    fade: Floats
+    steady: Floats
+    stepped: Floats
+    first: Floats
+    seen: tuple[Floats, ...]
+    read: Floats
+    noise: Floats
+
+    def slopes(self, time: int) -> Floats:
+        """Return (m, q) slopes of the readings of a time."""
+        return np.vstack([each[time if len(each) > 1 else 0] for each in self.seen])
+
+    def added(self, time: int) -> Floats:
+        """Return (q, q) covariance of what is added since the time before."""
+        fade = self.fade[time]
+        result = self.steady * (1.0 - np.outer(fade, fade))
+        result[np.diag_indices_from(result)] += self.stepped[time]
+        return result
+
+
+@dataclass(frozen=True)
+class _Filtered:
+    """A time as the filter leaves it: what was predicted, and what its readings say of that."""
+
+    mean: Floats
+    spread: Floats
+    seen: Floats
+    gain: Floats
+    left: Floats
+    inverse: Floats
+
+
+@dataclass(frozen=True)
+class Smoothed:
+    """What all readings say of one time.
+
+    Attributes
+    ----------
+    time : which
+    mean, covariance : (q,), (q, q) of the state
+    moved : (q,) mean square of what was added to each state after this time; 0 at the last
+    """
+
+    time: int
+    mean: Floats
+    covariance: Floats
+    moved: Floats
+
+
+def _filter(
+    law: StateSpace, start: int, stop: int, mean: Floats, spread: Floats
+) -> Iterator[_Filtered]:
+    """Yield the times from `start`, at which mean and covariance are those predicted."""
+    for time in range(start, stop):
+        if time > start:
+            fade = law.fade[time]
+            mean = fade * mean
+            spread = fade[:, None] * spread * fade + law.added(time)
+        there = np.isfinite(law.read[time])
+        seen = law.slopes(time)[there]
+        across = spread @ seen.T
+        expected = seen @ across
+        expected[np.diag_indices_from(expected)] += law.noise[time, there]
+        inverse = np.linalg.inv(expected)
+        gain = across @ inverse
+        left = law.read[time, there] - seen @ mean
+        yield _Filtered(mean, spread, seen, gain, left, inverse)
+        mean = mean + gain @ left
+        spread = spread - gain @ across.T
+        spread = 0.5 * (spread + spread.T)
+
+
+def smoothed(law: StateSpace) -> Iterator[Smoothed]:
+    """Yield what is known of each time from all readings, the last time first."""
+    count = len(law.read)
+    starts = range(0, count, BLOCK)
+    mean, spread = np.zeros(law.first.shape[0]), law.first
+    begun = [(mean, spread)]
+    for start in starts[:-1]:
+        for one in _filter(law, start, start + BLOCK, *begun[-1]):
+            last = one
+        after, fade = start + BLOCK, law.fade[start + BLOCK]
+        mean = last.mean + last.gain @ last.left
+        spread = last.spread - last.gain @ (last.seen @ last.spread)
+        spread = fade[:, None] * (0.5 * (spread + spread.T)) * fade + law.added(after)
+        begun.append((fade * mean, spread))
+    pull, hold = np.zeros(len(mean)), np.zeros_like(law.first)
+    for start, known in zip(reversed(starts), reversed(begun), strict=True):
+        block = [*_filter(law, start, min(start + BLOCK, count), *known)]
+        for time in range(start + len(block) - 1, start - 1, -1):
+            one = block[time - start]
+            moved = np.zeros(len(pull))
+            if time + 1 < count:
+                added = law.added(time + 1)
+                across = added @ hold
+                moved = (
+                    (added @ pull) ** 2 + added.diagonal() - np.einsum("ij,ij->i", across, added)
+                )
+                fade = law.fade[time + 1]
+                pull, hold = fade * pull, fade[:, None] * hold * fade
+            # (1 - gain seen)' of what comes later, and what this time says itself
+            kept = pull - one.seen.T @ (one.gain.T @ pull)
+            pull = kept + one.seen.T @ (one.inverse @ one.left)
+            half = hold - one.seen.T @ (one.gain.T @ hold)
+            hold = half - (half @ one.gain) @ one.seen + one.seen.T @ one.inverse @ one.seen
+            hold = 0.5 * (hold + hold.T)
+            across = one.spread @ hold
+            yield Smoothed(
+                time, one.mean + one.spread @ pull, one.spread - across @ one.spread, moved
+            )
