@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -33,13 +33,13 @@ from calm.motion.measurements import (
 from calm.motion.remarks import ALL, Fault
 from calm.motion.study import MotionEstimate, cross_validated, judged, prepare, several
 from calm.motion.suspects import common_step, distances_of, torn
+from calm.records.given import as_files
 from calm.records.instrument_series import split_label
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
     from xarray import Dataset
 
-    Given: TypeAlias = str | Path | Dataset | DataFrame
+    from calm.records.given import Given
 
 
 _MATCHES = ("label", "height", "depth")
@@ -327,31 +327,6 @@ class RecoveredMooring:
             held = {**study.held_out, **{one.label: one for one in each}}
             study = replace(study, held_out=held)
         return study
-
-
-def as_files(given: Any, folder: Path, name: str) -> list[str]:
-    """Return files for datasets and tables, which are written to a folder; paths as they stand.
-
-    Parameters
-    ----------
-    given : one or several; a table has an index of times and columns as a CSV file has them
-    folder, name : where to write, and how the files begin
-    """
-    if isinstance(given, str | Path) or not isinstance(given, Sequence):
-        given = [given]
-    found = []
-    for number, one in enumerate(given):
-        if isinstance(one, str | Path):
-            found.append(str(one))
-        elif hasattr(one, "to_netcdf"):
-            found.append(str(folder / f"{name}-{number + 1}.nc"))
-            one.to_netcdf(found[-1], engine="h5netcdf")
-        elif hasattr(one, "to_csv"):
-            found.append(str(folder / f"{name}-{number + 1}.csv"))
-            one.to_csv(found[-1], index_label="time", date_format="%Y-%m-%dT%H:%M:%S.%f")
-        else:
-            raise TypeError(f"{name}: {type(one).__name__} is no path, xarray or pandas object")
-    return found
 
 
 def estimate_motion(
