@@ -27,7 +27,7 @@ PATTERNS = {name: re.compile(pattern, re.IGNORECASE) for name, pattern in HABITS
 LONGEST = 45
 """Words in a sentence."""
 
-CEILINGS = {"docstrings": 0.0, "messages": 0.0}
+CEILINGS = {"docstrings": 3.3, "messages": 3.8}
 """Largest share of sentences with a habit, in percent."""
 
 
