@@ -1,6 +1,6 @@
 """Summary card of a file: its texts, variables, levels, times, flags and declination.
 
-A person reads the card to confirm that the file is the intended one. Texts are quoted verbatim, and
+The user reads the card to confirm that the file is the intended one. Texts are quoted verbatim, and
 values are in their declared units.
 """
 
@@ -115,7 +115,7 @@ class ReadCard:
 
 
 def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
-    """Merge the cards of several parts of one file."""
+    """Merge the cards of the parts of one file."""
     variables = {taken: one for card in cards for taken, one in card.variables.items()}
     flags = {name: count for card in cards for name, count in card.flags.items()}
     return replace(cards[0], variables=variables, flags=flags)

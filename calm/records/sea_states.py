@@ -1,4 +1,4 @@
-"""Sea states: spectra of the elevation of the sea, and the waves that they are made of."""
+"""Sea states: spectra of the surface elevation, and their harmonic components."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ SPECTRA = ("bretschneider", "jonswap", "pierson-moskowitz", "ochi-hubble")
 """Spectra by name."""
 
 OF_HEIGHT = ("pierson-moskowitz", "ochi-hubble")
-"""Those that follow from the significant height alone."""
+"""Spectra determined by the significant height alone."""
 
 STEEPEST = 1.0 / 7.0
 """Height over length of a wave that breaks (Michell 1893); a sea is far below it."""
@@ -29,20 +29,22 @@ HIGHEST, LONGEST_PERIOD = 30.0, 30.0
 """Beyond every significant height and peak period measured: 19 m by a buoy (WMO 2016) [m], [s]."""
 
 BETWEEN = 0.5, 12.0
-"""Frequencies solved for, as multiples of that of the peak: beyond them a sea of Bretschneider's
-form has less than 1e-4 of its variance."""
+"""Frequency range of the solution, as multiples of the peak frequency.
+
+Outside it, a Bretschneider spectrum has less than 1e-4 of its variance.
+"""
 
 UNSEEN = 1e-3
-"""Share of the variance of a measured sea that is longer than all that is solved for."""
+"""Share of the variance of a measured sea that may lie below the frequencies of the solution."""
 
 PEAK_BY_MEAN = "Tp is 1.41 Tz, the mean zero-crossing period; 1.29 Tz of jonswap"
 """The ratio follows from the moments of the forms: 1.408 and 1.286."""
 
 SHARES = 0.02
-"""How far shares of the time may be from 1 in all, where they are rounded."""
+"""Tolerance for the sum of shares of time, which may be rounded."""
 
 CUT_OFF = 0.5
-"""Share of its greatest density that a measured spectrum may have at its last frequency."""
+"""Limit on a measured spectrum at its last frequency, as a share of its maximum density."""
 
 _STANDARD_NAMES = (
     "sea_surface_wave_variance_spectral_density",
@@ -51,11 +53,13 @@ _STANDARD_NAMES = (
 _SPECTRAL_NAMES = ("spectral_wave_density", "ef", "efth")
 
 LARGEST_FREQUENCY = 10.0
-"""Above it lines are not solved for [rad/s]."""
+"""Highest angular frequency of the solution [rad/s]."""
 
 SHORTEST_PERIOD, BEYOND = 2.0, 0.02
-"""Of a peak [s]: a hundredth of such a sea is above `LARGEST_FREQUENCY`; and the share of a
-measured sea that may be."""
+"""Shortest peak period [s], and largest share of a measured sea above `LARGEST_FREQUENCY`.
+
+A sea of the shortest period has a hundredth of its variance above that frequency.
+"""
 
 
 @dataclass(frozen=True)
@@ -71,7 +75,7 @@ class SpectralForm:
 
 @dataclass(frozen=True)
 class SeaState:
-    """Represent a sea by its spectrum.
+    """A sea state with its spectrum.
 
     Attributes
     ----------
@@ -193,7 +197,7 @@ def _impossible(height: float, period: float) -> str | None:
 
 
 def doubted(sea: SeaState) -> str | None:
-    """Return why a sea is doubted: it is steeper than seas that were measured.
+    """Return a remark if a sea is steeper than measured seas, else None.
 
     Hs over the length of waves of Tp is 1/15 at most up to a Tp of 8 s, falling to 1/25 at 15 s
     (DNV-RP-C205, steepness criteria).
@@ -210,11 +214,11 @@ def doubted(sea: SeaState) -> str | None:
 
 
 def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
-    """Return a sea with a swell of Hs [m] and Tp [s], which runs the same way.
+    """Add a swell of Hs [m] and Tp [s], in the same direction, to a sea.
 
-    The swell has the narrow form that Ochi and Hubble give it, λ of 3; variances add up.
+    The swell has the narrow form of Ochi and Hubble, with λ of 3; variances add up.
 
-    UsageError: the swell is higher, longer or steeper than there are, or shorter than the sea.
+    UsageError: the swell is higher, longer or steeper than any real swell, or shorter than the sea.
     """
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
@@ -236,11 +240,11 @@ def _together(first: Density, second: Density, omega: Floats) -> Floats:
 
 
 def _most_probable(height: float) -> SeaState:
-    """Return swell and sea as they most probably go with a height; Ochi and Hubble 1976.
+    """Return the most probable Ochi-Hubble (1976) swell and sea for a significant height.
 
-    The constants are as secondary texts print them; the paper was not read.
+    The constants were taken from secondary sources, not from the paper.
 
-    UsageError: waves higher than there are.
+    UsageError: the height exceeds that of any real sea.
     """
     if height > HIGHEST:
         raise UsageError(f"waves of {height:g} m: no sea is higher than {HIGHEST:g} m")
@@ -253,11 +257,12 @@ def _most_probable(height: float) -> SeaState:
 
 
 def measured_spectrum(path: Path) -> SeaState:
-    """Return the sea of a spectrum in CSV, ``frequency[Hz],density[m^2/Hz]``, or in NetCDF.
+    """Read a spectrum in CSV, ``frequency[Hz],density[m^2/Hz]``, or in NetCDF.
 
-    NetCDF as of NDBC or WAVEWATCH III, of one place; of several times that of the highest sea.
+    NetCDF files follow NDBC or WAVEWATCH III, for a single place; the highest sea of several times
+    is used.
 
-    InputError: it is no spectrum, or its frequencies do not grow.
+    InputError: the file is not a spectrum, or its frequencies do not increase.
     """
     if holds_arrays(path):
         return _sea_of(path, *_spectral_arrays(path))
@@ -339,9 +344,9 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
 def scatter_states(path: Path, kind: str, gamma: float) -> list[SeaState]:
     """Return the seas of a scatter table, each with its share of the time.
 
-    Its columns are ``significant_wave_height[m],peak_period[s],share``; shares may also be counts.
+    The columns are ``significant_wave_height[m],peak_period[s],share``; shares may also be counts.
 
-    InputError: it is no such table; every mistake with its line.
+    InputError: lists all mistakes with their lines.
     """
     rows = _figures(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
     if kind == "ochi-hubble":

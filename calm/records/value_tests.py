@@ -32,10 +32,10 @@ SECTOR = 40.0
 """Directions that all lie between north and so many degrees are in radians, or in tens."""
 UNCHANGED = 0.1
 """Share of a record for which no series keeps its value."""
-_FEWEST = 6  # readings alike of which that is said
+_FEWEST = 6  # least number of equal readings for a doubt
 _STRETCH = 24  # readings of a repeated stretch
-_SLOWEST = np.timedelta64(3, "h")  # step at which tides do not look like two series
-_BEYOND, _VARIED, _RECURS = 1.5, 20, 4  # of a fill value: times all others, others, times it is
+_SLOWEST = np.timedelta64(3, "h")  # longest step at which a tide does not mimic two series
+_BEYOND, _VARIED, _RECURS = 1.5, 20, 4  # fill value: ratio to the others, distinct others, repeats
 _DAY = np.timedelta64(1, "D")
 _FIRST_YEAR = 1950
 _UNITS = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "kn": KNOT}
@@ -184,7 +184,7 @@ def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
 
 
 def _recurring(values: Floats, side: str) -> Iterator[str]:
-    """Yield a likely fill value: one that recurs and exceeds all others [m/s]."""
+    """Yield a likely fill value: a recurring value [m/s] far above all others."""
     largest = np.abs(values).max(initial=0.0)
     filled = np.abs(values) == largest
     others = values[~filled]
@@ -231,7 +231,7 @@ def step_doubts(times: Times) -> Iterator[str]:
 class WaterLimits:
     """Minimum and maximum of a sea-water quantity, its unit, and units that are confused with it.
 
-    Each of `likely` is a unit with the factor and the zero that turn it into the usual one.
+    Each entry of `likely` is a unit, with the factor and the zero for conversion to `unit`.
     """
 
     least: float
@@ -249,11 +249,11 @@ WATER = {
     }),
 }  # fmt: skip
 """The limits of TEOS-10, as in tables of mooring files."""
-_FRACTION = 0.05  # salinity that most of a record is below where it is a mass fraction
+_FRACTION = 0.05  # most salinities lie below this if they are mass fractions
 
 
 def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str, bool]:
-    """Find impossible values; return their mask, a sentence, and whether they are the majority.
+    """Find impossible values; return a mask, a sentence, and whether they are the majority.
 
     Parameters
     ----------
@@ -318,7 +318,7 @@ def _years(times: Times) -> Iterator[str]:
 
 
 def gaps_of(times: Times) -> tuple[np.timedelta64, NDArray[np.intp]]:
-    """Return the median step of times (n,), and before which intervals more than 1.5 of it lie."""
+    """Return the median step of times (n,), and the indices before steps of over 1.5 medians."""
     steps = np.diff(times)
     step = np.median(steps)
     return step, np.flatnonzero(steps > 1.5 * step)
@@ -344,7 +344,7 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
     same: NDArray[np.bool_] = np.all(values[1:] == values[:-1], axis=2)
     known: NDArray[np.bool_] = np.all(np.isfinite(values), axis=2)
     fewest = max(_FEWEST, UNCHANGED * len(times))
-    stuck, longest = 0, (0, 0, 0)  # readings, first, series
+    stuck, longest = 0, (0, 0, 0)  # number of readings, first reading, series
     for k in range(same.shape[1]):
         edges = np.flatnonzero(np.diff(np.concatenate([[0], same[:, k].astype(np.int8), [0]])))
         runs = edges[1::2] - edges[::2] + 1
@@ -365,9 +365,7 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
 
 
 def _interleaved(values: Floats) -> Iterator[str]:
-    """Yield the series of which every second reading is like the one before the last, and the last
-    is not.
-    """
+    """Yield series whose even and odd readings repeat separately, as from two interleaved series."""
     if len(values) < MANY:
         return
     next_one, second = (
