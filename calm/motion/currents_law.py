@@ -11,7 +11,7 @@ from calm.physics.line import Floats
 
 @dataclass(frozen=True)
 class ReadCurrents:
-    """One way to read the currents of some times, and where it puts the line.
+    """One interpretation of the currents at several times, and the resulting depths of the line.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Linear:
     common: Floats
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the line at another state, with slopes that lead there from this one (Broyden)."""
+        """Return the line at another state, with slopes updated by Broyden's method."""
         step = logs - self.logs
         size = (step**2).sum(axis=1)[:, None]
         miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)
@@ -55,7 +55,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class SpeedLaw:
-    """Hold what is known of the speeds before a time is looked at, and the times it came from.
+    """Prior law of the current speeds, and the times from which it was learnt.
 
     Attributes
     ----------

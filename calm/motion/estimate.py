@@ -1,6 +1,6 @@
-"""What pressures make of currents that nobody measured, at each time for itself.
+"""Estimate of unmeasured currents from pressures, independently at each time.
 
-By the slopes of the line at a state of the currents; each reading may be a spike.
+The line is linearised at a state of the currents; any reading may be a spike.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats
 
 NEGLIGIBLE = 0.02
-"""A reading is not tried as a spike that could not reach this share of the weight of a good one."""
+"""Weight, as a share of the weight of a good reading, below which a spike is not tried."""
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Hold what is known of a block of times.
+    """Estimated depths of the line over a block of times.
 
     Attributes
     ----------
@@ -102,10 +102,10 @@ def _excuse(
     one: MooringMeasurements, common: Common, spike: Posterior, sensor: int, expected: Floats,
     deviation: Floats,
 ) -> Floats:  # fmt: skip
-    """Return (n,) logarithms by which a reading is less likely a spike than by its own time alone.
+    """Return (n,) corrections to the log-likelihood of a spike, from the adjacent readings.
 
-    The readings before and after it expect the one as measured, or the one that the line has
-    without it: weather moves the neighbours as well.
+    The interpolated neighbours are compared with the reading, and with the depth of the line
+    without the reading, because weather also moves the neighbours.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def _excuse(
 
 @dataclass(frozen=True)
 class Posterior:
-    """Hold what the pressures make of the currents.
+    """Posterior of the currents, given the pressures.
 
     Attributes
     ----------
@@ -154,7 +154,7 @@ def posterior(
     spike: int = -1,
     own: Floats | None = None,
 ) -> Posterior:
-    """Return the best state by a linear law, and what is known of all depths then.
+    """Return the best state in the linear model, and the posterior of all depths.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def posterior(
     seen = slope[:, one.point, :].copy()
     seen[:, np.arange(s), free + f + 1 + np.arange(s)] = 1.0
     surface = one.surface
-    lost: Any = ~np.isfinite(at.depth).all(axis=1)  # without current, or without equilibrium
+    lost: Any = ~np.isfinite(at.depth).all(axis=1)  # no current or no equilibrium
     there = np.where(lost[:, None], still, at.depth)
     base = there + common.datum + surface[:, None]
     base = base - np.einsum("npg,ng->np", at.slope, at.logs)
@@ -201,7 +201,7 @@ def posterior(
     inverse = np.linalg.inv(expected)
     solved = (inverse @ innovation[:, :, None])[:, :, 0]
     gain = (state @ (turned @ solved[:, :, None]))[:, :, 0]
-    # what the state cannot take up is spread along the line as its own errors are
+    # residuals that the state cannot explain are spread along the line like its own errors
     depth = base + (beside @ solved[:, :, None])[:, :, 0]
     whole = (spread_of * slope).sum(axis=2) + np.einsum("npp->np", own)
     taken = ((beside @ inverse) * beside).sum(axis=2)
@@ -221,7 +221,7 @@ def posterior(
 
 @dataclass(frozen=True)
 class CurrentsState:
-    """Some currents, the line in them, and what the pressures make of it by its slopes there."""
+    """Currents, the line in these currents, and the posterior at this linearisation."""
 
     way: ReadCurrents
     at: Linear

@@ -1,4 +1,4 @@
-"""Depths added to copies of a user's own files, of several instruments or of one each."""
+"""Depths added to copies of the user's files, each with one or several instruments."""
 
 from __future__ import annotations
 
@@ -34,17 +34,17 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 SEVERAL = ("depth", "depth_sd", "depth_qc")
-"""What is added to a file of several instruments; in capitals to that of one."""
+"""Variables added to a file of several instruments, with upper-case names for a single one."""
 ONE = tuple(name.upper() for name in SEVERAL)
 _OF_OLD = ("DEPTH_quality_control", "DEPTH_UNCERTAINTY", "INSTRUMENT_DEPTH")
 NOMINAL = "NOMINAL_DEPTH"
-"""Where the place of the one instrument of a file goes, if that was its `DEPTH`."""
+"""New name of the nominal depth of a single instrument, if its old name was `DEPTH`."""
 _TIMES = ("time", "TIME", "Time")
 
 
 @dataclass(frozen=True)
 class Instruments:
-    """A file of instruments that depths are added to.
+    """A file of instruments to which depths are added.
 
     Attributes
     ----------
@@ -66,13 +66,12 @@ class Instruments:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Return the names of what is added."""
+        """Names of the added variables."""
         return ONE if self.along is None else SEVERAL
 
 
 def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], list[str]]:
-    """Return what a file or a folder of files holds, before anything is estimated, and what is said
-    of who is who.
+    """Read the instruments of a file or folder, with notes on their identification.
 
     Parameters
     ----------
@@ -122,7 +121,7 @@ def _read(path: Path, seabed: float) -> Instruments:
 def _who(
     dataset: Dataset, time: str, seabed: float, path: Path
 ) -> tuple[str | None, tuple[Identity, ...]]:
-    """Return the dimension of the instruments and who they are; None of the one of a file."""
+    """Return the dimension of the instruments (None for a single one) and their identities."""
     others = [str(dim) for dim in dataset.sizes if dim != time]
     for dim in sorted(others, key=lambda dim: cf_files.labels_along(dataset, dim) is None):
         if dataset.sizes[dim] > 1 or cf_files.labels_along(dataset, dim) is not None:
@@ -189,7 +188,7 @@ def write_depths(
             lost.append(instruments.who[j].named)
             continue
         depth[:, j], spread[:, j], flag[:, j] = at_own_times(result, point, instruments.time, gap)
-    # values as they stand, but for texts: kept as characters they would be split once more
+    # raw values, except texts: characters would be split again
     if engine := cf_files.engine_of(instruments.path):
         with xr.open_dataset(
             instruments.path, engine=engine, mask_and_scale=False, decode_times=False,
@@ -200,7 +199,7 @@ def write_depths(
         copy = cf_files.open_current(instruments.path)
     one = instruments.along is None
     copy = _without_depths(copy, instruments)
-    for variable in copy.variables.values():  # xarray adds a fill value to each that has none
+    for variable in copy.variables.values():  # stop xarray from adding fill values
         if "_FillValue" not in variable.attrs and variable.dtype.kind == "f":
             variable.encoding.setdefault("_FillValue", None)
     name, deviation, mark = instruments.names
@@ -210,7 +209,7 @@ def write_depths(
         "units": "m", "positive": "down", "standard_name": "depth",
         "long_name": "depth estimated by CALM", "ancillary_variables": f"{deviation} {mark}",
         **({"reference": "sea_level"} if one else {}),
-        # CF: an axis is no auxiliary coordinate's, but in a discrete sampling geometry
+        # CF allows `axis` on auxiliary coordinates only in discrete sampling geometries
         **({"axis": "Z"} if one and "featureType" in copy.attrs else {}),
     })  # fmt: skip
     copy[deviation] = xr.Variable(dims, tables[1], {
@@ -271,7 +270,7 @@ def _drop_references(copy: Dataset) -> None:
 
 
 def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
-    """Return a file without the nominal depth of its one instrument, which is renamed."""
+    """Return a dataset with the nominal depth of its single instrument renamed."""
     if instruments.along is not None:
         return copy
     nominal = None
@@ -316,7 +315,7 @@ def _add_salinity(copy: Dataset, instruments: Instruments, depth: NDArray[np.flo
 def _tell(
     copy: Dataset, instruments: Instruments, depth: NDArray[np.float64], inputs: Sequence[str]
 ) -> None:
-    """Add a line to the history of a copy, and what goes with its depths."""
+    """Add the depths' attributes, and a line in the history, to a copy."""
     line = f"{written()} calm {__version__} motion --onto: {instruments.names[0]} estimated"
     line += f" from {', '.join(inputs)}" if inputs else ""
     before = [str(copy.attrs["history"])] if "history" in copy.attrs else []

@@ -1,4 +1,4 @@
-"""Estimate of the motion from files of sensors: what ``calm motion`` reads and computes."""
+"""Estimation of the motion from sensor files: input and computation of ``calm motion``."""
 
 from __future__ import annotations
 
@@ -44,27 +44,27 @@ if TYPE_CHECKING:
 
 _MATCHES = ("label", "height", "depth")
 CORRECTABLE = ("clock", "gain", "offset", "drift", "air")
-"""What can be taken off what a sensor reads: of `calm.motion.remarks.Fault`, and the air."""
+"""Correctable errors of a sensor: faults of `calm.motion.remarks.Fault`, and air pressure."""
 GAP = np.timedelta64(2, "h")
-"""Longest time between two values that are interpolated, where nothing else is asked for."""
+"""Default limit on the gap over which values are interpolated."""
 
 
 def by_clocks(
     one: CurrentMeasurements, clocks: Mapping[str, matching.Clock]
 ) -> CurrentMeasurements:
-    """Return currents at their true times, where the one clock of their file was checked."""
+    """Correct the times of currents if their file has one clock, and this clock was checked."""
     found = [clocks[label] for label in one.label if label in clocks]
     return replace(one, time=found[0].true_times(one.time)) if found else one
 
 
 RARE = 0.1
-"""Share of the times below which it is said that few have two sensors."""
+"""Share of times with two sensors below which a note is added."""
 
 
 def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
-    """Return a sentence where few times have two sensors.
+    """Return a note if few times have two sensors.
 
-    UsageError: none has, and no current was measured.
+    UsageError: no time has two sensors, and no current was measured.
     """
     if len(measured.label) < 2:
         return []
@@ -87,12 +87,12 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
 
 
 def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
-    """Return the factors that are estimated: those of the drag, and what is asked for besides.
+    """Return the factors to estimate: the defaults, and the requested factors.
 
-    Without currents a factor on all drag is one on the currents: that of cables is none unless
-    asked for, and the length is one of those that are estimated.
+    By default these are the drag factors. Without currents, a factor on all drag is equivalent to
+    one on the currents. In that case the defaults are the drag of rigid pieces and the length.
 
-    UsageError: what is asked for cannot be estimated.
+    UsageError: a requested factor cannot be estimated.
     """
     for name in asked:
         if name not in FACTORS:
@@ -103,7 +103,7 @@ def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
 
 @dataclass
 class RecoveredMooring:
-    """A mooring that was recovered: read, put right, estimated and judged, in this order.
+    """A recovered mooring: read, correct, estimate and judge its record, in this order.
 
     Attributes
     ----------
@@ -168,7 +168,7 @@ class RecoveredMooring:
             several(self.measured, self.hidden)
 
     def _read(self) -> None:
-        """Read what was measured, at common times, less the faults that are known."""
+        """Read the measurements at common times, corrected for known faults."""
         mooring, position = self.mooring, self.mooring.file.position
         if self.match not in _MATCHES:
             raise UsageError(not_among("--match", self.match, _MATCHES))
@@ -271,7 +271,7 @@ class RecoveredMooring:
         progress: Callable[[Progress], None] | None = None,
         tell: Callable[[str], None] = lambda _: None,
     ) -> dict[str, int]:
-        """Estimate what is common to the record, take off what is wrong, and write every time.
+        """Estimate the common unknowns, correct faults, and write the result for every time.
 
         Parameters
         ----------
@@ -310,7 +310,7 @@ class RecoveredMooring:
         tell: Callable[[str], None] = lambda _: None,
         workers: int | None = None,
     ) -> MotionEstimate:
-        """Return how a finished result agrees with all that was measured.
+        """Compare a finished result with all measurements.
 
         Parameters
         ----------
@@ -347,7 +347,7 @@ def estimate_motion(
     without: Sequence[str] = (),
     workers: int | None = None,
 ) -> MotionEstimate:
-    """Estimate the depth of every part of a mooring at every time, as ``calm motion`` does.
+    """Estimate the depth of every part of a mooring at every time, like ``calm motion``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""From what was read to what is estimated, and how well that agrees with what was measured."""
+"""Preparation of the motion estimate, and its comparison with the measurements."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A sensor that was hidden, and how well its depths were found.
+    """A hidden sensor, and the accuracy of the estimated depths there.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class HeldOut:
 
 @dataclass(frozen=True, repr=False)
 class MotionEstimate:
-    """The depth of every part of a mooring at every time, and how well it agrees with the sensors.
+    """Depths of every part of a mooring at every time, and their agreement with the sensors.
 
     Attributes
     ----------
@@ -95,7 +95,7 @@ class MotionEstimate:
     notes: tuple[str, ...] = ()
 
     def faults(self, *, of_line: bool) -> list[Fault]:
-        """Return what is wrong with the line and its currents, or with the sensors."""
+        """Return the faults of the line and its currents, or those of the sensors."""
         return [one for one in self.diagnosis if (one.kind in OF_LINE) == of_line]
 
     def to_xarray(self) -> Dataset:
@@ -158,7 +158,7 @@ def prepare(
     tell: Callable[[str], None] = lambda _: None,
     prior: Sequence[CurrentMeasurements] = (),
 ) -> Task:
-    """Estimate what is common to the record from the sensors that are not hidden.
+    """Estimate the common unknowns of the record from the sensors in use.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
 def judged(
     task: Task, measured: MooringMeasurements, result: Dataset, diagnosis: Sequence[Fault] = ()
 ) -> MotionEstimate:
-    """Return how a finished result agrees with all that was measured.
+    """Compare a finished result with all measurements.
 
     Parameters
     ----------
@@ -245,7 +245,7 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return (n,) how far below its least depth the highest sensor with a pressure is [m]."""
+    """Return (n,) knockdown of the highest sensor with a pressure, from its minimum depth [m]."""
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
         depth = used.depth[:, j]
@@ -262,7 +262,7 @@ def judge_hidden(
     spread: Floats,
     still: Floats,
 ) -> HeldOut:
-    """Return a hidden sensor against what was estimated, and against interpolation.
+    """Compare the estimate and two interpolations with a hidden sensor.
 
     Parameters
     ----------
@@ -286,7 +286,7 @@ def judge_hidden(
 def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
     """Return the sensors that can be hidden in turn.
 
-    UsageError: there is only one.
+    UsageError: only one sensor is available.
     """
     rest = [label for label in measured.label if label not in hidden]
     if len(rest) < 2:
@@ -303,7 +303,7 @@ def cross_validated(
     workers: int | None = None,
     prior: Sequence[CurrentMeasurements] = (),
 ) -> list[HeldOut]:
-    """Each used sensor hidden in turn, besides those that are hidden anyway.
+    """Hide each used sensor in turn, besides the hidden sensors, and judge the estimate.
 
     Parameters
     ----------
@@ -329,7 +329,7 @@ def cross_validated(
 
 @dataclass(frozen=True)
 class SensorSeries:
-    """Hold the depths of one sensor over time.
+    """Depths of one sensor over time.
 
     Attributes
     ----------

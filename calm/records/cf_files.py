@@ -32,7 +32,7 @@ _ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
 _ZONED = ("time_zone", "timezone", "tz", "time_reference")
 _MOST_LISTED = 5
 MOST_VALUES = 50_000_000
-"""Largest number of values read at once: one a second for a year and a half."""
+"""Maximum number of values read at once; as times, one a second for a year and a half."""
 _NORTH_NAMED = re.compile(
     r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
 )

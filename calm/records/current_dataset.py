@@ -332,7 +332,7 @@ class ArrayRecord(Record):
         return window
 
     def _end_of_chunk(self, start: int) -> int:
-        """Return the index of the first profile after the compressed chunk that contains `start`."""
+        """Return the index of the first profile after the compressed chunk with `start`."""
         chunk = self._current.chunk
         if isinstance(self._index, slice):
             position = self._index.start + start * self._index.step

@@ -62,7 +62,7 @@ def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
 
 
 def too_deep(depth: float) -> str | None:
-    """Return a message if a depth [m] exceeds that of the deepest sea, else None."""
+    """Return a message if a depth [m] exceeds `DEEPEST`, else None."""
     if not depth > DEEPEST:
         return None
     return f"depth {depth:g} m is deeper than any sea, {DEEPEST:g} m"

@@ -301,7 +301,7 @@ def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
 
 
 def no_number(cell: str) -> str | None:
-    """Return what prevents a cell from being a plain number, or None if it is a number."""
+    """Return a message if a cell is not a plain number, else None."""
     if NUMBER.fullmatch(cell):
         return None
     pointed = Dialect(";", ",").with_point(cell)
@@ -326,7 +326,7 @@ def plain_numbers(cells: Sequence[str | None]) -> Floats | None:
 
 
 def abridged(problems: list[Problem]) -> list[Problem]:
-    """Return the first mistakes in the order of the file, and a count of the others."""
+    """Return the first mistakes in the order of the file, and a count of further mistakes."""
     ordered = sorted(dict.fromkeys(problems), key=lambda one: (one.line, one.column))
     hidden = len(ordered) - MOST_PROBLEMS
     if hidden <= 0:

@@ -54,7 +54,7 @@ _NO_WAY = ("direction", "dir", "heading", "bearing")
 def read_columns(
     table: QuantityTable, known: Mapping[str, QuantityRange], gaps: Booleans | None = None
 ) -> dict[str, Floats]:
-    """Return the known columns by name, in SI; wrong values and missing values in `gaps` are NaN."""
+    """Return the known columns in SI, by name; wrong values and missing ones in `gaps` are NaN."""
     columns, rows = table.columns, table.rows
     units = _read_headings(table, known)
     if len(units) == len(columns) and "depth" not in units:

@@ -242,7 +242,7 @@ def _together(first: Density, second: Density, omega: Floats) -> Floats:
 def _most_probable(height: float) -> SeaState:
     """Return the most probable Ochi-Hubble (1976) swell and sea for a significant height.
 
-    The constants were taken from secondary sources, not from the paper.
+    The constants are from secondary sources; the paper was not read.
 
     UsageError: the height exceeds that of any real sea.
     """

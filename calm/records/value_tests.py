@@ -365,7 +365,7 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
 
 
 def _interleaved(values: Floats) -> Iterator[str]:
-    """Yield series whose even and odd readings repeat separately, as from two interleaved series."""
+    """Yield series in which every second reading repeats, as if two series were interleaved."""
     if len(values) < MANY:
         return
     next_one, second = (

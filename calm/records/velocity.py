@@ -299,7 +299,7 @@ def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
 
 
 def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
-    """Return a mask of bad values from flag meanings, or from the flags 3, 4 and 9 without these."""
+    """Return a mask of bad values, from flag meanings or else from the flags 3, 4 and 9."""
     bad, told = ["3", "4", "9"], str(variable.attrs.get("flag_meanings", "")).lower().split()
     masks = np.atleast_1d(variable.attrs.get("flag_masks", [])).tolist()
     values = np.atleast_1d(variable.attrs.get("flag_values", masks)).tolist()
