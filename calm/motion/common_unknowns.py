@@ -32,11 +32,11 @@ class Common:
     Attributes
     ----------
     factors : names of the estimated factors and their values
-    datum : what is added to the depths of the line [m]
+    datum : correction added to the depths of the line [m]
     offset : (s,) of the sensors [m]
     covariance : (q, q)
     worst : share of the knockdown that the line itself may be wrong by, after all else
-    law : of currents that nobody measured; None of measured ones
+    law : law of inferred currents; None for measured currents
     """
 
     factors: Mapping[str, float]
@@ -79,9 +79,9 @@ def common_beforehand(
     Parameters
     ----------
     factors : their values
-    datum : standard deviation of what is added to the depths of the line [m]
-    sensors : how many there are
-    mean : of what is added to the depths of the line [m]
+    datum : standard deviation of the correction to the depths of the line [m]
+    sensors : number of sensors
+    mean : mean of the correction to the depths of the line [m]
     """
     known = [FACTORS[name][1] for name in factors]
     spread = [*known, datum, *[OFFSET] * sensors]
@@ -101,7 +101,7 @@ def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
     Parameters
     ----------
     depth, still : (n, p), (p,) of the points, at these times and in still water [m]
-    point : (s,) where the sensors are by the file
+    point : (s,) points of the sensors, from the file
     """
     result = np.zeros((len(depth), len(point)))
     for j, one in enumerate(point.tolist()):
@@ -133,7 +133,7 @@ def repeated(pull: Floats) -> float:
 
 
 FEWEST = 4
-"""Readings of a sensor before and after its clamp slips, at least."""
+"""Least number of readings of a sensor before and after a slip of its clamp."""
 
 
 ROBUST = 4.0
@@ -147,11 +147,11 @@ class LinearLaw:
     Attributes
     ----------
     time, share : (n,) times, and the share of the record that is over by then
-    known : (n, s) whether there is a reading
-    raw, left : (n, s) measured less computed depths where the unknowns are 0, and as they are [m]
+    known : (n, s) whether a reading exists
+    raw, left : (n, s) measured less computed depths, for zero unknowns and at the state [m]
     expected : (n, s, s) covariance of `left`
     fixed : (n, s, q) slopes with factors, datum and offsets
-    fall : (n, s) change of the depth of each sensor with how far it has moved throughout
+    fall : (n, s) change in the depth of each sensor per metre of displacement along the line
     """
 
     time: NDArray[np.datetime64]
@@ -180,16 +180,15 @@ class LinearLaw:
         return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
 
     def normal(self, seen: Floats) -> Floats:
-        """Return (q, q) the information of all times."""
+        """Return (q, q) information matrix of all times."""
         heavy = self.weight[:, None, None] * self.inverse
         return np.asarray(np.einsum("nsq,nsr->qr", seen, heavy @ seen))
 
 
 NEVER = -1
-"""In place of a time, where a sensor has too few readings to hang elsewhere."""
+"""Code, in place of a time, for sensors with too few readings to detect a slip."""
 RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
-"""Codes of drifts, in place of a time, with the share of the record over which the sensor drifts.
-"""
+"""Codes of drifts, in place of a time, with the share of the record over which they last."""
 
 
 def moves(first: Integers, fall: Floats, share: Floats) -> Floats:
@@ -198,7 +197,7 @@ def moves(first: Integers, fall: Floats, share: Floats) -> Floats:
     Parameters
     ----------
     first : (s,) of `first_time`
-    fall : (n, s) change of the depth of each sensor with how far it has moved
+    fall : (n, s) change in the depth of each sensor per metre of displacement along the line
     share : (n,) of the record at each time, 0 to 1
     """
     began = (np.arange(len(fall))[:, None] >= first) & (first >= 0)
@@ -227,7 +226,7 @@ def first_time(law: LinearLaw, mean: Floats, covariance: Floats) -> Integers:
 
     Parameters
     ----------
-    law : what the times say
+    law : linear law of the times
     mean, covariance : (q,), (q, q) of the unknowns beforehand
     """
     count = len(law.time)
@@ -294,13 +293,13 @@ class Gains:
         return self._gain(own, cross, alone, wide)
 
     def whole(self, column: Floats, wide: float) -> float:
-        """Return the logarithm of a column throughout."""
+        """Return the gain from a column that applies throughout."""
         own, cross, alone = (part.sum(axis=0, keepdims=True) for part in self._parts(column))
         return float(self._gain(own, cross, alone, wide)[0])
 
 
 def _from_there_on(values: Floats) -> Floats:
-    """Sums over the first axis from each place to the end."""
+    """Return sums over the first axis from each place to the end."""
     sums: Floats = np.cumsum(values[::-1], axis=0)[::-1]
     return sums
 
@@ -329,7 +328,7 @@ FALSE: Mapping[int, float] = {0: 0.01, 1: 0.01, 2: 0.03, 3: 0.10, 4: 0.30, 8: 0.
 DRIFT, DRIFTS = 5.0, 0.01
 """Prior deviation of the drift over the record [m], and the probability of a drift."""
 TIDE = 1.0
-"""Deviation of tide and air pressure [m]; with a given sea level, `RESIDUAL_TIDE` applies."""
+"""Deviation of tide and air pressure [m], unless the sea level is given: `RESIDUAL_TIDE`."""
 RESIDUAL_TIDE = 0.15
 NOISE = 0.2
 """Deviation of a depth from pressure at one time [m]."""

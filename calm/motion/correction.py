@@ -55,8 +55,7 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
         ("m", "depth of the sensor by the currents alone, nothing fitted", {"positive": "down"}),
     ),
 }
-"""Dimensions besides time, unit, meaning and attributes of the variables added to a batch result.
-"""
+"""Dimensions besides time, unit, meaning and attributes of variables added to a batch result."""
 OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})
 """Variables of `OF_MOTION` that need a measured current."""
 MEASURED, ESTIMATED, MISSING = 1, 8, 9
@@ -172,8 +171,8 @@ def estimate_in_memory(
 
     Parameters
     ----------
-    task : what is estimated
-    points : which points of the line
+    task : task of the estimate
+    points : indices of the points of the line
     workers : threads
     """
     starts = range(0, len(task.measured.time), BLOCK)
@@ -190,7 +189,7 @@ def estimate_in_memory(
 
 
 BLOCK = 512
-"""Times that are estimated, and written, together."""
+"""Number of times that are estimated and written together."""
 
 
 @dataclass(frozen=True)
@@ -275,7 +274,7 @@ class Task:
 def without_current(
     profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
 ) -> Profiles:
-    """Return profiles without the times (n,) that are far from any current, false ones apart."""
+    """Blank the times (n,) that are far from any current; their status depends on `false`."""
     status = np.where(lost, STATUSES.index("no-current"), profiles.status)
     if false is not None:
         status = np.where(lost & false, STATUSES.index("implausible-current"), status)
@@ -288,7 +287,7 @@ def without_current(
 
 
 def plain(forward: Forward, one: MooringMeasurements) -> Floats:
-    """Return (n, p) depths of the points by the currents alone, nothing fitted [m]."""
+    """Return (n, p) depths of the points from the currents alone, without a fit [m]."""
     depth = np.tile(forward.still, (len(one.time), 1))
     for _ in range(2):
         level = hung_levels(one, np.nan_to_num(depth))
@@ -338,4 +337,4 @@ class MeasuredRecord(Record):
         return one.level_depth, one.u, one.v, None
 
     def close(self) -> None:
-        """Do nothing: no file is open."""
+        """Do nothing, as no file is open."""

@@ -1,4 +1,4 @@
-"""Currents as read, the depths of the line near them, and the prior law of unmeasured speeds."""
+"""Interpreted currents, nearby depths of the line, and the prior law of unmeasured speeds."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class ReadCurrents:
 
 @dataclass(frozen=True)
 class Linear:
-    """The depths of the points near a state of the currents.
+    """Linearised depths of the points near a state of the currents.
 
     Attributes
     ----------
@@ -68,6 +68,6 @@ class SpeedLaw:
     kept: Linear | None = None
 
     def read(self, level: Floats) -> ReadCurrents:
-        """Return the currents at levels (n, k), whose direction is the same at all of them [m]."""
+        """Return currents at levels (n, k) [m], with the same direction at all levels."""
         u = np.tile(np.exp(self.mean), (len(level), 1))
         return ReadCurrents(level, u, np.zeros_like(u), np.tile(self.covariance, (len(u), 1, 1)))

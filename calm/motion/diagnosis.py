@@ -49,7 +49,7 @@ LEAST = {
 """Smallest faults that are reported.
 
 Units: m; for clocks h, and as many steps of the record; for gains 1; m for offset, drift and slip;
-then logarithms.
+otherwise logarithms.
 """
 RIVALS = 3
 """Maximum number of rival explanations reported."""
@@ -66,9 +66,9 @@ class _Found:
     Attributes
     ----------
     log : its logarithm
-    value, deviation : of the size of the last fault
-    left : (n, s) what is not explained [m]
-    pulls : (n,) what each time says of the size of the last fault
+    value, deviation : size of the last fault, and its deviation
+    left : (n, s) residuals [m]
+    pulls : (n,) gradient of the log-likelihood of each time by the size of the last fault
     """
 
     log: float
@@ -123,7 +123,7 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 
 
 class Diagnosis:
-    """The pressures of a record, weighed."""
+    """Weighing of the faults of a record by its pressures."""
 
     def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes
@@ -243,7 +243,7 @@ class Diagnosis:
 
         Parameters
         ----------
-        alike : so many times in a row have the same error
+        alike : number of successive times with the same error
         """
         whole = taken if last is None else [*taken, last]
         free = [one for one in whole if one.wide]
@@ -372,7 +372,7 @@ class Diagnosis:
 
         Parameters
         ----------
-        left : (n, s) what is not explained where their clocks are right [m]
+        left : (n, s) residuals if their clocks are right [m]
         """
         reach, step = int(FURTHEST / self.step) if self.step > 0.0 else 0, self.step
 

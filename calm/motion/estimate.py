@@ -28,7 +28,7 @@ class Estimate:
     Attributes
     ----------
     depth, deviation : (n, p) of the points [m]
-    sea : (n,) what stands over the mean surface [m]
+    sea : (n,) height of the sea surface above its mean [m]
     likely : the most likely currents
     """
 
@@ -44,12 +44,12 @@ def estimated(
     known: CurrentsState,
     neighbours: tuple[Floats, Floats] | None = None,
 ) -> Estimate:
-    """Return the mean and the deviation over all readings being good, and each a spike.
+    """Return mean and deviation, averaged over the cases of no spike and of a spike in each sensor.
 
     Parameters
     ----------
     known : the best state of the currents
-    neighbours : see `calm.motion.measurements.by_neighbours`; None of times that stand alone
+    neighbours : see `calm.motion.measurements.by_neighbours`; None for isolated times
     """
     one, still = moments.measured, moments.forward.still
     first, at = known.found, known.at
@@ -109,7 +109,7 @@ def _excuse(
 
     Parameters
     ----------
-    spike : what is known without the sensor
+    spike : posterior without the sensor
     expected, deviation : (n,) of the sensor by its neighbours [m]
     """
     point = one.point[sensor]
@@ -129,10 +129,10 @@ class Posterior:
     Attributes
     ----------
     logs : (n, g) of the factors on the currents
-    sea : (n,) what stands over the mean surface [m]
+    sea : (n,) height of the sea surface above its mean [m]
     depth, variance : (n, p) of the points [m], [m²]
     evidence : (n,) logarithm of the density of the pressures
-    innovation : (n, s) of the pressures against what is known without them [m]
+    innovation : (n, s) measured depths less their predictions [m]
     expected : (n, s, s) its covariance
     """
 
@@ -160,8 +160,8 @@ def posterior(
     ----------
     spread : (n, g, g) prior covariance of the logarithms
     still : (p,) depths in still water [m]
-    spike : a sensor whose pressures are taken for spikes
-    own : `own_errors` of the state, where they are known
+    spike : index of a sensor whose readings are treated as spikes
+    own : `own_errors` of the state, if already computed
     """
     n, p, g = at.slope.shape
     s, f = len(one.point), at.common.shape[2]

@@ -48,12 +48,12 @@ class Instruments:
 
     Attributes
     ----------
-    path : of it
-    clock, along : its variable of times, whose dimension is `dimension`; dimension of instruments,
-        None in the file of one
+    path : path of the file
+    clock, along : time variable, with dimension `dimension`; dimension of the instruments, None for
+        a single instrument
     time : (n,)
     who : the instruments
-    point : of each the point of the line; None where it is none
+    point : point of the line for each instrument; None if it has no point
     """
 
     path: Path
@@ -83,7 +83,7 @@ def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], 
     InputError
         A file is not NetCDF, or has no times or no way to know its instruments, or groups.
     UsageError
-        A file has depths already, or a dimension called so; none of the instruments is a part of
+        A file already has depths, or a dimension with their name; no instrument is a part of
         the line.
     """
     seabed = float(line.still[-1])
@@ -162,12 +162,12 @@ def write_depths(
     output: Path,
     inputs: Sequence[str] = (),
 ) -> list[str]:
-    """Write the copy with depths, deviations and flags, whole; return who is without them.
+    """Write a copy with depths, deviations and flags; return the instruments without depths.
 
     Parameters
     ----------
     instruments : the file that is copied
-    result : of `calm motion`
+    result : dataset of `calm motion`
     gap : between neighbours of a depth, at most
     output : the copy
     inputs : names of the files that the depths are from, with their hashes
@@ -234,7 +234,7 @@ def at_own_times(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
     """Return depth, deviation and flag of a point at other times.
 
-    The flag says measured where a pressure of its own was used, else interpolated.
+    The flag is "measured" if a pressure of the instrument itself was used, else "interpolated".
 
     Parameters
     ----------
@@ -257,7 +257,7 @@ def at_own_times(
 
 
 def _drop_references(copy: Dataset) -> None:
-    """Let no attribute name a variable that is gone."""
+    """Remove references to deleted variables from all attributes."""
     for variable in copy.variables.values():
         for attribute in ("coordinates", "ancillary_variables"):
             for place in (variable.attrs, variable.encoding):
@@ -288,7 +288,7 @@ def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
 
 
 def _add_salinity(copy: Dataset, instruments: Instruments, depth: NDArray[np.float64]) -> None:
-    """Add the salinity that conductivity and temperature give, where the file holds none."""
+    """Add salinity from conductivity and temperature, if the file lacks it."""
     import xarray as xr
 
     salinity = QUANTITIES_MEASURED["salinity"]

@@ -28,7 +28,7 @@ UNMEASURED = 1e4
 
 
 class LineResponse:
-    """The times of a block, with a mooring to ask."""
+    """The times of a block, and the mooring for its solutions."""
 
     def __init__(
         self, measured: MooringMeasurements, forward: Forward, shifted: Mapping[str, Forward],
@@ -45,13 +45,13 @@ class LineResponse:
         ----------
         way : the currents as they are read
         logs : (n, g) logarithms of the factors on them
-        forward : the mooring; that of the block where it is None
+        forward : mooring to use; by default that of the block
         """
         factor = np.exp(logs[:, self.group])
         return (forward or self.forward).depths(way.level, way.u * factor, way.v * factor)
 
     def linear(self, way: ReadCurrents, logs: Floats) -> Linear:
-        """Return the line with factors on the currents, of logarithms (n, g), and its slopes."""
+        """Return the line for factors on the currents, with logarithms (n, g), and its slopes."""
         there = self.depths(way, logs)
         own = [self.depths(way, logs + ahead) for ahead in STEP * np.eye(self.groups)]
         common = [self.depths(way, logs, forward) for forward in self.shifted.values()]
@@ -73,7 +73,7 @@ net force of all buoyant pieces; and the lengths of cables and chains.
 
 
 def with_factors(line: Line, factors: Mapping[str, float]) -> Line:
-    """Return a line with factors on its drags, on the net force of its floats, on its lengths."""
+    """Return a line with factors on its drag, the net force of its floats, and its lengths."""
     cable, rigid, lift, length = (factors.get(name, 1.0) for name in FACTORS)
     drag = np.where(line.flexible, cable, rigid)
     cut = np.where(line.flexible, length, 1.0)
@@ -168,14 +168,14 @@ def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
     """Return (n, p, p) error covariance of the line at its points, for an error share of 1 [m²].
 
     While the law of the currents is unknown, the error at a point is a share of its own knockdown,
-    correlated over a quarter of the line. A learnt law absorbs such errors. In that case the
+    correlated over a quarter of the line. A learnt law absorbs such errors. In that case, the
     knockdown of each stretch is wrong by a share, and a point has the summed error of the stretches
     below, which is smooth between two sensors, and a smaller share of its own knockdown.
 
     Parameters
     ----------
     depth, still : (n, p), (p,) of the points, and in still water [m]; of NaN they are 0
-    learnt : whether the law of the currents is
+    learnt : whether the law of the currents is learnt
     """
     if not learnt:
         own = np.maximum(np.nan_to_num(depth - still), 0.0)

@@ -24,9 +24,9 @@ class LinePlaces:
 
     Attributes
     ----------
-    name : of the file that they are from
-    label, serial : (p,) of clamps and pieces; serials are empty where not known
-    clamps : how many of the points are clamps, which come first
+    name : path of the mooring file
+    label, serial : (p,) of clamps and pieces; empty serials if unknown
+    clamps : number of clamps, which precede the other points
     still : (p,) depths in calm water [m]
     """
 
@@ -75,7 +75,7 @@ class Clock:
     Attributes
     ----------
     since, checked : when it was set, and when it was compared
-    late : how far it was behind then [s]
+    late : lag of the clock at that time [s]
     """
 
     since: np.datetime64
@@ -102,7 +102,7 @@ def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:
 
     Parameters
     ----------
-    first : time of a record, from which they run where the deployment has no date
+    first : time of a record, from which the lag grows if the deployment has no date
 
     Raises
     ------
@@ -307,15 +307,15 @@ def in_order(
 
     Parameters
     ----------
-    points : that they may be at
-    depths, spacings : what a metre counts by which a depth is off, and a spacing of neighbours:
-        nominal depths of a whole line are often off together
-    clear : the order is the only one where any other is off by so much more [m]
+    points : candidate points
+    depths, spacings : cost per metre of a difference in depth, and in the spacing of neighbours:
+        nominal depths of a whole line often share an error
+    clear : least excess cost of the second-best order [m]
 
     Raises
     ------
     UsageError
-        Their order is not the only one.
+        The order is ambiguous.
     """
     down = sorted(points, key=lambda at: line.still[at])
     rows = sorted(range(len(series)), key=lambda i: series[i].nominal)
@@ -348,7 +348,7 @@ def aligned(
     Parameters
     ----------
     few, many : rising [m]
-    depths, spacings : what a metre costs by which a depth is off, and a spacing between neighbours
+    depths, spacings : cost per metre of a difference in depth, and in the spacing of neighbours
     """
     places = len(many)
 

@@ -81,9 +81,9 @@ steps many times as large.
 SETTLED = 6
 """Number of steps before the line error is estimated, as it would absorb sensor steps."""
 LONGER = 30.0
-"""Times a step of the error of the line is lengthened, at most."""
+"""Maximum factor by which a step of the line error is lengthened."""
 FURTHEST = 0.7
-"""Logarithm of a factor, at most."""
+"""Maximum logarithm of a factor."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Knots:
     ----------
     depth : (K,) at rest, rising [m]
     level : (k, K) weights of the knots in the current of a level
-    hung : the levels that are knots, and the knots they are
+    hung : levels that are knots, and the indices of these knots
     """
 
     depth: Floats
@@ -158,7 +158,7 @@ class Columns:
 
     @classmethod
     def made(cls, *counts: int) -> Columns:
-        """Return the slices of so many columns each."""
+        """Return slices of the given numbers of columns."""
         ends = np.cumsum([0, *counts]).tolist()
         return cls(*(slice(*pair) for pair in pairwise(ends)))
 
@@ -180,7 +180,7 @@ class ErrorScales:
     Attributes
     ----------
     flag : factor on the errors of a meter by its flag
-    share : of the knockdown of each stretch by which the line is wrong
+    share : error of the line, as a share of the knockdown of each stretch
     hours, reach : over which a current is correlated [h, m]
     """
 
@@ -191,7 +191,7 @@ class ErrorScales:
 
 
 class CurrentSmoother:
-    """A record with measured currents, estimated as a whole."""
+    """Estimate of a whole record with measured currents."""
 
     def __init__(
         self, mooring: Design, measured: MooringMeasurements, names: Sequence[str]
@@ -294,7 +294,7 @@ class CurrentSmoother:
     def _slopes(
         self, there: Floats, state: Floats, factor: Floats, times: NDArray[np.int64]
     ) -> Floats:
-        """Return (n, p, 2 K + f) slopes of the depths with currents and logarithms of factors."""
+        """Return (n, p, 2 K + f) derivatives of depths by currents and logarithms of factors."""
         steps = SLOPE_STEP * np.eye(state.shape[1]), SLOPE_STEP * np.eye(len(factor))
         columns = [self.depths(state + ahead, factor, times) for ahead in steps[0]]
         columns += [self.depths(state, factor + ahead, times) for ahead in steps[1]]
@@ -313,7 +313,7 @@ class CurrentSmoother:
         return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
 
     def by_line(self, there: Floats) -> Floats:
-        """Return (n, p, z) change of the depths with the shares that the stretches are wrong by."""
+        """Return (n, p, z) derivatives of the depths by the error shares of the stretches."""
         edges, own, _ = self._stretches
         order = np.argsort(self.still, kind="stable")
         down = np.maximum(np.nan_to_num(there - self.still), 0.0)
@@ -402,7 +402,7 @@ class CurrentSmoother:
     # --- iterations
 
     def solve(self) -> None:
-        """Take steps until the depths stay."""
+        """Iterate until the depths converge."""
         before = np.full((len(self.measured.time), len(self.still)), np.inf)
         for turn in range(TURNS):
             there = self.linear()
@@ -428,8 +428,7 @@ class CurrentSmoother:
         return np.asarray(gone[:, :1] + gone[:, 1:])
 
     def _place(self) -> None:
-        """Take a Gauss-Newton step of the factors, datum and offsets, with the currents of the
-        meters.
+        """Take a Gauss-Newton step of the factors, datum and offsets, given the metered currents.
 
         With currents that fit the pressures, the currents would shrink and the drag grow. Times
         with a common error have a reduced weight, and steps of datum and offsets are subtracted.
@@ -463,7 +462,7 @@ class CurrentSmoother:
         return float(np.clip(self.scales.share * np.exp(whole), *SHARES))
 
     def _heavy(self, square: Floats) -> Floats:
-        """Return variances of the beginning by Student's law, where such squares are expected."""
+        """Return initial variances by Student's law, from the expected squares."""
         return np.maximum(self.begin, 0.5 * (self.begin + square))
 
     def _turn(self, law: StateSpace, slope: Floats, there: Floats, turn: int) -> None:
@@ -555,7 +554,7 @@ class CurrentSmoother:
         return self.forward(self.factor)
 
     def way(self, times: slice) -> ReadCurrents:
-        """Return the currents that are estimated, at the knots."""
+        """Return the estimated currents at the knots."""
         u, v = self.currents(self.state[times, self.columns.current])
         return ReadCurrents(self.knot_depth[times], u, v, np.zeros((len(u), 0, 0)))
 
@@ -593,7 +592,7 @@ class CurrentSmoother:
 
     @property
     def doubt(self) -> Floats:
-        """Return (n, k) probability that the reading of a level is unrelated to its current.
+        """Probability (n, k) that the reading of a level is unrelated to its current.
 
         It follows from the prior odds and two normal laws: the meter error alone, and the meter
         error plus the variability of the current.

@@ -30,7 +30,7 @@ MOST_TIMES = 500
 """Maximum number of times for the common unknowns, spread evenly over the record."""
 
 FREE = -1
-"""In place of a point or a sensor, where a level has none."""
+"""Index for a level without a point or a sensor."""
 
 
 @dataclass(frozen=True)
@@ -41,15 +41,15 @@ class MooringMeasurements:
     ----------
     time : (n,) to the nanosecond, rising
     label : (s,) of the used sensors
-    point : (s,) where they are, see `calm.motion.line_response`
-    depth : (n, s) below the surface by their pressures [m]; NaN where not measured, or flagged
-    level_depth : (n, k) [m]; NaN for levels that hang on the line
-    level_point : (k,) the point that a level hangs at; `FREE` without
-    u, v : (n, k) current [m/s], NaN where not measured
-    flag : (n, k) quality flags of the current; 0 where it has none
-    tide : (n,) height of the sea surface above its mean [m]; None where not known
-    false : (n,) whether a current that cannot be was left out; None where none was
-    sunk : (n,) how much deeper the whole mooring is than at first [m]; None where it never moved
+    point : (s,) point of each sensor, see `calm.motion.line_response`
+    depth : (n, s) below the surface by their pressures [m]; NaN if missing or rejected by a flag
+    level_depth : (n, k) [m]; NaN for levels on the line
+    level_point : (k,) point of each level on the line; `FREE` for fixed levels
+    u, v : (n, k) current [m/s]; NaN if missing
+    flag : (n, k) quality flags of the current; 0 without flags
+    tide : (n,) height of the sea surface above its mean [m]; None if unknown
+    false : (n,) whether an impossible current was removed; None if none was removed
+    sunk : (n,) increase in depth of the whole mooring since the start [m]; None if it never moved
     """
 
     time: NDArray[np.datetime64]
@@ -181,7 +181,7 @@ def measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Fl
 
     Parameters
     ----------
-    one : the sensor
+    one : series of the sensor
     wanted : (n,) other times
     gap : between known neighbours, at most
     """
@@ -201,7 +201,7 @@ def by_neighbours(time: Times, depth: Floats) -> tuple[Floats, Floats]:
     Parameters
     ----------
     time : (n,) rising
-    depth : (n, s) as measured; NaN where not [m]
+    depth : (n, s) measured depths; NaN if missing [m]
     """
     expected, deviation = np.full_like(depth, np.nan), np.full_like(depth, np.inf)
     hours = (time - time[:1]) / np.timedelta64(1, "h")
@@ -238,15 +238,15 @@ def joined(
 
     Parameters
     ----------
-    points : where each sensor is
-    labels : of all points
+    points : point of each sensor
+    labels : labels of all points
     still : (p,) their depths in still water [m]
     sea_level : times, and height of the sea surface above its mean [m]
 
     Raises
     ------
     UsageError
-        A current's label is that of no part; no time has both a current and a pressure.
+        A current has a label without a part; no time has both a current and a pressure.
     """
     time = common_times(currents, sensors)
     order = np.argsort([still[point] for point in points], kind="stable")
@@ -303,7 +303,7 @@ def joined(
 
 
 def _nearest(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
-    """Return the worse of the flags on either side of each time; 9 outside of the record."""
+    """Return the worse of the flags before and after each time; 9 outside the record."""
     after = np.searchsorted(one.time, time)
     upper, lower = np.minimum(after, len(one.time) - 1), np.maximum(after - 1, 0)
     exact = one.time[upper] == time
@@ -320,13 +320,13 @@ class CurrentMeasurements:
     Attributes
     ----------
     time : (n,) to the nanosecond, rising
-    depth : (n, k) of the levels [m]; NaN where they hang on the line
-    label : (k,) of the parts they hang at; empty for levels of a depth
+    depth : (n, k) of the levels [m]; NaN for levels on the line
+    label : (k,) part of the line at each level; empty for fixed depths
     u, v : (n, k) [m/s]
     flag : (n, k); 0 without
     source : its file
-    notes : what to know of it
-    false : (n,) whether a speed that cannot be was left out
+    notes : remarks on the file
+    false : (n,) whether an impossible speed was removed
     """
 
     time: NDArray[np.datetime64]
@@ -355,9 +355,9 @@ def read_currents(
     Parameters
     ----------
     seabed : depth of the water [m]
-    place : latitude and longitude of the mooring [degrees], where it is known
+    place : latitude and longitude of the mooring [degrees], if known
     declination : see `calm.records.current_terms.Terms`
-    maximum_speed : what is faster is left out, and said [m/s]
+    maximum_speed : speed above which a current is removed, with a note [m/s]
 
     Raises
     ------
@@ -392,7 +392,7 @@ def read_currents(
 
 
 def _plausible(one: CurrentMeasurements, maximum_speed: float) -> CurrentMeasurements:
-    """Without the levels whose current cannot be."""
+    """Replace impossible currents by gaps."""
     depth = np.where([bool(label) for label in one.label], 0.0, one.depth)
     false = implausible(depth, one.u, one.v, None, maximum_speed)
     if not false.any():

@@ -107,27 +107,27 @@ class RecoveredMooring:
 
     Attributes
     ----------
-    mooring : with a position
+    mooring : mooring with a position
     pressures, currents : files, as their paths or as ``LABEL=PATH``
-    match : by `label`, or by nominal `height` or `depth`
-    fit : what is estimated besides the drag
-    hold_out : labels of sensors that are hidden, and at which the result is judged
-    cross_validate : whether each used sensor is hidden in turn
-    correct : of `CORRECTABLE`, what is taken off where nothing else is as likely
+    match : method of matching: by `label`, or by nominal `height` or `depth`
+    fit : factors to estimate in addition to the drag
+    hold_out : labels of sensors that are hidden, to judge the result
+    cross_validate : whether to hide each used sensor in turn
+    correct : members of `CORRECTABLE` to correct, if no other fault is as likely
     sea_level : the height of the sea surface, as a path
-    flags : of the pressures that count as measured, separated by commas
-    gap : longest time between two values that are interpolated
+    flags : accepted quality flags of the pressures, separated by commas
+    gap : longest gap over which values are interpolated
     declination : added to the directions of the currents [degrees]
-    prior : a record of currents whose shapes are taken, where none were measured; None of none
-    without : labels of sensors that are left out altogether
-    moved : the step by which all sensors are deeper, where no currents were measured
-    measured, notes, source : what was read, with notes on it and the source files
+    prior : record of currents with the profile shapes to use, if none were measured, or None
+    without : labels of sensors to ignore
+    moved : common step in the depths of all sensors, if currents were not measured
+    measured, notes, source : measurements, notes on them and the source files
 
     Raises
     ------
     InputError, UsageError
-        A file cannot be read, the mooring has no position, no sensor is left, or what is asked for
-        cannot be done.
+        A file cannot be read, the mooring has no position, no sensor is left, or an option is
+        invalid.
     """
 
     mooring: Design
@@ -251,7 +251,7 @@ class RecoveredMooring:
             self.source["prior"] = hashed(self.prior)
 
     def _without(self, points: dict[int, int], labels: Sequence[str]) -> dict[int, int]:
-        """Return the points of the sensors that are not left out, whose labels must be known."""
+        """Return the points of the sensors in use. Labels to ignore must exist."""
         known = [labels[at] for at in points.values()]
         for option, asked in (("--without", self.without), ("--hold-out", self.hidden)):
             for label in asked:
@@ -275,7 +275,7 @@ class RecoveredMooring:
 
         Parameters
         ----------
-        output, workers, progress, tell : see `calm.batch.run.run_batch`, as what is returned
+        output, workers, progress, tell : see `calm.batch.run.run_batch`, also for the return value
         """
         task = self._prepared(tell)
         found = diagnosed(task) if self.correct else ()
@@ -314,8 +314,8 @@ class RecoveredMooring:
 
         Parameters
         ----------
-        result : of `estimate`
-        tell : is told what is going on
+        result : result of `estimate`
+        tell : receives progress messages
         workers : threads
         """
         faults = (*self._faults, *self.moved, *diagnosed(self.task))
@@ -351,24 +351,24 @@ def estimate_motion(
 
     Parameters
     ----------
-    mooring : with a position
+    mooring : mooring with a position
     pressures : of the sensors on the line: a file or several, as paths or as ``LABEL=PATH``, an
         `xarray.Dataset` as such a file holds it, or a `pandas.DataFrame` with an index of times and
         columns such as ``LABEL[dbar]``
-    currents : in the same ways; none: they are learnt from the pressures
-    match : how sensors are found on the line: by `label`, or by nominal `height` or `depth`
-    fit : what to estimate for the whole record besides the drag: `buoyancy`, `length`
-    hold_out : labels of sensors that are hidden, and at which the result is judged
-    cross_validate : hide each used sensor in turn, and judge
+    currents : records of currents, in the same forms; if empty, CALM infers the currents from the
+        pressures
+    match : method of matching sensors: by `label`, or by nominal `height` or `depth`
+    fit : factors to estimate for the whole record besides the drag: `buoyancy`, `length`
+    hold_out : labels of sensors that are hidden, to judge the result
+    cross_validate : hide each used sensor in turn, and judge the result
     sea_level : the height of the sea surface over time, as a path
-    flags : quality flags of the pressures that count as measured
-    gap : longest time between two values that are interpolated [s]; two hours where not given
+    flags : accepted quality flags of the pressures
+    gap : longest gap over which values are interpolated [s]; two hours by default
     declination : added to the directions of the currents [degrees]
-    correct : what is taken off where a sensor is wrong: `clock`, `gain`, `offset`, `drift`; `air`
-        of absolute pressures
-    prior : a record of currents whose shapes are taken, without `currents`
-    without : labels of sensors that are left out altogether
-    workers : threads; one for each processor that may be used where not given
+    correct : faults to correct: `clock`, `gain`, `offset`, `drift`, or `air` for absolute pressures
+    prior : record of currents with the profile shapes to use, without `currents`
+    without : labels of sensors to ignore
+    workers : number of threads; by default one for each available processor
 
     Raises
     ------

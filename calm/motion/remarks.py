@@ -19,7 +19,7 @@ FALSE = 0.5
 """Probability above which the current of a level is reported as false."""
 ALL, LINE, CURRENTS = "all sensors", "the line", "all currents"
 OF_LINE = ("currents", "speed", "slows", "buoyancy", "length", "drag", "fouling")
-"""Faults that are not of sensors but of the line and its currents: their sizes are logarithms."""
+"""Faults of the line and its currents, not of sensors. Their sizes are logarithms."""
 LIKELY = 20.0
 """Odds above which a fault is reported."""
 FAR_OFFSET = 2.5
@@ -29,7 +29,7 @@ FAR_DATUM = 10.0
 FAR_LENGTH = 5.0
 """Reported deviation of the length without measured currents, in prior deviations.
 
-The threshold is high because the length absorbs much of the error in the currents.
+Inferred currents absorb much of an error in length.
 """
 FAR_FACTOR = 3.0
 """Deviations from 1 above which a drag factor does not represent drag."""
@@ -43,17 +43,17 @@ class Fault:
 
     Attributes
     ----------
-    label : of the sensor; `ALL` where it is all of them alike
+    label : label of the sensor; `ALL` for all sensors together
     kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
-    value, low, high : with the ends of its interval of 95 %: how late its times are [h]; factor on
-        its depths; how much too deep it reads, what that grows to, or how far down the line it has
-        moved [m]; 0 of what is exchanged; of `OF_LINE` a factor on what the file or the meter says
-    odds : of this against all else that it may be, and against nothing
-    since : from when on its clamp has slipped, or it drifts; NaT of others
-    until : up to when it drifts; NaT of others
-    other : label of the sensor that it is exchanged with; empty otherwise
-    rival : what it may be as well, where that is not much less likely; empty otherwise
-    corrected : whether it has been taken off
+    value, low, high : size and the ends of its 95 % interval: clock lag [h]; gain; excess depth,
+        its final value, or the displacement down the line [m]; 0 for exchanged labels; for
+        `OF_LINE`, a factor on the value in the file or of the meter
+    odds : odds of this fault against all alternatives, including no fault
+    since : start of the slip or drift, else NaT
+    until : end of the drift, else NaT
+    other : label of the other sensor of an exchange; empty otherwise
+    rival : alternative explanation that is nearly as likely; empty otherwise
+    corrected : whether the fault has been corrected
     """
 
     label: str
@@ -88,9 +88,7 @@ class Fault:
         return (self.label, self.kind, self.other) == (other.label, other.kind, other.other)
 
     def alike(self, other: Fault) -> bool:
-        """Return whether two faults are the same, or both concern the whole line or all its
-        currents.
-        """
+        """Return whether faults are the same, or both concern the line or its currents."""
         both = {self.label, other.label} <= {LINE, CURRENTS}
         return both or self.same(other)
 
@@ -154,8 +152,7 @@ class Fault:
 
 
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
-    """Return the times at which the current of a level is more likely false than not, by level
-    name.
+    """Return the times at which the current of a level is probably false, by level name.
 
     Parameters
     ----------
@@ -167,7 +164,7 @@ def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dic
 
 
 def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
-    """Return a sentence on each level whose current looks false at some of so many times."""
+    """Return a remark on each level with false currents, out of the given number of times."""
     return [
         f"current at {name}: its direction or speed looks false at {len(when)} of {count} times, "
         f"first at {np.datetime_as_string(when[0], 'm')}"
@@ -224,7 +221,7 @@ class Agreement:
     bias : mean of computed less measured over them [m]
     rms : root of the mean square of that difference less its mean over the calm times [m]
     r : correlation of computed and measured
-    slope : of computed on measured
+    slope : regression slope of computed on measured depths
     """
 
     count: int
@@ -309,11 +306,11 @@ def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats
     Parameters
     ----------
     depth : (n, s) of the sensors; NaN at a time leaves that time without
-    point : (s,) where they are
+    point : (s,) points of the sensors
     still : (p,) depths in still water
     wanted : the point
 
-    Beyond the sensors the slope of the two nearest goes on; a single one moves everything alike.
+    Extrapolation uses the two nearest sensors; a single sensor shifts all points equally.
     """
     from scipy.interpolate import make_interp_spline
 
@@ -333,7 +330,7 @@ def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
 
     Parameters
     ----------
-    depth, point, still, wanted : as of `linear`
+    depth, point, still, wanted : see `linear`
     """
     from scipy.interpolate import PchipInterpolator
 

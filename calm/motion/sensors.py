@@ -45,7 +45,7 @@ def read_sensors(
 
     Parameters
     ----------
-    flags : quality flags of what counts as measured, where there are any
+    flags : accepted quality flags, for files with flags
     latitude : [degrees]
     seabed : depth of the water [m], for nominal heights above it
 
@@ -85,9 +85,7 @@ def _doubted(sensor: InstrumentSeries) -> InstrumentSeries:
 
 
 def depth_of(dbar: Floats, latitude: float) -> Floats:
-    """Convert pressures above atmospheric [dbar] to depths [m] by TEOS-10; infinite values give
-    NaN.
-    """
+    """Convert pressures above atmospheric [dbar] to depths [m] by TEOS-10; infinite gives NaN."""
     import gsw
 
     known = np.where(np.isfinite(dbar), dbar, np.nan)
@@ -140,7 +138,7 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 
 
 def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
-    """Return a table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
+    """Read a table ``time,LABEL[dbar],…``, or with units of length instead of dbar."""
     table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
     scales = {"pressure": (1.0 / PASCALS_PER_DBAR, "dbar"), "length": (1.0, "m")}
     summaries = {}
@@ -243,7 +241,7 @@ ALIKE, APART = 0.03, 3.0
 exchanged sensors [m].
 """
 BELOW = 1.1
-"""No reading is deeper than the seabed by this factor, and by `MISPLACED`."""
+"""Readings are too deep if they exceed the seabed by this factor and by `MISPLACED`."""
 
 
 def plausible(
@@ -257,13 +255,13 @@ def plausible(
 
     Parameters
     ----------
-    place : depth where it hangs in still water [m]
+    place : depth of the sensor in still water [m]
     seabed : depth of the water [m]
 
     Raises
     ------
     UsageError
-        A third of its times or more stand twice with different depths.
+        A third of its times or more occur twice, with different depths.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)
@@ -353,13 +351,13 @@ def air_notes(depth: Floats, place: Floats) -> list[str]:
 
 
 def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, str]:
-    """Return why sensors cannot be used, by label.
+    """Return the reasons why sensors are unusable, by label.
 
     Parameters
     ----------
     labels : (s,) of the sensors
     depth : (n, s) as measured [m]
-    place : (s,) depths where they hang in still water [m]
+    place : (s,) depths of the sensors in still water [m]
 
     Raises
     ------

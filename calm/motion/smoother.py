@@ -1,4 +1,4 @@
-"""Kalman filter and fixed-interval smoother: one forward and one backward pass of a record.
+"""Kalman filter and fixed-interval smoother, with one forward and one backward pass.
 
 The state follows x(t+1) = f x(t) + e with a diagonal f; readings are y = H x + noise, with
 independent errors. The backward recursion is from Durbin and Koopman (2012, Time Series Analysis by
@@ -27,12 +27,12 @@ class StateSpace:
     Attributes
     ----------
     fade : (n, q) share of each state that is left since the time before; the first row is not used
-    gained : (n, q) what its steady variances grow by since then, as a share of `steady`
+    gained : (n, q) growth of the steady variances since the previous time, as a share of `steady`
     steady : (q, q) covariance of states that fade
-    stepped : (n, q) variances of what is added to states that stay, since the time before
+    stepped : (n, q) noise variances of persistent states since the previous time
     first : (q, q) covariance at the first time; the mean is 0 throughout
     seen : (n, m, q) slopes of the readings; rows that hold at every time may come as (1, m, q)
-    read, noise : (n, m) readings, NaN for none, and their variances
+    read, noise : (n, m) readings, NaN if missing, and their variances
     """
 
     fade: Floats
@@ -73,9 +73,9 @@ class Smoothed:
 
     Attributes
     ----------
-    time : which
+    time : index of the time
     mean, covariance : (q,), (q, q) of the state
-    moved : (q,) mean square of what was added to each state after this time; 0 at the last
+    moved : (q,) mean square of the noise of each state after this time; 0 at the last time
     """
 
     time: int

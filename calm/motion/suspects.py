@@ -46,13 +46,13 @@ class Suspect:
 
     Attributes
     ----------
-    fault : what it is
-    column : (n, s) change of the depths that are read with its size
-    wide : deviation of its size beforehand; 0 of one whose size is fixed
-    log : logarithm of its probability beforehand
-    shift : (n, s) what is added to the depths that are read beforehand [m]
-    ahead : (n, s) change of the depths with a size throughout [m]; None where it is linear
-    share : (n, 1) of the size at each time; None of one that is the same throughout
+    fault : the fault
+    column : (n, s) change in the measured depths per unit of its size
+    wide : prior deviation of its size; 0 for a fixed size
+    log : logarithm of its prior probability
+    shift : (n, s) fixed change in the depths [m]
+    ahead : (n, s) change in the depths for a size that applies throughout [m]; None if linear
+    share : (n, 1) share of the size at each time; None if it is constant
     """
 
     fault: Fault
@@ -199,7 +199,7 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
 
 
 STRETCHED, AMISS = 1.25, 20.0
-"""Maximum ratio of a line's length to its cut length; tolerance for pressures [m]."""
+"""Maximum ratio of a line's length to its cut length, and tolerance for pressures [m]."""
 
 
 def distances_of(mooring: Design) -> Floats:
@@ -215,7 +215,7 @@ def distances_of(mooring: Design) -> Floats:
 
 
 def torn(measured: MooringMeasurements, distance: Floats) -> tuple[MooringMeasurements, list[str]]:
-    """Remove depths farther apart than the line between two sensors; also return notes on them.
+    """Remove depths farther apart than the line between two sensors, with notes on the removal.
 
     The sensor farther from its median is wrong. Nothing is removed from a sensor if half of its
     depths or more would be.

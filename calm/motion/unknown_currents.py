@@ -54,7 +54,7 @@ SHAPED, OTHER, FEWEST_PROFILES = 60.0, 0.2, 20
 number of profiles for a shape.
 """
 APART = 25.0
-"""Beyond the levels of a profile its ends still hold [m]."""
+"""Distance beyond the levels of a profile to which its end values extend [m]."""
 MOST_TIMES, TURNS, FIRST = 240, 12, 2
 """Number of learning times, all iterations, and iterations before the law changes."""
 STRONGER = 0.5
@@ -63,9 +63,9 @@ STRONGER = 0.5
 They have the largest knockdown, as the tide blurs the others.
 """
 LONGEST = 1.0
-"""Step of a logarithm, at most."""
+"""Maximum step of a logarithm."""
 SHARES = (0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4)
-"""Errors of the line that are tried, as shares of the knockdown of each stretch."""
+"""Trial errors of the line, as shares of the knockdown of each stretch."""
 USUAL, WITHIN = 0.07, 0.7
 """Prior median of the error share, and the deviation of its logarithm."""
 SEABED = 0.0005
@@ -105,7 +105,7 @@ def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasure
 
 
 def assumed_law(measured: MooringMeasurements) -> tuple[Floats, Floats]:
-    """Return (k,), (k, k) mean and covariance of the logarithms of the speeds beforehand."""
+    """Return (k,), (k, k) prior mean and covariance of the logarithms of the speeds."""
     knots = measured.level_depth[0]
     mean = np.log(SURFACE * np.exp(-(knots - knots[0]) / DECAY) + LEAST)
     place = np.linspace(0.0, 1.0, len(knots))
@@ -123,7 +123,7 @@ def shaped_law(
     Parameters
     ----------
     record : the currents, anywhere and at any time
-    still : depths of the parts that levels may hang at, by label [m]
+    still : depths of the parts of the line in still water, by label [m]
     """
     knots, (mean, covariance) = measured.level_depth[0], assumed_law(measured)
     rows = []
@@ -167,11 +167,12 @@ def learn_currents(
 
     Parameters
     ----------
-    mooring : as its file says
-    measured : with the knots as levels
-    names : of the factors that are estimated
-    tell : is told what is going on
-    prior : currents of another record, whose shapes are taken; none for what is assumed
+    mooring : mooring as in its file
+    measured : measurements with the knots as levels
+    names : names of the factors to estimate
+    tell : receives progress messages
+    prior : currents of another record, for their profile shapes; if empty, the default prior
+        applies
     """
     part = measured.at(_chosen(measured))
     mean, covariance = assumed_law(part)
@@ -228,8 +229,7 @@ def learn_currents(
 
 
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
-    """Return the common height of the sensors above the line in still water, as a value of at most
-    0 [m].
+    """Return the common depth of the sensors less that in still water, at most 0 [m].
 
     Currents cannot raise a line. If the shallowest readings of a sensor are above its place, the
     water depth, a length or the place in the file is wrong.
@@ -245,7 +245,7 @@ def raised(mooring: Design, measured: MooringMeasurements) -> float:
 
 @dataclass(frozen=True)
 class _Fit:
-    """The times that are learnt from, under a law."""
+    """Fit of the learning times under a law."""
 
     moments: LineResponse
     common: Common
@@ -256,11 +256,11 @@ class _Fit:
         return self.law.read(self.moments.measured.level_depth)
 
     def linear(self, logs: Floats) -> Linear:
-        """Return the line in these currents with its slopes there."""
+        """Return the line in these currents, with its slopes."""
         return self.moments.linear(self.way, logs)
 
     def moved(self, at: Linear, logs: Floats) -> Linear:
-        """Return the depths at new speeds; small changes in law and line leave the slopes unchanged."""
+        """Return the line at new speeds with the old slopes, for small changes in law and line."""
         return replace(at, logs=logs, depth=self.moments.depths(self.way, logs))
 
     def posterior(self, at: Linear, common: Common | None = None) -> Posterior:
@@ -302,7 +302,7 @@ def _with_mean(fit: _Fit, at: Linear | None) -> Linear:
 
 
 def _chosen(measured: MooringMeasurements) -> Integers:
-    """Return times with the most pressures, spread evenly over the depth they measure."""
+    """Return times with the most pressures, spread evenly over the measured depths."""
     known = np.isfinite(measured.depth)
     count = known.sum(axis=1)
     used = np.flatnonzero(count == count.max())
@@ -330,7 +330,7 @@ def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
 
 
 def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterior) -> Common:
-    """Return factors, datum and offsets after a step of Gauss and Newton, and their covariance."""
+    """Return factors, datum and offsets after a Gauss-Newton step, and their covariance."""
     seen = fixed_slopes(at.common[:, fit.moments.measured.point])
     inverse = np.linalg.inv(found.expected)
     pulls = np.einsum("nsq,nst,nt->nq", seen, inverse, found.innovation)
@@ -344,7 +344,7 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Return the best state of each time, from the nearest of the fits that were kept."""
+    """Return the best state of each time, starting from the nearest stored fit."""
     law, one = common.law, moments.measured
     assert law is not None and law.kept is not None
     way, kept, still = law.read(one.level_depth), law.kept, moments.forward.still

@@ -38,7 +38,7 @@ _TOWARD = re.compile(r"\bto direction\b|\btowards?\b|\bflow(s|ing)? to\b|\bgoing
 _FROM = re.compile(r"\bfrom direction\b|\bdirection from\b|\bcom(es|ing) from\b|\bfrom which\b")
 
 _OF_SHIPS = ("vmdas", "winriver", "winriver2", "winriver ii", "uhdas", "uhdas+codas", "codas")
-"""Programs that write the files of ADCPs on moving ships (`source_program`)."""
+"""Programs that write files of ship-mounted ADCPs (`source_program`)."""
 _PLATFORM = (
     "platform_speed_wrt_ground", "eastward_platform_velocity", "northward_platform_velocity",
 )  # fmt: skip
@@ -74,8 +74,9 @@ def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | N
 
 
 def other_frame(attributes: Mapping[Any, Any]) -> str | None:
-    """Return why velocities are not to the east and north, by the coordinate system that a dataset
-    or a variable gives; None if they may be.
+    """Return why velocities are not to the east and north; None if they may be.
+
+    The evidence is the coordinate system in the attributes of a dataset or a variable.
     """
     for name in filter(_FRAMES.fullmatch, map(str, attributes)):
         frame = str(attributes[name]).lower()

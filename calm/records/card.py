@@ -17,7 +17,7 @@ from calm.records.current_terms import time_text
 from calm.records.value_tests import gaps_of
 
 LONGEST = 300
-"""Characters of a text that are shown."""
+"""Maximum number of characters shown of a text."""
 _MOST_GAPS = 20
 _TEXTS = {
     "title": ("title",),
@@ -78,7 +78,7 @@ class ReadCard:
     declination: float | None = None
 
     def sentence(self) -> str:
-        """Format the card as one line for a `history` attribute."""
+        """Format the card as a line of the `history` attribute."""
         rows = card_rows(self.to_dict())
         told = "; ".join(f"{name}: {' '.join(value.split())}" for name, value in rows)
         return f"read {self.file}: {told}"

@@ -262,7 +262,7 @@ _PRACTICAL = ("", "1", "psu", "pss", "pss-78", "pss78", "1e-3", "0.001", "ppt", 
 
 
 def refuse_other_salinity(variable: xr.DataArray) -> None:
-    """Refuse a salinity that is not practical by its unit (UnreadableError)."""
+    """Reject a salinity whose unit is not that of practical salinity (UnreadableError)."""
     unit = str(variable.attrs.get("units", "")).strip()
     if unit.lower() not in _PRACTICAL:
         said = f"`{unit}`, is not that of a practical salinity: 1 (or PSU)"
@@ -333,8 +333,8 @@ def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> F
 
     Parameters
     ----------
-    dataset : of instruments
-    dimension : what counts these; None for one instrument
+    dataset : dataset of the instruments
+    dimension : dimension of the instruments; None for a single instrument
     seabed : depth of the water, for heights above it [m]
     """
     dims = () if dimension is None else (dimension,)

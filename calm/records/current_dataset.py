@@ -1,4 +1,4 @@
-"""Dataset of currents as arrays of depth, u, v and w: one or many profiles, read lazily."""
+"""Dataset of currents as arrays of depth, u, v and w, for one or many profiles, read lazily."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ class CurrentDataset:
     Attributes
     ----------
     times : (n,) in the order of the file; None for a profile without a time
-    notices : what a person should know before trusting it
+    notices : remarks to read before the data are used
     turned : angle by which a current relative to magnetic north was turned
-    rules : what was understood beyond doubt, and how
+    rules : rules by which the file was read
     source : names of the variables, and the place
     labels : see `Record`
     """
@@ -133,7 +133,7 @@ class CurrentDataset:
         return depth, first, second, up[0] if up else None
 
     def flags(self, index: Index) -> NDArray[np.int8] | None:
-        """Return (n, k) the worse quality flags of both components; None without flags."""
+        """Return (n, k) the worse of the quality flags of both components; None without flags."""
         if not self._flags:
             return None
         every = [self._along(one, index, velocity.flags_of) for one in self._flags]
@@ -147,7 +147,7 @@ class CurrentDataset:
         Parameters
         ----------
         file : name of the file
-        index : of the times, rising
+        index : indices of the times, rising
         """
         every, times = self.times, None
         said: list[str] = []

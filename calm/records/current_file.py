@@ -32,7 +32,7 @@ from calm.records.value_tests import CurrentValues, current_doubts, step_doubts
 
 _BLOCK = 10_000
 AT_ONCE = 50_000
-"""Lines of a record that are read together."""
+"""Number of lines of a record that are read together."""
 
 COLUMNS = 4
 """Depth [m], u, v and w [m/s]."""
@@ -46,15 +46,15 @@ def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[Curre
     Parameters
     ----------
     path : CSV, NetCDF or zarr
-    time : in ISO 8601; None where there is only one
-    terms : how the current is to be taken
+    time : ISO 8601; None if the file has only one
+    terms : options for reading the current
 
     Raises
     ------
     InputError
         With the mistakes of the file.
     TimeChoiceError
-        The time is not in the file, or is needed to choose one of several.
+        The time is not in the file, or is missing although the file has several.
     """
     read = _from_arrays if holds_arrays(path) else _from_text
     table, notices = read(path, time, terms)
@@ -76,16 +76,16 @@ def open_record(path: Path, terms: Terms, time: Period | None = None, every: int
 
     Parameters
     ----------
-    path, terms : the record, and how its currents are to be taken
+    path, terms : path of the record, and options for reading its currents
     time : first and last time, see `parse_period`
-    every : take one profile in so many
+    every : read one profile in this number
 
     Raises
     ------
     InputError
-        It cannot be understood: why, and what it holds.
+        The file is unreadable; the message gives the reason and its contents.
     UsageError
-        No profile of it is asked for.
+        The options select no profile.
     """
     if not (path.is_file() or path.is_dir()):
         raise refused(path, "is not a regular file" if path.exists() else "no such file")
@@ -109,7 +109,7 @@ def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTab
 
 
 def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
-    """Return the levels in water that have a value, by depth."""
+    """Return the levels below the surface that have a value, sorted by depth."""
     depth, u, v, up = found
     up = np.zeros_like(u) if up is None else up
     depth, u, v, w = (values.ravel() for values in (depth, u, v, up))
@@ -367,10 +367,10 @@ class CurrentHeader:
 
         Parameters
         ----------
-        rows : of the table
-        problems : to add to
-        terms : how the current is to be taken
-        profile : (n,) which profile each row is of; None where all are of one
+        rows : rows of the table
+        problems : list to which mistakes are added
+        terms : options for reading the current
+        profile : (n,) index of the profile of each row; None if all rows form one profile
         """
         first = int(self.timed)
 

@@ -27,13 +27,13 @@ class Terms:
 
     Attributes
     ----------
-    water_depth : places heights above the seabed [m]; inf where it is not known
-    place : whose column is wanted, where a file holds several
-    declination : of magnetic north from true north, positive to the east [degrees]; turns what
-        the file says is magnetic
-    maximum_speed : a faster current is a mistake of the file [m/s]
-    on_the_line : whether levels may be parts of a line by their labels, and currents that the file
-        flags as bad are kept with their flags; these are left out otherwise
+    water_depth : water depth, to convert heights above the seabed [m]; inf if unknown
+    place : position of the wanted grid column, for a file with several
+    declination : magnetic declination, positive to the east [degrees]; rotates currents that the
+        file refers to magnetic north
+    maximum_speed : speed above which a current is a mistake of the file [m/s]
+    on_the_line : whether levels may be labels of parts of a line, and bad currents are kept with
+        their flags; both are excluded otherwise
     """
 
     water_depth: float = inf

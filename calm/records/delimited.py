@@ -23,7 +23,7 @@ from calm.physics.line import Floats
 from calm.whole_file import decoded, read_content
 
 LARGEST_CSV = 50_000_000
-"""Largest table that is read whole [bytes]."""
+"""Maximum size of a table that is read whole [bytes]."""
 
 MOST_PROBLEMS = 20
 """Maximum number of mistakes shown for one file; a wrong unit would cause thousands."""
@@ -62,7 +62,7 @@ class Dialect:
 
     Attributes
     ----------
-    separator : a tab, a semicolon or a comma; a blank stands for any run of blanks
+    separator : tab, semicolon, comma or blank; a blank means any run of blanks
     decimal : a point or a comma
     """
 
@@ -70,7 +70,7 @@ class Dialect:
     decimal: str = "."
 
     def cells(self, line: str) -> list[str]:
-        """Return the cells of a line without blanks and quotation marks, decimals with a point."""
+        """Return the cells of a line, stripped and unquoted, with decimal points."""
         if '"' in line:
             found = [text for _, text in self._placed(line)]
         elif self.separator == " ":
@@ -81,9 +81,7 @@ class Dialect:
         return [self.with_point(text) for text in found] if self.decimal == "," else found
 
     def column(self, line: str, cell: int) -> int:
-        """Return the column at which a cell begins in its line, from 1; 1 if the line has no such
-        cell.
-        """
+        """Return the column at which a cell begins in its line, from 1; 1 for a missing cell."""
         placed = self._placed(line)
         return placed[cell][0] + 1 if cell < len(placed) else 1
 
@@ -111,11 +109,11 @@ class CellRow(NamedTuple):
 
     Attributes
     ----------
-    path : of its file
-    number : of the line
-    line : as it stands
-    cells : without `skipped` ones before them
-    dialect : of the table
+    path : path of the file
+    number : line number
+    line : original text of the line
+    cells : cells of the line, without the first `skipped` cells
+    dialect : dialect of the table
     """
 
     path: Path
@@ -160,7 +158,7 @@ class TextTable:
     rows: Sequence[CellRow]
 
     def whole_rows(self, problems: list[Problem]) -> list[CellRow]:
-        """Return the rows with as many cells as the header; mistakes are added for the others."""
+        """Return the rows with as many cells as the header; the others are added to `problems`."""
         whole = []
         for row in self.rows:
             problems += row.mixed_decimals()
@@ -179,7 +177,7 @@ class CopiedTable:
 
     Attributes
     ----------
-    headings : of the columns; None where the first line is one of numbers
+    headings : column headings; None if the first line holds numbers
     rows : cells without the blanks around them, as many in each as there are columns
     """
 
@@ -188,13 +186,13 @@ class CopiedTable:
 
 
 def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = None) -> TextTable:
-    """Return the table of a file of UTF-8 text.
+    """Read a table from a file of UTF-8 text.
 
     Parameters
     ----------
-    path : of the file
-    example : of a header, for messages
-    lines : that another reader made of the file
+    path : path of the file
+    example : sample header, for messages
+    lines : numbered lines of the file, if another reader has already split it
 
     Raises
     ------
@@ -217,9 +215,9 @@ def table_lines(
 
     Parameters
     ----------
-    path : of its file
+    path : path of the file
     lines : all lines of the file
-    example : of a header, for messages
+    example : sample header, for messages
 
     Raises
     ------
@@ -278,8 +276,9 @@ def cells_in(text: str) -> list[list[str]]:
 
 
 def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
-    """Find the separator that divides most lines into the same number of cells, and the decimal
-    sign.
+    """Find the separator and the decimal sign of a table.
+
+    The separator divides most lines into the same number of cells.
 
     The lines must be neither empty nor comments. If `words`, cells may contain several words, and
     blanks are no separator. The decimal sign is a comma if a number has a comma that cannot

@@ -35,8 +35,8 @@ def as_files(given: Any, folder: Path, name: str) -> list[str]:
 
     Parameters
     ----------
-    given : one record or several
-    folder, name : where to write, and how the names of the files begin
+    given : a record, or several
+    folder, name : output folder, and prefix of the file names
 
     Raises
     ------

@@ -40,9 +40,9 @@ class GridColumn:
 
     Attributes
     ----------
-    index : of every horizontal dimension
-    place : where it is, None where the file does not say
-    notes : how it was found
+    index : index along every horizontal dimension
+    place : position of the column, None if the file does not give it
+    notes : remarks on the choice
     """
 
     index: dict[str, int]
@@ -134,7 +134,7 @@ def _named(dataset: xr.Dataset, coordinate: str, usual: tuple[str, ...]) -> list
 
 
 def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.DataArray] | None:
-    """Return latitude and longitude of the columns that the dimensions span."""
+    """Return latitude and longitude over the given dimensions; None if either is missing."""
     found = []
     for coordinate, usual in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
         named = [dataset[name] for name in _named(dataset, coordinate, usual)]
@@ -198,8 +198,8 @@ def kilometres_from(latitude: Any, longitude: Any, place: Place) -> NDArray[Any]
 
     Parameters
     ----------
-    latitude, longitude : of the places [degrees]
-    place : the other one
+    latitude, longitude : coordinates of the places [degrees]
+    place : reference position
     """
     first, second = np.radians(latitude), np.radians(place[0])
     east = np.radians(longitude - place[1])
@@ -267,10 +267,10 @@ class SeabedGrid:
 
     Attributes
     ----------
-    path, sha256 : of the file
-    latitude, longitude : of the origin of the mooring's places [degrees]
-    reach : how far from it nodes count, east and north [m]
-    east, north : of the point, from the origin [m]
+    path, sha256 : path and checksum of the file
+    latitude, longitude : origin of the mooring's coordinates [degrees]
+    reach : distance up to which nodes are read, east and north [m]
+    east, north : offset of the point from the origin [m]
     """
 
     path: str
@@ -312,14 +312,15 @@ class SeabedGrid:
         return float(self._depths(np.zeros((1, 2)))[0])
 
     def deeper(self, places: Floats) -> Floats:
-        """Return the increase in depth (n,) from the point to places (n, 2), east and north of it
-        [m].
+        """Return the depth (n,) at places (n, 2) less that of the point [m].
+
+        Places are given by their distances east and north of the point [m].
         """
         return self._depths(places) - self.depth
 
     @property
     def slope(self) -> float:
-        """The steepest slope to a node's distance from the point [degrees]."""
+        """Steepest slope of the seabed, over one node spacing [degrees]."""
         across, along = np.abs(self._falls).max(axis=1)
         return float(np.degrees(np.arctan(np.hypot(across, along))))
 

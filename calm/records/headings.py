@@ -58,9 +58,9 @@ def column_unit(
     Parameters
     ----------
     column : its heading, for the message
-    unit : that it gives
-    dimensions : those it may be of, of `calm.units.DIMENSIONS`
-    usual : the unit to offer; that of SI where it is empty
+    unit : unit in the heading, may be empty
+    dimensions : allowed dimensions, keys of `calm.units.DIMENSIONS`
+    usual : unit to suggest; by default that in SI
 
     Raises
     ------
@@ -132,11 +132,11 @@ class NamedColumns:
 
     Attributes
     ----------
-    factors : of the known columns that are there, to SI (degrees)
-    places : of the known columns in a row
-    rows : as many cells in each as there are headings
+    factors : factors to SI (degrees) of the known columns present
+    places : index of each known column in a row
+    rows : rows with as many cells as the header
     others : headings of the other columns
-    header : of the table
+    header : header of the table
     """
 
     factors: Mapping[str, float]
@@ -158,7 +158,7 @@ class TimeColumns:
     Attributes
     ----------
     time : (n,) to the nanosecond, rising
-    names, dimensions : of the columns; dimensions are those of `calm.units.DIMENSIONS`
+    names, dimensions : labels and dimensions of the columns; keys of `calm.units.DIMENSIONS`
     values : (n, c) in SI, NaN in gaps
     """
 
@@ -179,10 +179,10 @@ def read_named_columns(
 
     Parameters
     ----------
-    table : of a file
+    table : table of a file
     known : dimensions of the columns by their names, blanks in which may be underscores
-    problems : to add to
-    other_names : what columns may be called too
+    problems : list to which mistakes are added
+    other_names : alternative names of columns
     """
     header = table.header
     names = [heading(column)[0].lower().replace(" ", "_") for column in header.cells]
@@ -206,13 +206,13 @@ def read_named_columns(
 
 
 def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> TimeColumns:
-    """Return a table of times and quantities, each column headed by a label and its unit.
+    """Read a table of times and quantities; each heading has a label and its unit.
 
     Parameters
     ----------
-    path : of the table
-    dimensions : what the columns may be, of `calm.units.DIMENSIONS`
-    example : of a heading, for messages
+    path : path of the table
+    dimensions : allowed dimensions of the columns, keys of `calm.units.DIMENSIONS`
+    example : sample heading, for messages
 
     Raises
     ------

@@ -46,8 +46,8 @@ class Identity:
 
     Attributes
     ----------
-    label, serial : empty where its file does not say
-    nominal : its nominal depth [m]; NaN where its file does not say
+    label, serial : label and serial number; empty if missing in the file
+    nominal : nominal depth [m]; NaN if missing in the file
     source : name of its file
     """
 
@@ -74,13 +74,13 @@ class InstrumentSeries(Identity):
     Attributes
     ----------
     time : (n,) to the nanosecond, rising
-    value : (n,) in the unit of its quantity; NaN where not measured, or the flag is not wanted
+    value : (n,) in the unit of the quantity; NaN if missing or rejected by its flag
     dropped : readings that were left out for their flag
-    below : depth of what is measured below the instrument, a profiler's [m]
-    note : what a person should know before trusting it
-    card : what was read from its file
-    pressure : median of those in its file [dbar]; NaN without
-    called : what its own file calls it, whatever label a person gives; empty where it does not
+    below : depth of a profiler's bin below the instrument [m]
+    note : remarks on doubts and assumptions
+    card : summary card of the file
+    pressure : median pressure in the file [dbar]; NaN without pressures
+    called : label in the file, regardless of the label given by the user; empty if missing
     """
 
     time: NDArray[np.datetime64]
@@ -97,14 +97,14 @@ class InstrumentSeries(Identity):
 
         Parameters
         ----------
-        quantity : name of what was measured
-        variable : that it was read from
-        notes : what is said besides
+        quantity : name of the quantity
+        variable : source variable
+        notes : further remarks
 
         Raises
         ------
         UnreadableError
-            Most values are those of no sea water: its unit is another.
+            Most values are impossible for sea water, so the unit must be wrong.
         """
         value, said = self.value, [*notes]
         if quantity in WATER:
@@ -129,15 +129,15 @@ def read_series(
 
     Parameters
     ----------
-    given : a path each, or ``LABEL=PATH`` of a file of one instrument, or a folder of such files
-    names : of `QUANTITIES_MEASURED`
-    flags : quality flags of what counts as measured, where there are any; 8 never does
-    seabed : depth of the water, for nominal heights above it [m]; NaN where not known
+    given : paths of files, ``LABEL=PATH`` for a file of one instrument, or folders of such files
+    names : keys of `QUANTITIES_MEASURED`
+    flags : accepted quality flags, for files with flags; 8 is never accepted
+    seabed : water depth, for nominal heights above the seabed [m]; NaN if unknown
 
     Raises
     ------
     InputError
-        A file is none, cannot be read, or has none of the quantities, or one without its unit.
+        A file is missing or unreadable, has none of the quantities, or omits a unit.
     UsageError
         A label is given for a file of several instruments.
     """
@@ -229,10 +229,10 @@ PRESSURE = (
     ("sea_water_pressure_due_to_sea_water", "sea_water_pressure"),
     ("PRES_REL", "PRES", "pressure", "pres"),
 )
-"""Standard names and usual names of quantities that others are computed from."""
+"""Standard and usual names of quantities used to compute others."""
 PASCALS_PER_DBAR = 1e4
 _LATITUDE = 45.0  # default; it changes the pressure at a depth by 0.3 % at most
-_FEWEST = 6  # least number of zeros without any other value that are a fault
+_FEWEST = 6  # least length of a series of zeros alone that is a fault
 
 
 @dataclass(frozen=True)
@@ -364,9 +364,9 @@ def practical_salinity(
 
     Parameters
     ----------
-    taken : see `conductivity_in`
-    values : of these variables as they stand, all of one shape
-    depth : whose pressure counts where none is measured [m]; 10 m amiss are 0.004 in salinity
+    taken : variables as returned by `conductivity_in`
+    values : values of these variables in their file units, with equal shapes
+    depth : depth for a missing pressure [m]; an error of 10 m changes salinity by 0.004
     """
     import gsw
 
@@ -421,8 +421,8 @@ class Readings:
     Attributes
     ----------
     time : (n,) rising
-    axis, along : dimension of the times, and of the instruments; None of a single one
-    values : (n, k) of each variable, as they stand
+    axis, along : dimensions of the times and of the instruments; None for a single instrument
+    values : (n, k) of each variable, in file units
     dropped : (n, k) which are left out for the flag of any
     clock : name and unit of the times
     flags : readings that are left out, by the variable of flags
@@ -450,8 +450,8 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
 
     Parameters
     ----------
-    names : of the variables
-    flags : of what counts as measured; 8 never does
+    names : names of the variables
+    flags : accepted quality flags; 8 is never accepted
 
     Raises
     ------
@@ -498,7 +498,7 @@ def card_of(
     Parameters
     ----------
     source : name of the file
-    taken : names of the variables, by what each was taken for, in the order of the readings
+    taken : names of the variables by role, in the order of the readings
     """
     summaries = {}
     for (meaning, name), values in zip(taken.items(), found.values, strict=True):
@@ -516,7 +516,7 @@ def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str
 
     Parameters
     ----------
-    along : None for the one instrument of a file
+    along : dimension of the instruments; None for a file of one instrument
     seabed : depth of the water, for heights above it [m]
     source : name of the file
     """

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 LARGEST = 500_000_000
-"""Largest file that is read [bytes]."""
+"""Maximum file size [bytes]."""
 
 AIR = 10.1325
 """Pressure of the air [dbar]."""
@@ -217,7 +217,7 @@ def _rbr(path: Path) -> xr.Dataset:
 
 
 def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats:
-    """Return the `count` columns of the lines that have any."""
+    """Return the `count` columns of the lines with content."""
     there = [i for i in range(first, len(lines)) if lines[i].strip()]
     rows, problems = [], []
     for i in there:

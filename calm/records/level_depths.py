@@ -39,11 +39,11 @@ class LevelDepths:
 
     Attributes
     ----------
-    variable : its dimensions are those of the velocity, or fewer
-    factor : to metres, with the sign: negative where values grow upwards
+    variable : level variable; it has no dimension that the velocity lacks
+    factor : factor to metres with sign, negative if values increase upwards
     start : depth of their zero [m]
     instrument : depth of the instrument they are counted from, and its factor to metres
-    notes : what was assumed
+    notes : remarks on assumptions
     """
 
     variable: xr.DataArray
@@ -83,15 +83,15 @@ def find_levels(
 
     Parameters
     ----------
-    dataset : of the velocity
-    level : its dimension of levels, None where it has none
-    time : its dimension of times, None where it has none
-    water_depth : where heights above the seabed begin [m]
+    dataset : dataset of the velocity
+    level : level dimension of the velocity, None if it has none
+    time : time dimension of the velocity, None if it has none
+    water_depth : water depth, the zero of heights above the seabed [m]
 
     Raises
     ------
     UnreadableError
-        There are none, or the file does not say which way they grow.
+        There are no levels, or the file does not define their direction.
     """
     standard, wanted = dataset.cf.standard_names, {level} - {None}
     names = [

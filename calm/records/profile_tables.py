@@ -21,7 +21,7 @@ from calm.records.profile_doubts import direction_doubts
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 Report = Callable[[Sequence[str | int], str], Problem]
-"""Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
+"""Function from a place, ``("columns", j)`` or ``("rows", i, j)``, and a message to a problem."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class QuantityTable:
         own
     rows : numbers, or quantities with a unit, as text
     report : makes a mistake of its place and a message
-    problems : to which mistakes are added
+    problems : list to which mistakes are added
     """
 
     columns: Sequence[str]
@@ -249,7 +249,7 @@ def read_current(table: QuantityTable, terms: Terms = _AS_THEY_STAND) -> Current
     ----------
     table : with `depth`, with `u` and `v`, or `speed` and `toward` or `from`, and optionally `w`. A
         unit such as ``"deg magnetic"`` says that a column is relative to magnetic north.
-    terms : the declination that turns what is relative to magnetic north, the greatest speed
+    terms : options: the declination for columns relative to magnetic north, and the maximum speed
     """
     found = read_currents(table, terms)
     if found is None:
@@ -279,9 +279,9 @@ def read_currents(
 
     Parameters
     ----------
-    table, terms : as for `read_current`
-    profile : (n,) growing number of the profile of a record that a row is of, which may have gaps,
-        NaN then; None where all are of one
+    table, terms : see `read_current`
+    profile : (n,) increasing index of the profile of each row of a record, in which gaps become
+        NaN; None if all rows form one profile
     """
     columns, rows, before = table.columns, table.rows, len(table.problems)
     plain, turned = _from_magnetic_north(table, terms)
@@ -337,7 +337,7 @@ def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
 
 
 def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str], float]:
-    """Return the columns without the word for their north, and their turn [degrees]."""
+    """Return the columns without ``magnetic``, and their rotation [degrees]."""
     columns = table.columns
     plain, magnetic = magnetic_columns(columns)
     if not magnetic:
@@ -423,7 +423,7 @@ def turned_by(angle: float, u: Speed, v: Speed) -> tuple[Speed, Speed]:
     Parameters
     ----------
     angle : clockwise [degrees]
-    u, v : to the east and to the north [m/s]
+    u, v : velocity to the east and to the north [m/s]
     """
     sine, cosine = math.sin(math.radians(angle)), math.cos(math.radians(angle))
     return u * cosine + v * sine, v * cosine - u * sine

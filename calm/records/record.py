@@ -51,10 +51,10 @@ class Record(ABC):
     Attributes
     ----------
     time : (n,) to the nanosecond, rising
-    notes : the rules by which it was read, and what to know before trusting it
+    notes : rules by which the record was read, and doubts about it
     source : its file, its variables and its place, by name
-    cards : what was read from each file, for a person to look at
-    labels : of the parts of a line that its levels hang at, which have no depth then; else empty
+    cards : summary card of each file
+    labels : parts of a line at which the levels are placed (without depths), else empty
     """
 
     time: NDArray[np.datetime64]
@@ -82,7 +82,7 @@ class Record(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """Leave the file."""
+        """Close the file."""
 
     def __enter__(self) -> Record:
         return self
@@ -107,7 +107,7 @@ def parse_period(text: str) -> Period:
 
 
 def parse_place(text: str) -> Place:
-    """Return a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
+    """Parse a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
 
     Either may be of degrees and minutes: ``57 28.84 N, 19 10.2 W``. UsageError: the text is none,
     or no place on the earth.
@@ -132,8 +132,8 @@ def choose_profiles(
     ----------
     times : (n,) in the order of the file
     period : first and last time wanted; None for all
-    every : take one in so many
-    path : of the record, for messages
+    every : read one profile in this number
+    path : path of the record, for messages
 
     Raises
     ------
@@ -176,8 +176,8 @@ def part(index: Index, start: int, stop: int) -> Index:
 
     Parameters
     ----------
-    index : of the chosen profiles
-    start, stop : which of these
+    index : indices of the chosen profiles
+    start, stop : range of the chosen profiles
     """
     if not isinstance(index, slice):
         return index[start:stop]
@@ -185,7 +185,7 @@ def part(index: Index, start: int, stop: int) -> Index:
 
 
 def _end(text: str, *, whole: bool) -> np.datetime64 | None:
-    """One end of a period [ns]."""
+    """Parse one end of a period [ns]."""
     text = text.strip()
     if text in ("", ".."):
         return None
@@ -215,7 +215,7 @@ START = "2026-03-01T00:00:00"
 LATITUDE, LONGITUDE = 48.3, -5.2
 
 RESOLUTION = 1e-3
-"""Resolution of the currents [m/s], coarse enough to hide platform differences in sines."""
+"""Resolution of the currents [m/s], too coarse to show platform differences in sines."""
 
 _SEABED = 300.0
 # period [h], to the east and to the north [m/s], phase [degrees]; M2, S2, K1
@@ -267,7 +267,7 @@ def made_record() -> bytes:
 
 
 def _currents(hours: Any) -> tuple[Any, Any]:
-    """To the east and to the north [m/s], times by levels."""
+    """Return currents to the east and to the north [m/s], as times by levels."""
     hours = hours[:, np.newaxis].astype(np.float64)
     depth = np.array(DEPTHS)
     # slower near the seabed: 1/7 power law of the height

@@ -23,10 +23,10 @@ OF_HEIGHT = ("pierson-moskowitz", "ochi-hubble")
 """Spectra determined by the significant height alone."""
 
 STEEPEST = 1.0 / 7.0
-"""Height over length of a wave that breaks (Michell 1893); a sea is far below it."""
+"""Ratio of height to length of a breaking wave (Michell 1893); seas are far below it."""
 
 HIGHEST, LONGEST_PERIOD = 30.0, 30.0
-"""Beyond every significant height and peak period measured: 19 m by a buoy (WMO 2016) [m], [s]."""
+"""Limits above all measured significant heights [m] (19 m by a buoy, WMO 2016) and periods [s]."""
 
 BETWEEN = 0.5, 12.0
 """Frequency range of the solution, as multiples of the peak frequency.
@@ -64,7 +64,7 @@ A sea of the shortest period has a hundredth of its variance above that frequenc
 
 @dataclass(frozen=True)
 class SpectralForm:
-    """Represent a spectrum by its law and figures, so that equal seas are equal."""
+    """A spectrum in the form of its law and parameters, so that equal seas compare equal."""
 
     law: Callable[..., Floats]
     figures: tuple[Any, ...]
@@ -81,10 +81,10 @@ class SeaState:
     ----------
     significant_height : Hs, four times the standard deviation of the elevation [m]
     peak_period : Tp [s]
-    density : spectrum of the elevation by angular frequency [rad/s], one-sided [m² s/rad]
-    share : of the time, where it is one of several
-    longest, shortest : periods of the peaks of a sea of several parts [s]; of a measured sea
-        `longest` is that of its longest waves that count
+    density : one-sided spectrum of the elevation over angular frequency [rad/s], [m² s/rad]
+    share : share of the time, for one of several seas
+    longest, shortest : longest and shortest peak period of a sea of several parts [s]; for a
+        measured sea, `longest` is the period of its longest relevant waves
     """
 
     significant_height: float
@@ -96,12 +96,12 @@ class SeaState:
 
     @property
     def cut_off(self) -> float:
-        """Return the highest frequency that is solved for [rad/s]."""
+        """Highest frequency of the solution [rad/s]."""
         peak = 2.0 * pi / (self.shortest or self.peak_period)
         return min(BETWEEN[1] * peak, LARGEST_FREQUENCY)
 
     def frequencies(self, count: int) -> Floats:
-        """Return angular frequencies to solve for [rad/s], evenly spread in their logarithm."""
+        """Return angular frequencies for the solution [rad/s], with logarithmic spacing."""
         first = 2.0 * pi / (self.longest or self.peak_period)
         return np.geomspace(BETWEEN[0] * first, self.cut_off, count)
 
@@ -136,7 +136,7 @@ def _gamma_form(parts: tuple[tuple[float, float, float], ...], omega: Floats) ->
 
 
 def jonswap(height: float, period: float, gamma: float = 3.3) -> Density:
-    """Return the spectrum of a sea short of its fetch, by Hs [m], Tp [s] and its peakedness.
+    """Return the spectrum of a fetch-limited sea, by Hs [m], Tp [s] and peakedness.
 
     Bretschneider's times gamma^exp(-(ω - ωp)²/(2 σ² ωp²)), σ 0.07 below the peak and 0.09 above it
     (Hasselmann and others 1973), normalised so that Hs is kept.
@@ -163,8 +163,8 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float) ->
 
     Parameters
     ----------
-    kind : of `SPECTRA`
-    height, period : Hs [m] and Tp [s]; of those of `OF_HEIGHT` None stands for its own period
+    kind : name of the spectrum, from `SPECTRA`
+    height, period : Hs [m] and Tp [s]; for spectra in `OF_HEIGHT`, None selects their own period
     gamma : peakedness of "jonswap"
 
     Raises
@@ -184,7 +184,7 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float) ->
 
 
 def _impossible(height: float, period: float) -> str | None:
-    """Return why no sea has this height [m] and peak period [s], or is not solved for."""
+    """Return why a height [m] and peak period [s] are impossible or unsupported, else None."""
     length, said = 9.80665 * period**2 / (2.0 * pi), f"waves of {height:.3g} m and {period:.3g} s"
     if height > HIGHEST or period > LONGEST_PERIOD:
         return f"{said}: no sea is higher than {HIGHEST:g} m or longer than {LONGEST_PERIOD:g} s"
@@ -272,7 +272,7 @@ def measured_spectrum(path: Path) -> SeaState:
 
 
 def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int] = ()) -> SeaState:
-    """Return the sea of densities [m²/Hz] at frequencies [Hz], of these lines of a table."""
+    """Return the sea with densities [m²/Hz] at frequencies [Hz], from these lines of a table."""
     falls = np.diff(frequency, prepend=-1e-12) <= 0.0
     problems = [
         Problem(str(path), lines[int(row)] if lines else 0, column, message)

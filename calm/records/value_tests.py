@@ -23,13 +23,13 @@ from calm.units import KNOT
 Times = NDArray[np.datetime64]
 
 UNCOVERED, FEW = 0.1, 25.0
-"""Share of the depth, and depth [m], that a profile may leave out at either end, or lie below."""
+"""Share of the depth, and depth [m], that a profile may omit at either end, or lie below."""
 WEAK = 0.03
 """Speed [m/s] that the strongest current of every record exceeds."""
 MANY = 50
 """Smallest sample for which a coincidence is ruled out."""
 SECTOR = 40.0
-"""Directions that all lie between north and so many degrees are in radians, or in tens."""
+"""Directions that all lie between north and this angle [degrees] are in radians, or in tens."""
 UNCHANGED = 0.1
 """Share of a record for which no series keeps its value."""
 _FEWEST = 6  # least number of equal readings for a doubt
@@ -48,12 +48,12 @@ class CurrentValues:
 
     Attributes
     ----------
-    depth : (k,) or (n, k) [m]; NaN where not known
+    depth : (k,) or (n, k) [m]; NaN if unknown
     u, v : (n, k) to the east and to the north [m/s]; NaN in gaps
-    times : (n,) rising; None of one profile
-    water_depth : [m]; inf where it is not known
+    times : (n,) rising; None for a single profile
+    water_depth : water depth [m]; inf if unknown
     unit, factor : declared unit of speed and its factor to m/s
-    good : (n, k) share of good pings; None where it is not given
+    good : (n, k) share of good pings; None if missing
     """
 
     depth: Floats
@@ -96,7 +96,7 @@ def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) ->
     ----------
     depth : (k,) or (n, k) of the levels [m]
     known : (n, k) which have a value
-    water_depth : [m]; inf where it is not known
+    water_depth : water depth [m]; inf if unknown
     """
     there, levels = known.any(axis=0), _levels(depth, known)
     allowed = max(UNCOVERED * water_depth, FEW)
@@ -139,8 +139,8 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
     Parameters
     ----------
     top, bottom : its first and its last level [m]
-    water_depth : [m]; inf where it is not known
-    what : it is a profile of
+    water_depth : water depth [m]; inf if unknown
+    what : quantity of the profile
     """
     allowed = max(UNCOVERED * water_depth, FEW)
     gaps = [f"above {say('depth', top)}"] if top > allowed else []
@@ -203,7 +203,7 @@ def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) ->
     ----------
     values : (n, k, c) components of k series; NaN in gaps
     times : (n,) rising
-    names : (k,) where each is, "" of a single one
+    names : (k,) place of each series, "" for a single series
     """
     yield from _years(times)
     if len(times) > 2:
@@ -215,7 +215,7 @@ def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) ->
 
 
 FAR_APART = np.timedelta64(12, "h")
-"""Between profiles so far apart the tide and its peaks are lost."""
+"""Interval between profiles above which tides and their peaks are lost."""
 
 
 def step_doubts(times: Times) -> Iterator[str]:
@@ -257,8 +257,8 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
 
     Parameters
     ----------
-    name : of `WATER`
-    values : in its unit; NaN in gaps
+    name : key of `WATER`
+    values : values in the unit of the quantity; NaN in gaps
     """
     limits, known = WATER[name], values[np.isfinite(values)]
     wrong = (values < limits.least) | (values > limits.greatest)

@@ -71,10 +71,11 @@ class Velocity:
     Attributes
     ----------
     names : eastward and northward velocity, or speed and direction
-    up : upward velocity, None where there is none
-    turn : what is added to a direction to have it flow toward [degrees]; None for components
-    magnetic, true : whether it is said to be relative to magnetic north, to true north
-    notes : what had to be assumed
+    up : upward velocity, None if missing
+    turn : angle added to a direction to make it the direction of flow [degrees]; None for
+        components
+    magnetic, true : whether the file refers the velocity to magnetic north, to true north
+    notes : remarks on assumptions
     """
 
     names: tuple[str, str]
@@ -85,7 +86,7 @@ class Velocity:
     notes: tuple[str, ...]
 
     def components(self, first: Floats, second: Floats) -> tuple[Floats, Floats]:
-        """Return the flow to the east and to the north by the two variables in SI and degrees."""
+        """Return the flow to the east and north from the two variables, in SI and degrees."""
         if self.turn is None:
             return first, second
         angle = np.radians(second + self.turn)
@@ -93,7 +94,7 @@ class Velocity:
 
     @property
     def all_names(self) -> tuple[str, ...]:
-        """Name the two variables or three."""
+        """Names of the two or three variables."""
         return self.names if self.up is None else (*self.names, self.up)
 
 
@@ -191,7 +192,7 @@ def _only_marked(own: str, sought: _Sought) -> bool:
 
 
 def _believed(dataset: xr.Dataset, name: str) -> str:
-    """Return the name of a variable whose own attributes do not speak against it."""
+    """Return the name of a variable, if its own attributes allow its use."""
     layers = layers_of(dataset)
     variable = dataset[name]
     reason = attributes.not_a_value(variable, layers) or attributes.other_frame(variable.attrs)
