@@ -1,1 +1,1 @@
-"""Motion of a mooring: where every part of it was, from currents and pressures measured."""
+"""Estimation of the motion of a mooring from measured currents and pressures."""

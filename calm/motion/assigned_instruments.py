@@ -1,4 +1,4 @@
-"""A list of instruments assigned to the parts of a line: serial numbers, in its `deployed`."""
+"""Assignment of a list of instruments to the parts of a line, in `deployed` of its file."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class AssignedInstruments:
 
     Attributes
     ----------
-    text : of the file
+    text : text of the file
     assigned : a sentence for each instrument that has a part
-    doubts : what is odd, and the instruments without a part
+    doubts : doubtful matches, and instruments without a part
     """
 
     text: str
@@ -42,7 +42,7 @@ class AssignedInstruments:
 def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstruments:
     """Return a mooring file whose `deployed` has the serial numbers of a list.
 
-    An instrument is the part of its name or serial number, or else the one at its nominal depth, in
+    An instrument is matched by its name or serial number, or else by its nominal depth, in
     their order down the line. The rest of the file is unchanged.
 
     Raises
@@ -50,7 +50,7 @@ def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstrum
     InputError
         A file has mistakes, or the list is of no form that is read.
     UsageError
-        The mooring is a tow, or has several legs; the order of the instruments is not the only one;
+        The mooring is a tow, or has several legs; the order of the instruments is ambiguous;
         or the file is written in a way that does not allow the change.
     """
     mooring = load(path)

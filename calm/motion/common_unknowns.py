@@ -1,7 +1,7 @@
-"""Unknowns common to a whole record: factors on the line, the datum, and offsets of its sensors.
+"""Unknowns common to a whole record: factors on the line, the datum, and sensor offsets.
 
-And the law by which faults of sensors are weighed: slips, drifts and steps of all sensors alike,
-by what many times say of them.
+The linear law of this module also weighs faults of sensors (slips, drifts and common steps) by the
+evidence of many times.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from calm.motion.currents_law import SpeedLaw
 from calm.physics.line import Floats, Integers
 
 FURTHEST = 1.0
-"""Of the logarithm of a factor, at most."""
+"""Limit on the logarithm of a factor."""
 REACH = 5.0
-"""Between a sensor and the points by which the slope of the line at it is known, at least [m]."""
+"""Least distance between a sensor and the points that give the slope of the line there [m]."""
 
 
 @dataclass(frozen=True)
 class Common:
-    """Hold what is common to the whole record, as far as it is known.
+    """Estimate of the unknowns common to a whole record.
 
     The q columns of the covariance are the logarithms of the factors, the datum [m] and the offsets
     of the sensors [m].
@@ -32,11 +32,11 @@ class Common:
     Attributes
     ----------
     factors : names of the estimated factors and their values
-    datum : what is added to the depths of the line [m]
+    datum : correction added to the depths of the line [m]
     offset : (s,) of the sensors [m]
     covariance : (q, q)
     worst : share of the knockdown that the line itself may be wrong by, after all else
-    law : of currents that nobody measured; None of measured ones
+    law : law of inferred currents; None for measured currents
     """
 
     factors: Mapping[str, float]
@@ -48,17 +48,17 @@ class Common:
 
     @property
     def inferred(self) -> bool:
-        """Return whether the currents are inferred from the pressures."""
+        """Whether the currents are inferred from the pressures."""
         return self.law is not None
 
     @property
     def value(self) -> Floats:
-        """Return (q,) as the columns of the covariance stand."""
+        """Values (q,) of the unknowns, in the order of the covariance."""
         logs = np.log(list(self.factors.values()))
         return np.concatenate([logs, [self.datum], self.offset])
 
     def at(self, value: Floats) -> Common:
-        """Return the same with other values (q,) of its unknowns."""
+        """Return a copy with new values (q,) of the unknowns."""
         count = len(self.factors)
         factors = np.exp(np.clip(value[:count], -FURTHEST, FURTHEST)).tolist()
         return replace(
@@ -72,14 +72,16 @@ class Common:
 def common_beforehand(
     factors: Mapping[str, float], datum: float, sensors: int, mean: float = 0.0
 ) -> Common:
-    """Return what is common where all sensors hang as the file says, with what is expected of it.
+    """Return the common unknowns before the fit, with all sensors at their places in the file.
+
+    The covariance is that of the prior.
 
     Parameters
     ----------
     factors : their values
-    datum : standard deviation of what is added to the depths of the line [m]
-    sensors : how many there are
-    mean : of what is added to the depths of the line [m]
+    datum : standard deviation of the correction to the depths of the line [m]
+    sensors : number of sensors
+    mean : mean of the correction to the depths of the line [m]
     """
     known = [FACTORS[name][1] for name in factors]
     spread = [*known, datum, *[OFFSET] * sensors]
@@ -87,19 +89,19 @@ def common_beforehand(
 
 
 def fixed_slopes(common: Floats) -> Floats:
-    """Return (n, s, q) slopes with factors, datum and offsets by (n, s, f) those with factors."""
+    """Return (n, s, q) slopes for factors, datum and offsets, from (n, s, f) slopes for factors."""
     n, s, _ = common.shape
     offsets = np.broadcast_to(np.eye(s), (n, s, s))
     return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)
 
 
 def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
-    """Return (n, s) change of the depth of each sensor with how far it has moved down the line.
+    """Return (n, s) change in the depth of each sensor per metre of slip down the line.
 
     Parameters
     ----------
     depth, still : (n, p), (p,) of the points, at these times and in still water [m]
-    point : (s,) where the sensors are by the file
+    point : (s,) points of the sensors, from the file
     """
     result = np.zeros((len(depth), len(point)))
     for j, one in enumerate(point.tolist()):
@@ -114,11 +116,11 @@ def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
 
 
 LONGEST_MEMORY = 25
-"""Times over which errors that repeat are looked for."""
+"""Maximum number of times over which the error correlation is summed."""
 
 
 def repeated(pull: Floats) -> float:
-    """Return how many times that follow each other have the same error, by its autocorrelation."""
+    """Return the number of successive times with a common error, from the autocorrelation."""
     one = pull - pull.mean()
     whole = float(one @ one)
     total, chance = 1.0, 2.0 / np.sqrt(max(len(one), 1))
@@ -131,7 +133,7 @@ def repeated(pull: Floats) -> float:
 
 
 FEWEST = 4
-"""Readings of a sensor before and after its clamp slips, at least."""
+"""Least number of readings of a sensor before and after a slip of its clamp."""
 
 
 ROBUST = 4.0
@@ -140,16 +142,16 @@ ROBUST = 4.0
 
 @dataclass(frozen=True)
 class LinearLaw:
-    """Hold what n times say of the unknowns of the whole record, by the slopes at a state.
+    """Linear model of n times for the unknowns of the whole record, with slopes at one state.
 
     Attributes
     ----------
     time, share : (n,) times, and the share of the record that is over by then
-    known : (n, s) whether there is a reading
-    raw, left : (n, s) measured less computed depths where the unknowns are 0, and as they are [m]
+    known : (n, s) whether a reading exists
+    raw, left : (n, s) measured less computed depths, for zero unknowns and at the state [m]
     expected : (n, s, s) covariance of `left`
     fixed : (n, s, q) slopes with factors, datum and offsets
-    fall : (n, s) change of the depth of each sensor with how far it has moved throughout
+    fall : (n, s) change in the depth of each sensor per metre of displacement along the line
     """
 
     time: NDArray[np.datetime64]
@@ -163,39 +165,39 @@ class LinearLaw:
 
     @cached_property
     def inverse(self) -> Floats:
-        """Return (n, s, s) of the covariance of what is left."""
+        """Inverse (n, s, s) of the covariance of the residuals."""
         return np.asarray(np.linalg.inv(self.expected), np.float64)
 
     @cached_property
     def weight(self) -> Floats:
-        """Return (n,) what a time counts, by Student's law: one of large misfit less."""
+        """Weight (n,) of each time by Student's law, lower for a large misfit."""
         misfit = np.einsum("ns,nst,nt->n", self.left, self.inverse, self.left)
         weight: Floats = (ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit)
         return weight
 
     def pulls(self, seen: Floats, left: Floats) -> Floats:
-        """Return (n, q) slopes of the logarithm of the likelihood of each time."""
+        """Return (n, q) gradients of the log-likelihood of each time."""
         return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
 
     def normal(self, seen: Floats) -> Floats:
-        """Return (q, q) the information of all times."""
+        """Return (q, q) information matrix of all times."""
         heavy = self.weight[:, None, None] * self.inverse
         return np.asarray(np.einsum("nsq,nsr->qr", seen, heavy @ seen))
 
 
 NEVER = -1
-"""In place of a time, where a sensor has too few readings to hang elsewhere."""
+"""Code, in place of a time, for sensors with too few readings to detect a slip."""
 RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
-"""In place of a time, where a sensor drifts: over which share of the record."""
+"""Codes of drifts, in place of a time, with the share of the record over which they last."""
 
 
 def moves(first: Integers, fall: Floats, share: Floats) -> Floats:
-    """Return (n, s) change of what each sensor reads with how far it has moved or drifted.
+    """Return (n, s) change in the reading of each sensor per metre of slip or drift.
 
     Parameters
     ----------
     first : (s,) of `first_time`
-    fall : (n, s) change of the depth of each sensor with how far it has moved
+    fall : (n, s) change in the depth of each sensor per metre of displacement along the line
     share : (n,) of the record at each time, 0 to 1
     """
     began = (np.arange(len(fall))[:, None] >= first) & (first >= 0)
@@ -206,9 +208,9 @@ def moves(first: Integers, fall: Floats, share: Floats) -> Floats:
 
 
 def chance_of(first: int, times: int) -> tuple[float, float]:
-    """Return the logarithm of how likely a sensor moves or drifts so, and the deviation of it [m].
+    """Return the log prior probability of a slip or drift, and the prior deviation of its size [m].
 
-    `first` is of `first_time`; at so many times a clamp may slip.
+    `first` is a code of `first_time`, and `times` is the number of times at which a clamp may slip.
     """
     if first in RAMPS:
         return float(np.log(DRIFTS / len(RAMPS))), DRIFT
@@ -216,14 +218,15 @@ def chance_of(first: int, times: int) -> tuple[float, float]:
 
 
 def first_time(law: LinearLaw, mean: Floats, covariance: Floats) -> Integers:
-    """Return (s,) the time from which on each sensor most likely hangs elsewhere, if it does.
+    """Return (s,) the most likely time at which each sensor slips, if it does.
 
-    0 is throughout; `NEVER` where it has too few readings; one of `RAMPS` where it is likelier to
-    drift than to have slipped at any time. Each is weighed beside all that is known beforehand.
+    0 means that it is displaced throughout; `NEVER`, that it has too few readings; a code of
+    `RAMPS`, that a drift is likelier than a slip at any time. Each fault is fitted jointly with the
+    common unknowns.
 
     Parameters
     ----------
-    law : what the times say
+    law : linear law of the times
     mean, covariance : (q,), (q, q) of the unknowns beforehand
     """
     count = len(law.time)
@@ -239,7 +242,7 @@ def first_time(law: LinearLaw, mean: Floats, covariance: Floats) -> Integers:
     can[0] = after[0] >= FEWEST
     steps = np.where(can, steps, -np.inf)
     first: Integers = np.where(can.any(axis=0), steps.argmax(axis=0), NEVER)
-    best = steps.max(axis=0) + np.where(first > 0, np.log(count), 0.0)  # of a slip at any time
+    best = steps.max(axis=0) + np.where(first > 0, np.log(count), 0.0)  # a slip at any time
     for code, part in RAMPS.items():
         ramp = np.minimum(law.share / part, 1.0)[:, None]
         chance, wide = chance_of(code, count)
@@ -250,9 +253,9 @@ def first_time(law: LinearLaw, mean: Floats, covariance: Floats) -> Integers:
 
 
 def common_step(law: LinearLaw, mean: Floats, covariance: Floats) -> int:
-    """Return the time from which on all sensors are most likely deeper or shallower alike.
+    """Return the most likely time of a step in the depths of all sensors.
 
-    `NEVER` where too few times are on either side.
+    `NEVER` if there are too few times on either side.
     """
     count = len(law.time)
     if count < 2 * FEWEST:
@@ -262,7 +265,7 @@ def common_step(law: LinearLaw, mean: Floats, covariance: Floats) -> int:
 
 
 class Gains:
-    """How much likelier the readings are with one more unknown beside those of the record."""
+    """Log-likelihood gains from one more unknown, fitted with those of the record."""
 
     def __init__(self, law: LinearLaw, mean: Floats, covariance: Floats) -> None:
         before = np.linalg.inv(covariance)
@@ -274,7 +277,7 @@ class Gains:
         self.fixed = law.fixed
 
     def _parts(self, column: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return (n,), (n, q), (n,) what each time says of the size of a column (n, s)."""
+        """Return (n,), (n, q), (n,): the normal equations of each time for a column (n, s)."""
         own = (self.heavy @ column[:, :, None])[:, :, 0]
         crossed = np.einsum("nsq,ns->nq", self.fixed, own)
         return (column * self.pull).sum(axis=1), crossed, (column * own).sum(axis=1)
@@ -285,18 +288,18 @@ class Gains:
         return gain
 
     def steps(self, column: Floats, wide: float) -> Floats:
-        """Return (n,) logarithms of a column that begins at each time, of a deviation `wide`."""
+        """Return (n,) gains of a column that begins at each time, with prior deviation `wide`."""
         own, cross, alone = (_from_there_on(part) for part in self._parts(column))
         return self._gain(own, cross, alone, wide)
 
     def whole(self, column: Floats, wide: float) -> float:
-        """Return the logarithm of a column throughout."""
+        """Return the gain from a column that applies throughout."""
         own, cross, alone = (part.sum(axis=0, keepdims=True) for part in self._parts(column))
         return float(self._gain(own, cross, alone, wide)[0])
 
 
 def _from_there_on(values: Floats) -> Floats:
-    """Sums over the first axis from each place to the end."""
+    """Return sums over the first axis from each place to the end."""
     sums: Floats = np.cumsum(values[::-1], axis=0)[::-1]
     return sums
 
@@ -311,22 +314,23 @@ FACTORS: Mapping[str, tuple[float, float]] = {
 }
 """Mean and deviation of the logarithms of the common factors."""
 DATUM = 0.01
-"""Of the depth of the water, as a share of it: what all depths may be wrong by alike."""
+"""Prior deviation of the datum, an error common to all depths, as a share of the water depth."""
 OFFSET = 1.0
-"""Of the offset of a sensor [m]."""
+"""Prior deviation of the offset of a sensor [m]."""
 ELSEWHERE, MISPLACED, SLIPPED = 20.0, 0.01, 0.01
-"""How far from its place in the file a sensor is that is not there [m], and the probabilities that
-it is so from the beginning, and that its clamp slips during the record."""
+"""Prior deviation of the displacement of a slipped or misplaced sensor [m], the probability that it
+is misplaced from the start, and the probability that its clamp slips during the record.
+"""
 MOVED = 0.01
 """Probability that the whole mooring is moved to another depth during the record."""
 FALSE: Mapping[int, float] = {0: 0.01, 1: 0.01, 2: 0.03, 3: 0.10, 4: 0.30, 8: 0.10}
 """Probability that a current is false in direction or size, by its quality flag."""
 DRIFT, DRIFTS = 5.0, 0.01
-"""Of what a sensor drifts by over the record [m], and the probability that it does."""
+"""Prior deviation of the drift over the record [m], and the probability of a drift."""
 TIDE = 1.0
-"""Of tide and air pressure [m]; where the sea level is given, `RESIDUAL_TIDE`."""
+"""Deviation of tide and air pressure [m], unless the sea level is given: `RESIDUAL_TIDE`."""
 RESIDUAL_TIDE = 0.15
 NOISE = 0.2
-"""Of a depth by pressure at one time [m]."""
+"""Deviation of a depth from pressure at one time [m]."""
 SPIKE, SPIKES = 30.0, 1e-5
-"""Of a depth that is a spike [m], and the probability that one is."""
+"""Deviation of a spike in depth [m], and the probability of a spike."""

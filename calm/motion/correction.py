@@ -55,11 +55,11 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
         ("m", "depth of the sensor by the currents alone, nothing fitted", {"positive": "down"}),
     ),
 }
-"""Dimensions besides time, unit, meaning and attributes of what a batch does not have."""
+"""Dimensions besides time, unit, meaning and attributes of variables added to a batch result."""
 OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})
-"""Those of them that need a measured current."""
+"""Variables of `OF_MOTION` that need a measured current."""
 MEASURED, ESTIMATED, MISSING = 1, 8, 9
-"""Flags of depths, of the table of OceanSITES."""
+"""Flags of depths, from the flag table of OceanSITES."""
 FLAGGED = {"clamp_depth": ["clamp_depth_sd"], "depth_top": ["depth_sd"]}
 _OF_DOCUMENT = {
     "institution": "institution", "author": "creator_name", "email": "creator_email",
@@ -82,10 +82,10 @@ def solve_times(task: Task, layout: ResultLayout, start: int) -> SolvedBlock:
 
 
 def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
-    """Return the result of a batch, with what is estimated besides, as archives want it.
+    """Return the layout of the result: a batch result with the motion estimates, for archives.
 
-    Flags of depths, serial numbers, and attributes. Its date is that of SOURCE_DATE_EPOCH, and only
-    that: the same input gives the same bytes.
+    The layout includes depth flags, serial numbers and archive attributes. Only SOURCE_DATE_EPOCH
+    sets its date, so equal inputs give equal bytes.
     """
     layout, mooring, measured = layout_of(task.mooring, record), task.mooring, task.measured
     alone = task.common.inferred
@@ -136,13 +136,13 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
 
 
 def about(mooring: Design) -> Attributes:
-    """Return what `document:` and `deployed:` of a mooring file say, as archives call it."""
+    """Return archive attributes from `document:` and `deployed:` of a mooring file."""
     file = mooring.file
     said: Attributes = {}
     if file.document is not None:
         known = file.document.to_dict()
         said = {name: str(known[key]) for key, name in _OF_DOCUMENT.items() if key in known}
-    for part in ("name", "email", "url"):  # who writes the file is who publishes it
+    for part in ("name", "email", "url"):  # the creator also publishes the file
         if f"creator_{part}" in said:
             said[f"publisher_{part}"] = said[f"creator_{part}"]
     if "institution" in said:
@@ -154,7 +154,7 @@ def about(mooring: Design) -> Attributes:
 
 
 def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArray[np.int8]]:
-    """Return flags of depths: measured where a pressure of its own counts, else interpolated."""
+    """Return depth flags: measured at points with a valid pressure, else estimated or missing."""
     clamps = profiles.clamp_depth.shape[1]
     depth = np.hstack([profiles.clamp_depth, profiles.depth_top])
     flag = np.where(np.isfinite(depth), ESTIMATED, MISSING).astype(np.int8)
@@ -167,12 +167,12 @@ def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArr
 def estimate_in_memory(
     task: Task, points: Sequence[int], workers: int | None = None
 ) -> tuple[Floats, Floats]:
-    """Return (n, m) depths of some points and their deviations [m], which are kept nowhere.
+    """Return (n, m) depths of several points and their deviations [m], without writing a file.
 
     Parameters
     ----------
-    task : what is estimated
-    points : which points of the line
+    task : task of the estimate
+    points : indices of the points of the line
     workers : threads
     """
     starts = range(0, len(task.measured.time), BLOCK)
@@ -189,14 +189,14 @@ def estimate_in_memory(
 
 
 BLOCK = 512
-"""Times that are estimated, and written, together."""
+"""Number of times that are estimated and written together."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """Hold what is to be estimated: `measured` has the sensors that are used.
+    """Input of the estimate; `measured` contains only the sensors that are used.
 
-    `smoother` has estimated the record as a whole, where currents were measured.
+    `smoother` is the solution for the whole record if currents were measured, else None.
     """
 
     mooring: Design
@@ -205,8 +205,7 @@ class Task:
     smoother: CurrentSmoother | None = None
 
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
-        """Return some of the times: the line in the most likely currents, and what is known
-        besides.
+        """Return the line in the most likely currents at several times, and the other estimates.
 
         Returns
         -------
@@ -275,7 +274,7 @@ class Task:
 def without_current(
     profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
 ) -> Profiles:
-    """Return profiles without the times (n,) that are far from any current, false ones apart."""
+    """Blank the times (n,) that are far from any current; their status depends on `false`."""
     status = np.where(lost, STATUSES.index("no-current"), profiles.status)
     if false is not None:
         status = np.where(lost & false, STATUSES.index("implausible-current"), status)
@@ -288,7 +287,7 @@ def without_current(
 
 
 def plain(forward: Forward, one: MooringMeasurements) -> Floats:
-    """Return (n, p) depths of the points by the currents alone, nothing fitted [m]."""
+    """Return (n, p) depths of the points from the currents alone, without a fit [m]."""
     depth = np.tile(forward.still, (len(one.time), 1))
     for _ in range(2):
         level = hung_levels(one, np.nan_to_num(depth))
@@ -299,13 +298,13 @@ def plain(forward: Forward, one: MooringMeasurements) -> Floats:
 
 
 APART = 1e-6
-"""Between levels of instruments that hang in one place [m]."""
+"""Vertical spacing of levels at the same place [m]."""
 
 
 def hung_levels(one: MooringMeasurements, depths: Floats) -> Floats:
-    """Return (n, k) depths of the levels, of those that hang by the depths of the points (n, p).
+    """Return (n, k) depths of the levels, with those on the line at the points (n, p).
 
-    A current whose sensor is used hangs where that was measured.
+    A current whose own sensor is used takes the measured depth of that sensor.
     """
     level = one.level_depth.copy()
     for k, (point, sensor) in enumerate(zip(one.level_point, one.level_sensor, strict=True)):
@@ -320,7 +319,7 @@ def hung_levels(one: MooringMeasurements, depths: Floats) -> Floats:
 
 
 class MeasuredRecord(Record):
-    """Hold what was measured, as the record that a result is made from."""
+    """Measured currents in the form of a record, as input for a result."""
 
     def __init__(
         self,
@@ -333,9 +332,9 @@ class MeasuredRecord(Record):
         self.time, self.source, self.notes = measured.time, dict(source), tuple(notes)
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """See `Record`; levels that hang on the line have no depth of their own."""
+        """See `Record`; the depth of levels on the line is NaN."""
         one = self._measured.at(slice(start, stop))
         return one.level_depth, one.u, one.v, None
 
     def close(self) -> None:
-        """Do nothing: no file is open."""
+        """Do nothing, as no file is open."""

@@ -1,4 +1,4 @@
-"""Currents as read, the depths of the line near them, and the prior law of unmeasured speeds."""
+"""Interpreted currents, nearby depths of the line, and the prior law of unmeasured speeds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from calm.physics.line import Floats
 
 @dataclass(frozen=True)
 class ReadCurrents:
-    """One way to read the currents of some times, and where it puts the line.
+    """One interpretation of the currents at several times, and the resulting depths of the line.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class ReadCurrents:
 
 @dataclass(frozen=True)
 class Linear:
-    """The depths of the points near a state of the currents.
+    """Linearised depths of the points near a state of the currents.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Linear:
     common: Floats
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the line at another state, with slopes that lead there from this one (Broyden)."""
+        """Return the line at another state, with slopes updated by Broyden's method."""
         step = logs - self.logs
         size = (step**2).sum(axis=1)[:, None]
         miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)
@@ -55,7 +55,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class SpeedLaw:
-    """Hold what is known of the speeds before a time is looked at, and the times it came from.
+    """Prior law of the current speeds, and the times from which it was learnt.
 
     Attributes
     ----------
@@ -68,6 +68,6 @@ class SpeedLaw:
     kept: Linear | None = None
 
     def read(self, level: Floats) -> ReadCurrents:
-        """Return the currents at levels (n, k), whose direction is the same at all of them [m]."""
+        """Return currents at levels (n, k) [m], with the same direction at all levels."""
         u = np.tile(np.exp(self.mean), (len(level), 1))
         return ReadCurrents(level, u, np.zeros_like(u), np.tile(self.covariance, (len(u), 1, 1)))

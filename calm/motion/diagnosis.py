@@ -1,9 +1,9 @@
 """Diagnosis of sensors: clocks, gains, offsets, drifts, slipped clamps, exchanged labels.
 
-Each is one more unknown beside those of the whole record, with a prior of its own, and weighed by
-how likely the pressures then are (a Bayes factor, Kass and Raftery 1995): by Student's law for the
-misfit of a time, and errors that repeat from time to time counted once. The likeliest is taken
-first, and the others are weighed again beside it, until none is likely.
+Each fault is one more unknown, with its own prior, in the fit of the whole record. It is weighed by
+a Bayes factor (Kass and Raftery 1995): the likelihood of the pressures, with Student's law for the
+misfit of a time, and errors that persist from time to time counted once. The likeliest fault is
+accepted first, and the others are weighed again together with it, until none is likely.
 """
 
 from collections.abc import Iterator, Sequence
@@ -32,13 +32,13 @@ from calm.motion.unknown_currents import SEABED, unknown_state
 from calm.physics.line import Floats
 
 LIKELY_ALONE = 1000.0
-"""Odds from which it is, where no current was measured: the line may be assumed as well."""
+"""Odds above which a fault is reported without measured currents: the line may be wrong instead."""
 MOST = 8
-"""Things that are wrong, at most."""
+"""Maximum number of faults."""
 CLOCKS, FURTHEST = 0.01, 13.0
-"""Probability that a clock is wrong, and by how much it may be [h]."""
+"""Probability of a wrong clock, and the maximum lag searched [h]."""
 GAIN, GAINS, ALL_GAINS = 0.02, 0.01, 0.001
-"""Of a gain less 1, and the probabilities that it is wrong: that of a sensor, that of all alike."""
+"""Prior deviation of a gain, and the probability of a wrong gain in one sensor and in all."""
 EXCHANGED = 0.01
 """Probability that two labels are exchanged."""
 LEAST = {
@@ -46,25 +46,29 @@ LEAST = {
     "exchanged": 0.0, "currents": 0.1, "speed": 0.15, "slows": 0.2, "buoyancy": 0.06,
     "length": 0.004, "drag": 0.3, "fouling": 0.2,
 }  # fmt: skip
-"""What is named, at least: m; h (and as many steps of the record), 1, m, m, m; then logarithms."""
+"""Smallest faults that are reported.
+
+Units: m; for clocks h, and as many steps of the record; for gains 1; m for offset, drift and slip;
+otherwise logarithms.
+"""
 RIVALS = 3
-"""Other explanations that are named, at most."""
+"""Maximum number of rival explanations reported."""
 FINEST = 0.02
-"""Of a clock, as a share of the step of the record: how well times are known between readings."""
+"""Finest resolution of a clock, as a share of the time step of the record."""
 FEWEST = 20
-"""Times from which anything is said."""
+"""Least number of times for a diagnosis."""
 
 
 @dataclass(frozen=True)
 class _Found:
-    """Tell how likely the pressures are with some faults.
+    """Likelihood of the pressures with a set of faults.
 
     Attributes
     ----------
     log : its logarithm
-    value, deviation : of the size of the last fault
-    left : (n, s) what is not explained [m]
-    pulls : (n,) what each time says of the size of the last fault
+    value, deviation : size of the last fault, and its deviation
+    left : (n, s) residuals [m]
+    pulls : (n,) gradient of the log-likelihood of each time by the size of the last fault
     """
 
     log: float
@@ -78,7 +82,7 @@ Weighed = list[tuple[Suspect, float]]
 
 
 def diagnosed(task: Task) -> tuple[Fault, ...]:
-    """Return what is wrong with the sensors, the currents and the line, the likeliest first."""
+    """Return the faults of the sensors, the currents and the line, the likeliest first."""
     law, causes = law_near(task)
     if law is None or len(law.time) < FEWEST:
         return ()
@@ -86,9 +90,9 @@ def diagnosed(task: Task) -> tuple[Fault, ...]:
 
 
 def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
-    """Return what the times say of the sensors, near the state of a task.
+    """Return the linear model of the sensors near the state of a task, and suspects of the line.
 
-    And what may be wrong with the line and its currents, with what it does to them.
+    Each suspect includes its effect on the depths.
     """
     times = chosen_times(task.measured, task.smoother is None)
     if not len(times):
@@ -119,7 +123,7 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 
 
 class Diagnosis:
-    """The pressures of a record, weighed."""
+    """Weighing of the faults of a record by its pressures."""
 
     def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes
@@ -146,10 +150,11 @@ class Diagnosis:
         return self._kept[steps]
 
     def _at(self, late: float) -> Floats:
-        """Return (n, s) what the sensors read so many hours later [m].
+        """Return (n, s) readings of the sensors at times later by `late` hours [m].
 
-        Between the times of the record by the slope there and a quarter of the curvature: noise
-        neither grows nor is smoothed so, which alone would speak for a clock that is wrong.
+        Between the times of the record, the interpolation takes the slope and a quarter of the
+        curvature. It neither amplifies nor smooths noise; either would by itself favour a clock
+        error.
         """
         whole = round(late / self.step) if self.step > 0.0 else 0
         part = late / self.step - whole if self.step > 0.0 else 0.0
@@ -158,19 +163,19 @@ class Diagnosis:
         return there + np.nan_to_num(bent)
 
     def faults(self) -> tuple[Fault, ...]:
-        """Return what is likely wrong; each weighed beside all others."""
+        """Return the likely faults, each weighed together with all the others."""
         taken: list[Suspect] = []
         while len(taken) < MOST:
             likely = self.weighed(taken)
             best = max(likely, key=lambda one: one[1], default=None)
             if best is None:
                 break
-            # what does nearly the same to the depths is likely together
+            # sum the odds of suspects with nearly the same effect on the depths
             kin = [log for one, log in likely if one.fault.alike(best[0].fault)]
             if np.logaddexp.reduce(kin) < np.log(self.likely):
                 break
             taken.append(self._bent(taken, best[0]))
-            if best[0].fault.kind == "exchanged":  # nothing else holds until they are put right
+            if best[0].fault.kind == "exchanged":  # no other diagnosis is valid before the exchange
                 break
         found = []
         for i, one in enumerate(taken):
@@ -196,7 +201,7 @@ class Diagnosis:
         return tuple(found)
 
     def _bent(self, taken: list[Suspect], one: Suspect) -> Suspect:
-        """Return a suspect with the change that its size makes, which is not proportional."""
+        """Return a suspect with the nonlinear effect of its size."""
         if one.ahead is None:
             return one
         size = one.fault.size
@@ -207,7 +212,7 @@ class Diagnosis:
         return one
 
     def weighed(self, taken: list[Suspect]) -> Weighed:
-        """Return what may be wrong beside what is taken, with the logarithm of its odds."""
+        """Return possible faults besides those in `taken`, with their log odds."""
         begun = self.fitted(taken, None, 1.0)
         result = []
         for suspect in self._suspects(taken, begun):
@@ -218,7 +223,7 @@ class Diagnosis:
             size = found.value if suspect.wide else fault.size
             deviation = found.deviation
             log = found.log - base + suspect.log
-            if fault.kind == "clock":  # a lag anywhere within reach
+            if fault.kind == "clock":  # uniform prior of the lag
                 log += float(np.log(np.sqrt(2.0 * np.pi) * deviation / (2.0 * FURTHEST)))
             least = LEAST[fault.kind]
             if fault.kind == "clock":
@@ -234,11 +239,11 @@ class Diagnosis:
         return self.law.raw + sum((one.shift for one in taken), np.zeros_like(self.law.raw))
 
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
-        """Return how likely the pressures are with some faults and one more.
+        """Compute the likelihood of the pressures with several faults and one more.
 
         Parameters
         ----------
-        alike : so many times in a row have the same error
+        alike : number of successive times with the same error
         """
         whole = taken if last is None else [*taken, last]
         free = [one for one in whole if one.wide]
@@ -280,7 +285,7 @@ class Diagnosis:
     def _suspects(self, taken: list[Suspect], begun: _Found) -> Iterator[Suspect]:
         law, none = self.law, np.zeros_like(self.law.raw)
         had = {(one.fault.label, one.fault.kind) for one in taken}
-        # not as measured: a gain less than 1 would shrink the errors as well
+        # use fitted depths: with measured ones, a gain below 1 would also shrink the errors
         depth = np.nan_to_num(self.depth - begun.left)
         raw = self._raw(taken)
         for one in taken:
@@ -291,7 +296,7 @@ class Diagnosis:
         for j, label in enumerate(self.label):
             mine = np.arange(len(self.label)) == j
             codes = dict.fromkeys(common_unknowns.RAMPS, "drift")
-            # currents that are learnt from a sensor agree with its zero
+            # inferred currents adapt to the zero of a sensor
             if not self.alone:
                 codes[0] = "offset"
             if first[j] > 0:
@@ -352,22 +357,22 @@ class Diagnosis:
             yield ALL, np.ones(len(self.label), bool)
 
     def _shift(self, late: float, mine: NDArray[np.bool_]) -> Floats:
-        """Return (n, s) what is added to the depths of late sensors [m]."""
+        """Return (n, s) the change in the depths of the late sensors [m]."""
         added: Floats = np.where(mine, np.nan_to_num(self._at(late) - self.depth), 0.0)
         return added
 
     def _missed(self, left: Floats) -> float:
-        """Return twice the negative logarithm of how likely it is that so much is left [m]."""
+        """Return twice the negative log-likelihood of residuals (n, s) [m]."""
         misfit = np.square((self.white @ left[:, :, None])[:, :, 0]).sum(axis=1)
         count = self.law.known.sum(axis=1)
         return float(((ROBUST + count) * np.log1p(misfit / ROBUST)).sum())
 
     def _late(self, taken: list[Suspect], left: Floats, mine: NDArray[np.bool_]) -> Suspect:
-        """Return the clock of some sensors, late by as many hours as is most likely.
+        """Return the clock fault of several sensors, with the most likely lag.
 
         Parameters
         ----------
-        left : (n, s) what is not explained where their clocks are right [m]
+        left : (n, s) residuals if their clocks are right [m]
         """
         reach, step = int(FURTHEST / self.step) if self.step > 0.0 else 0, self.step
 

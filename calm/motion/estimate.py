@@ -1,6 +1,6 @@
-"""What pressures make of currents that nobody measured, at each time for itself.
+"""Estimate of unmeasured currents from pressures, independently at each time.
 
-By the slopes of the line at a state of the currents; each reading may be a spike.
+The line is linearised at a state of the currents; any reading may be a spike.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats
 
 NEGLIGIBLE = 0.02
-"""A reading is not tried as a spike that could not reach this share of the weight of a good one."""
+"""Weight, as a share of the weight of a good reading, below which a spike is not tried."""
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Hold what is known of a block of times.
+    """Estimated depths of the line over a block of times.
 
     Attributes
     ----------
     depth, deviation : (n, p) of the points [m]
-    sea : (n,) what stands over the mean surface [m]
+    sea : (n,) height of the sea surface above its mean [m]
     likely : the most likely currents
     """
 
@@ -44,12 +44,12 @@ def estimated(
     known: CurrentsState,
     neighbours: tuple[Floats, Floats] | None = None,
 ) -> Estimate:
-    """Return the mean and the deviation over all readings being good, and each a spike.
+    """Return mean and deviation, averaged over the cases of no spike and of a spike in each sensor.
 
     Parameters
     ----------
     known : the best state of the currents
-    neighbours : see `calm.motion.measurements.by_neighbours`; None of times that stand alone
+    neighbours : see `calm.motion.measurements.by_neighbours`; None for isolated times
     """
     one, still = moments.measured, moments.forward.still
     first, at = known.found, known.at
@@ -102,14 +102,14 @@ def _excuse(
     one: MooringMeasurements, common: Common, spike: Posterior, sensor: int, expected: Floats,
     deviation: Floats,
 ) -> Floats:  # fmt: skip
-    """Return (n,) logarithms by which a reading is less likely a spike than by its own time alone.
+    """Return (n,) corrections to the log-likelihood of a spike, from the adjacent readings.
 
-    The readings before and after it expect the one as measured, or the one that the line has
-    without it: weather moves the neighbours as well.
+    The interpolated neighbours are compared with the reading, and with the depth of the line
+    without the reading, because weather also moves the neighbours.
 
     Parameters
     ----------
-    spike : what is known without the sensor
+    spike : posterior without the sensor
     expected, deviation : (n,) of the sensor by its neighbours [m]
     """
     point = one.point[sensor]
@@ -124,15 +124,15 @@ def _excuse(
 
 @dataclass(frozen=True)
 class Posterior:
-    """Hold what the pressures make of the currents.
+    """Posterior of the currents, given the pressures.
 
     Attributes
     ----------
     logs : (n, g) of the factors on the currents
-    sea : (n,) what stands over the mean surface [m]
+    sea : (n,) height of the sea surface above its mean [m]
     depth, variance : (n, p) of the points [m], [m²]
     evidence : (n,) logarithm of the density of the pressures
-    innovation : (n, s) of the pressures against what is known without them [m]
+    innovation : (n, s) measured depths less their predictions [m]
     expected : (n, s, s) its covariance
     """
 
@@ -154,14 +154,14 @@ def posterior(
     spike: int = -1,
     own: Floats | None = None,
 ) -> Posterior:
-    """Return the best state by a linear law, and what is known of all depths then.
+    """Return the best state in the linear model, and the posterior of all depths.
 
     Parameters
     ----------
     spread : (n, g, g) prior covariance of the logarithms
     still : (p,) depths in still water [m]
-    spike : a sensor whose pressures are taken for spikes
-    own : `own_errors` of the state, where they are known
+    spike : index of a sensor whose readings are treated as spikes
+    own : `own_errors` of the state, if already computed
     """
     n, p, g = at.slope.shape
     s, f = len(one.point), at.common.shape[2]
@@ -180,7 +180,7 @@ def posterior(
     seen = slope[:, one.point, :].copy()
     seen[:, np.arange(s), free + f + 1 + np.arange(s)] = 1.0
     surface = one.surface
-    lost: Any = ~np.isfinite(at.depth).all(axis=1)  # without current, or without equilibrium
+    lost: Any = ~np.isfinite(at.depth).all(axis=1)  # no current or no equilibrium
     there = np.where(lost[:, None], still, at.depth)
     base = there + common.datum + surface[:, None]
     base = base - np.einsum("npg,ng->np", at.slope, at.logs)
@@ -201,7 +201,7 @@ def posterior(
     inverse = np.linalg.inv(expected)
     solved = (inverse @ innovation[:, :, None])[:, :, 0]
     gain = (state @ (turned @ solved[:, :, None]))[:, :, 0]
-    # what the state cannot take up is spread along the line as its own errors are
+    # residuals that the state cannot explain are spread along the line like its own errors
     depth = base + (beside @ solved[:, :, None])[:, :, 0]
     whole = (spread_of * slope).sum(axis=2) + np.einsum("npp->np", own)
     taken = ((beside @ inverse) * beside).sum(axis=2)
@@ -221,7 +221,7 @@ def posterior(
 
 @dataclass(frozen=True)
 class CurrentsState:
-    """Some currents, the line in them, and what the pressures make of it by its slopes there."""
+    """Currents, the line in these currents, and the posterior at this linearisation."""
 
     way: ReadCurrents
     at: Linear

@@ -1,4 +1,4 @@
-"""Depths added to copies of a user's own files, of several instruments or of one each."""
+"""Depths added to copies of the user's files, each with one or several instruments."""
 
 from __future__ import annotations
 
@@ -34,26 +34,26 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 SEVERAL = ("depth", "depth_sd", "depth_qc")
-"""What is added to a file of several instruments; in capitals to that of one."""
+"""Variables added to a file of several instruments, with upper-case names for a single one."""
 ONE = tuple(name.upper() for name in SEVERAL)
 _OF_OLD = ("DEPTH_quality_control", "DEPTH_UNCERTAINTY", "INSTRUMENT_DEPTH")
 NOMINAL = "NOMINAL_DEPTH"
-"""Where the place of the one instrument of a file goes, if that was its `DEPTH`."""
+"""New name of the nominal depth of a single instrument, if its old name was `DEPTH`."""
 _TIMES = ("time", "TIME", "Time")
 
 
 @dataclass(frozen=True)
 class Instruments:
-    """A file of instruments that depths are added to.
+    """A file of instruments to which depths are added.
 
     Attributes
     ----------
-    path : of it
-    clock, along : its variable of times, whose dimension is `dimension`; dimension of instruments,
-        None in the file of one
+    path : path of the file
+    clock, along : time variable, with dimension `dimension`; dimension of the instruments, None for
+        a single instrument
     time : (n,)
     who : the instruments
-    point : of each the point of the line; None where it is none
+    point : point of the line for each instrument; None if it has no point
     """
 
     path: Path
@@ -66,13 +66,12 @@ class Instruments:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Return the names of what is added."""
+        """Names of the added variables."""
         return ONE if self.along is None else SEVERAL
 
 
 def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], list[str]]:
-    """Return what a file or a folder of files holds, before anything is estimated, and what is said
-    of who is who.
+    """Read the instruments of a file or folder, with notes on their identification.
 
     Parameters
     ----------
@@ -84,7 +83,7 @@ def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], 
     InputError
         A file is not NetCDF, or has no times or no way to know its instruments, or groups.
     UsageError
-        A file has depths already, or a dimension called so; none of the instruments is a part of
+        A file already has depths, or a dimension with their name; no instrument is a part of
         the line.
     """
     seabed = float(line.still[-1])
@@ -122,7 +121,7 @@ def _read(path: Path, seabed: float) -> Instruments:
 def _who(
     dataset: Dataset, time: str, seabed: float, path: Path
 ) -> tuple[str | None, tuple[Identity, ...]]:
-    """Return the dimension of the instruments and who they are; None of the one of a file."""
+    """Return the dimension of the instruments (None for a single one) and their identities."""
     others = [str(dim) for dim in dataset.sizes if dim != time]
     for dim in sorted(others, key=lambda dim: cf_files.labels_along(dataset, dim) is None):
         if dataset.sizes[dim] > 1 or cf_files.labels_along(dataset, dim) is not None:
@@ -163,12 +162,12 @@ def write_depths(
     output: Path,
     inputs: Sequence[str] = (),
 ) -> list[str]:
-    """Write the copy with depths, deviations and flags, whole; return who is without them.
+    """Write a copy with depths, deviations and flags; return the instruments without depths.
 
     Parameters
     ----------
     instruments : the file that is copied
-    result : of `calm motion`
+    result : dataset of `calm motion`
     gap : between neighbours of a depth, at most
     output : the copy
     inputs : names of the files that the depths are from, with their hashes
@@ -189,7 +188,7 @@ def write_depths(
             lost.append(instruments.who[j].named)
             continue
         depth[:, j], spread[:, j], flag[:, j] = at_own_times(result, point, instruments.time, gap)
-    # values as they stand, but for texts: kept as characters they would be split once more
+    # raw values, except texts: characters would be split again
     if engine := cf_files.engine_of(instruments.path):
         with xr.open_dataset(
             instruments.path, engine=engine, mask_and_scale=False, decode_times=False,
@@ -200,7 +199,7 @@ def write_depths(
         copy = cf_files.open_current(instruments.path)
     one = instruments.along is None
     copy = _without_depths(copy, instruments)
-    for variable in copy.variables.values():  # xarray adds a fill value to each that has none
+    for variable in copy.variables.values():  # stop xarray from adding fill values
         if "_FillValue" not in variable.attrs and variable.dtype.kind == "f":
             variable.encoding.setdefault("_FillValue", None)
     name, deviation, mark = instruments.names
@@ -210,7 +209,7 @@ def write_depths(
         "units": "m", "positive": "down", "standard_name": "depth",
         "long_name": "depth estimated by CALM", "ancillary_variables": f"{deviation} {mark}",
         **({"reference": "sea_level"} if one else {}),
-        # CF: an axis is no auxiliary coordinate's, but in a discrete sampling geometry
+        # CF allows `axis` on auxiliary coordinates only in discrete sampling geometries
         **({"axis": "Z"} if one and "featureType" in copy.attrs else {}),
     })  # fmt: skip
     copy[deviation] = xr.Variable(dims, tables[1], {
@@ -235,7 +234,7 @@ def at_own_times(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
     """Return depth, deviation and flag of a point at other times.
 
-    The flag says measured where a pressure of its own was used, else interpolated.
+    The flag is "measured" if a pressure of the instrument itself was used, else "interpolated".
 
     Parameters
     ----------
@@ -258,7 +257,7 @@ def at_own_times(
 
 
 def _drop_references(copy: Dataset) -> None:
-    """Let no attribute name a variable that is gone."""
+    """Remove references to deleted variables from all attributes."""
     for variable in copy.variables.values():
         for attribute in ("coordinates", "ancillary_variables"):
             for place in (variable.attrs, variable.encoding):
@@ -271,7 +270,7 @@ def _drop_references(copy: Dataset) -> None:
 
 
 def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
-    """Return a file without the nominal depth of its one instrument, which is renamed."""
+    """Return a dataset with the nominal depth of its single instrument renamed."""
     if instruments.along is not None:
         return copy
     nominal = None
@@ -289,7 +288,7 @@ def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
 
 
 def _add_salinity(copy: Dataset, instruments: Instruments, depth: NDArray[np.float64]) -> None:
-    """Add the salinity that conductivity and temperature give, where the file holds none."""
+    """Add salinity from conductivity and temperature, if the file lacks it."""
     import xarray as xr
 
     salinity = QUANTITIES_MEASURED["salinity"]
@@ -316,7 +315,7 @@ def _add_salinity(copy: Dataset, instruments: Instruments, depth: NDArray[np.flo
 def _tell(
     copy: Dataset, instruments: Instruments, depth: NDArray[np.float64], inputs: Sequence[str]
 ) -> None:
-    """Add a line to the history of a copy, and what goes with its depths."""
+    """Add the depths' attributes, and a line in the history, to a copy."""
     line = f"{written()} calm {__version__} motion --onto: {instruments.names[0]} estimated"
     line += f" from {', '.join(inputs)}" if inputs else ""
     before = [str(copy.attrs["history"])] if "history" in copy.attrs else []

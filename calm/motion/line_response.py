@@ -1,7 +1,7 @@
-"""The line at each time of a block as its currents say, and how it changes with what is unknown.
+"""Depths of the line at each time of a block, and their derivatives by the unknowns.
 
-Unknown are the logarithm of a factor on the current of each group of levels, and what is common to
-the record, whose values are given.
+The unknowns are the logarithms of factors on the current, one for each group of levels, and the
+unknowns common to the record.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats, Integers, Line
 
 STEP = 0.05
-"""Of the logarithms by which the derivatives are found."""
+"""Step of the logarithms for numerical derivatives."""
 UNMEASURED = 1e4
-"""Deviation of what a sensor that measured nothing at a time would read [m]."""
+"""Deviation of the reading of a sensor without a measurement [m]."""
 
 
 class LineResponse:
-    """The times of a block, with a mooring to ask."""
+    """The times of a block, and the mooring for its solutions."""
 
     def __init__(
         self, measured: MooringMeasurements, forward: Forward, shifted: Mapping[str, Forward],
@@ -45,13 +45,13 @@ class LineResponse:
         ----------
         way : the currents as they are read
         logs : (n, g) logarithms of the factors on them
-        forward : the mooring; that of the block where it is None
+        forward : mooring to use; by default that of the block
         """
         factor = np.exp(logs[:, self.group])
         return (forward or self.forward).depths(way.level, way.u * factor, way.v * factor)
 
     def linear(self, way: ReadCurrents, logs: Floats) -> Linear:
-        """Return the line with factors on the currents, of logarithms (n, g), and its slopes."""
+        """Return the line for factors on the currents, with logarithms (n, g), and its slopes."""
         there = self.depths(way, logs)
         own = [self.depths(way, logs + ahead) for ahead in STEP * np.eye(self.groups)]
         common = [self.depths(way, logs, forward) for forward in self.shifted.values()]
@@ -59,18 +59,21 @@ class LineResponse:
 
 
 def _slopes(ahead: Sequence[Floats], there: Floats) -> Floats:
-    """Return (n, p, m) slopes of depths (n, p) to those a step ahead in each direction [m]."""
+    """Return (n, p, m) slopes, from depths (n, p) and depths a step ahead in each direction [m]."""
     columns = [(one - there) / STEP for one in ahead]
     return np.nan_to_num(np.stack(columns, -1)) if columns else np.zeros((*there.shape, 0))
 
 
 FACTORS = ("cable_drag", "rigid_drag", "buoyancy", "length")
-"""What may be estimated for the whole record: drag of cables and chains; drag of rigid pieces and
-clamped instruments; net force of all that floats; lengths of cables and chains."""
+"""Factors that may be estimated for a whole record.
+
+They apply to the drag of cables and chains; the drag of rigid pieces and clamped instruments; the
+net force of all buoyant pieces; and the lengths of cables and chains.
+"""
 
 
 def with_factors(line: Line, factors: Mapping[str, float]) -> Line:
-    """Return a line with factors on its drags, on the net force of its floats, on its lengths."""
+    """Return a line with factors on its drag, the net force of its floats, and its lengths."""
     cable, rigid, lift, length = (factors.get(name, 1.0) for name in FACTORS)
     drag = np.where(line.flexible, cable, rigid)
     cut = np.where(line.flexible, length, 1.0)
@@ -89,10 +92,10 @@ def with_factors(line: Line, factors: Mapping[str, float]) -> Line:
 
 
 class Forward:
-    """A mooring that is asked for its depths in many currents.
+    """A mooring with functions for its depths in many currents.
 
-    A point is a clamped instrument or the upper end of a component: the clamps down the line come
-    first, then the components in the order of the file.
+    A point is a clamped instrument or the upper end of a component: the clamps down the line
+    precede the components, which are in the order of the file.
     """
 
     def __init__(self, mooring: Design, factors: Mapping[str, float]) -> None:
@@ -118,7 +121,7 @@ class Forward:
         return self._batch.solve(u, v, depth, workers=1)
 
     def depths(self, depth: Floats, u: Floats, v: Floats) -> Floats:
-        """Return (n, p) depths of the points [m], NaN where there is no equilibrium.
+        """Return (n, p) depths of the points [m], NaN if there is no equilibrium.
 
         Parameters
         ----------
@@ -128,7 +131,7 @@ class Forward:
 
 
 def forwards_of(mooring: Design, common: Common) -> tuple[Forward, dict[str, Forward]]:
-    """Return the mooring at the common factors, and a step from each."""
+    """Return the mooring at the common factors, and with a step in each factor."""
     shifted = {
         name: Forward(mooring, {**common.factors, name: value * float(np.exp(STEP))})
         for name, value in common.factors.items()
@@ -148,7 +151,7 @@ def labels_of(mooring: Design) -> tuple[str, ...]:
 
 
 def instruments_of(mooring: Design) -> list[int]:
-    """Return the points that may be instruments: all clamps, and the pieces whose role it is."""
+    """Return the indices of possible instruments: all clamps, and pieces with that role."""
     pieces = mooring.file.pieces
     clamps = len(clamps_down(pieces))
     inline = [clamps + i for i, piece in enumerate(pieces) if piece.component.role == "instrument"]
@@ -156,22 +159,23 @@ def instruments_of(mooring: Design) -> list[int]:
 
 
 SPAN, LOCAL = 0.25, 0.3
-"""Share of the line over which the errors of its knockdown are alike, and what a point is wrong by
-for itself, as floats and clamps bend the line there."""
+"""Correlation length of the knockdown error as a share of the line, and the local error of a point,
+caused by bends at floats and clamps.
+"""
 
 
 def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
-    """Return (n, p, p) covariance of the errors of the line at its points, of a share of 1 [m²].
+    """Return (n, p, p) error covariance of the line at its points, for an error share of 1 [m²].
 
-    While the law of the currents is learnt, a point is wrong by a share of its own knockdown, alike
-    over a quarter of the line. Beside a law that is learnt, which takes up what is so, the
-    knockdown of each stretch is wrong by such a share, a point by all that is below it, so that
-    between two sensors the error is smooth, and by a lesser share of its own knockdown.
+    While the law of the currents is unknown, the error at a point is a share of its own knockdown,
+    correlated over a quarter of the line. A learnt law absorbs such errors. In that case, the
+    knockdown of each stretch is wrong by a share, and a point has the summed error of the stretches
+    below, which is smooth between two sensors, and a smaller share of its own knockdown.
 
     Parameters
     ----------
     depth, still : (n, p), (p,) of the points, and in still water [m]; of NaN they are 0
-    learnt : whether the law of the currents is
+    learnt : whether the law of the currents is learnt
     """
     if not learnt:
         own = np.maximum(np.nan_to_num(depth - still), 0.0)
@@ -192,10 +196,9 @@ def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
 
 
 def filled(depth: Floats, value: Floats, known: NDArray[np.bool_]) -> Floats:
-    """Return values (n, k) at levels (n, k), those that are not known linear in depth between the
-    others.
+    """Fill unknown values (n, k) at levels (n, k) by linear interpolation in depth.
 
-    Beyond the first and the last known level they are constant; NaN where none is known.
+    Values are constant beyond the first and the last known level, and NaN if no level is known.
 
     Parameters
     ----------

@@ -1,7 +1,4 @@
-"""Matching of measurements to a line: which sensor hangs where, which readings can be right.
-
-It is found by label, serial number, or order down the line.
-"""
+"""Matching of sensors to points of a line, by label, serial number or order down the line."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -23,13 +20,13 @@ from calm.records.instrument_series import Identity, who_along
 
 @dataclass(frozen=True)
 class LinePlaces:
-    """The p points of a line where an instrument may be.
+    """The p points of a line with a possible instrument.
 
     Attributes
     ----------
-    name : of the file that they are from
-    label, serial : (p,) of clamps and pieces; serials are empty where not known
-    clamps : how many of the points are clamps, which come first
+    name : path of the mooring file
+    label, serial : (p,) of clamps and pieces; empty serials if unknown
+    clamps : number of clamps, which precede the other points
     still : (p,) depths in calm water [m]
     """
 
@@ -41,7 +38,7 @@ class LinePlaces:
 
 
 def places_of(mooring: Design) -> LinePlaces:
-    """Return the points of a mooring, with the serial numbers of what was deployed."""
+    """Return the points of a mooring, with the serial numbers of the deployed parts."""
     return LinePlaces(
         mooring.file.path, line_response.labels_of(mooring), serials_of(mooring),
         len(clamps_down(mooring.file.pieces)), line_response.Forward(mooring, {}).still,
@@ -49,7 +46,7 @@ def places_of(mooring: Design) -> LinePlaces:
 
 
 def serials_of(mooring: Design) -> tuple[str, ...]:
-    """Return the serial number of each clamp and piece, as deployed; empty where not known."""
+    """Return the serial number of each clamp and piece, as deployed; empty if unknown."""
     file = mooring.file
     deployed = () if file.deployed is None else file.deployed.items
     given = {item.label: item.serial for item in deployed if item.serial}
@@ -59,7 +56,7 @@ def serials_of(mooring: Design) -> tuple[str, ...]:
 
 
 def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeasurements:
-    """Return what was measured but for some sensors, hidden everywhere."""
+    """Return the measurements without several sensors, which are removed throughout."""
     kept = [i for i, label in enumerate(measured.label) if label not in labels]
     return replace(
         measured,
@@ -71,12 +68,14 @@ def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeas
 
 @dataclass(frozen=True)
 class Clock:
-    """How far the clock of an instrument is behind: nothing at first, more and more evenly.
+    """Clock error of an instrument, which grows linearly from zero.
+
+    Positive if the clock is behind.
 
     Attributes
     ----------
     since, checked : when it was set, and when it was compared
-    late : how far it was behind then [s]
+    late : lag of the clock at that time [s]
     """
 
     since: np.datetime64
@@ -92,18 +91,18 @@ class Clock:
 
     @property
     def sentence(self) -> str:
-        """Return what is said of it."""
+        """Describe the clock error in a sentence."""
         way = "behind" if self.late > 0.0 else "ahead"
         when = np.datetime_as_string(self.checked, "m")
         return f"its clock was {abs(self.late):g} s {way} at {when}; its times are put right"
 
 
 def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:
-    """Return the measured clocks of what was deployed, by label.
+    """Return the measured clock errors of the deployed instruments, by label.
 
     Parameters
     ----------
-    first : time of a record, from which they run where the deployment has no date
+    first : time of a record, from which the lag grows if the deployment has no date
 
     Raises
     ------
@@ -129,11 +128,10 @@ def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:
 def hung_currents(
     one: CurrentMeasurements, path: Path, line: LinePlaces, seabed: float
 ) -> tuple[CurrentMeasurements, list[str]]:
-    """Return currents whose instruments are on the line by serial number or nominal depth, moving
-    with it, and what is said of these.
+    """Match the instruments of a current file to the line by serial number or nominal depth.
 
-    Levels with labels stay as they are, and so do those of a file that names no instrument: of a
-    profiler, whose depths are its own.
+    Also return notes on the matches. Matched instruments move with the line. Levels with labels are
+    unchanged, and so are levels without an instrument name: a profiler has fixed depths.
     """
     if any(one.label) or path.is_dir() or not cf_files.holds_arrays(path):
         return one, []
@@ -167,17 +165,16 @@ def hung_currents(
 
 
 CERTAIN = 2.0
-"""An order of sensors counts as the only one where any other is off by so much more [m]."""
+"""Least excess cost of the second-best order of sensors for a unique match [m]."""
 
 
 def matched_by_label(
     given: Sequence[Identity], line: LinePlaces
 ) -> tuple[dict[int, int], list[str]]:
-    """Return the point of each sensor whose label or serial number a part has, and what is said of
-    the others.
+    """Match sensors to points by label or serial number, with notes on the unmatched sensors.
 
-    UsageError: a file does not say what its sensor is called; two sensors are of one part; none is
-    of any.
+    UsageError: a sensor has neither label nor serial number; two sensors match the same part; or no
+    sensor matches.
     """
     points: dict[int, int] = {}
     lost: list[str] = []
@@ -202,13 +199,13 @@ def matched_by_label(
 def matched_by_place(
     given: Sequence[Identity], line: LinePlaces, places: Sequence[int]
 ) -> tuple[dict[int, int], list[str]]:
-    """Return the point of each sensor by its nominal depth, in their order down the line.
+    """Match sensors to instruments by nominal depth, in order down the line, with notes.
 
-    And what is said of it. Of all ways to set the sensors on the instruments without changing their
-    order, the one whose depths agree best; `places` are the points that are instruments.
+    The match minimises the differences in depth among all matches that preserve the order. `places`
+    are the points with instruments.
 
-    UsageError: a sensor has no nominal place; there are more than instruments; two ways agree
-    alike.
+    UsageError: a sensor has no nominal place, there are more sensors than instruments, or the best
+    match is not unique.
     """
     lacking = [one.named for one in given if not np.isfinite(one.nominal)]
     if lacking:
@@ -228,16 +225,16 @@ def matched_by_place(
 
 
 CLEAR = 10.0
-"""An order of instruments is the only one where any other is off by so much more [m]."""
+"""Least excess cost of the second-best order of instruments for a unique match [m]."""
 
 
 def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, int], list[str]]:
-    """Return the point of each series, and what is said of how it was found, or not.
+    """Match series to points, with notes on matched and unmatched series.
 
-    By its label or serial number; else, where its file gives no label, by nominal depths, in their
+    Labels and serial numbers come first. Series without a label are matched by nominal depth, in
     order down the line.
 
-    UsageError: no series is of any point, or their order is not the only one.
+    UsageError: no series matches a point, or their order is not unique.
     """
     who = [(one.label, one.serial, one.nominal, one.source) for one in series]
     first = [who.index(one) for one in who]  # the bins of a profiler are one instrument
@@ -272,8 +269,9 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
 
 
 def named_point(one: Identity, line: LinePlaces) -> int | None:
-    """Return the point that has the label of an instrument, else its serial number; None of none,
-    or of several.
+    """Return the only point with the label of an instrument, else with its serial number.
+
+    None if no point or several points match.
     """
     at = _index(one.label, line.label)
     if at is None:
@@ -290,7 +288,7 @@ def _index(text: str, among: Sequence[str]) -> int | None:
 
 
 def nowhere(one: Identity, line: LinePlaces) -> str:
-    """Return what is said of an instrument that no point is found for."""
+    """Return the message for an instrument that matches no point."""
     name = one.label or one.serial
     if not name:
         return f"{one.named}: neither label, serial number nor nominal depth is known"
@@ -303,21 +301,21 @@ def in_order(
     series: Sequence[Identity], line: LinePlaces, points: Sequence[int],
     depths: float, spacings: float, clear: float,
 ) -> tuple[dict[int, int], list[int]]:  # fmt: skip
-    """Return the point of each series by nominal depths, in their order down the line.
+    """Match series to points by nominal depth, in order down the line.
 
-    And the series that are left: of two lists, what the longer one has more.
+    Also return the unmatched series, if these outnumber the points.
 
     Parameters
     ----------
-    points : that they may be at
-    depths, spacings : what a metre counts by which a depth is off, and a spacing of neighbours:
-        nominal depths of a whole line are often off together
-    clear : the order is the only one where any other is off by so much more [m]
+    points : candidate points
+    depths, spacings : cost per metre of a difference in depth, and in the spacing of neighbours:
+        nominal depths of a whole line often share an error
+    clear : least excess cost of the second-best order [m]
 
     Raises
     ------
     UsageError
-        Their order is not the only one.
+        The order is ambiguous.
     """
     down = sorted(points, key=lambda at: line.still[at])
     rows = sorted(range(len(series)), key=lambda i: series[i].nominal)
@@ -345,12 +343,12 @@ def in_order(
 def aligned(
     few: Floats, many: Floats, depths: float, spacings: float
 ) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
-    """Return the cheapest way to set few depths on many in their order, and the next best.
+    """Find the two cheapest alignments of few depths with many, in order.
 
     Parameters
     ----------
     few, many : rising [m]
-    depths, spacings : what a metre costs by which a depth is off, and a spacing between neighbours
+    depths, spacings : cost per metre of a difference in depth, and in the spacing of neighbours
     """
     places = len(many)
 

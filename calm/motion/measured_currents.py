@@ -1,12 +1,12 @@
-"""Currents that were measured: one smoother for currents, line, sensors and tide.
+"""Smoother for records with measured currents, to estimate currents, line, sensors and tide.
 
-At each time the unknowns are the current vector at knots in depth, the share by which the knockdown
-of each stretch of the line is wrong, and the tide. For the whole record they are factors on the
-drag, the datum and an offset of each sensor, which seldom step. All are normal, and fade with time
-or stay. Errors of meters and sensors follow Student's law, by weights. How large those of meters
-are for each quality flag, and the error of the line, come from the record by expectation and
-maximisation (Dempster, Laird and Rubin 1977). Steps of Gauss and Newton over the whole record take
-depths and slopes from the march.
+The unknowns at each time are the current vector at knots in depth, the share by which the knockdown
+of each stretch of the line is wrong, and the tide. The unknowns of the whole record are factors on
+the drag, the datum and the offset of each sensor; datum and offsets rarely step. All priors are
+normal; the states decay with time or persist. Errors of meters and sensors follow Student's law, as
+weights. Expectation and maximisation (Dempster, Laird and Rubin 1977) estimates the meter error for
+each quality flag, and the error of the line. Gauss-Newton steps over the whole record use depths
+and slopes from the march.
 """
 
 from __future__ import annotations
@@ -29,63 +29,72 @@ from calm.motion.smoother import StateSpace, smoothed
 from calm.physics.line import Floats
 
 TURNS, ENOUGH, PLACED = 20, 0.05, (1, 3, 5, 8, 11)
-"""Steps of Gauss and Newton at most; fewer where none moves a depth by more than this [m]; and
-those after which the factors take one."""
+"""Maximum number of Gauss-Newton steps, the change in depth that ends them [m], and the steps after
+which the factors are updated.
+"""
 SLOPE_STEP = 0.05
-"""Of a current [m/s] and of the logarithm of a factor, by which slopes are found."""
+"""Step for numerical slopes: of a current [m/s], and of the logarithm of a factor."""
 STALE = 0.03
-"""How far a current may be from that at which its slopes were found [m/s]."""
+"""Change in a current above which its slopes are renewed [m/s]."""
 LONGEST = 0.5
-"""Of a current, what one step changes at most [m/s]."""
+"""Maximum change in a current in one step [m/s]."""
 
 MOST_LEVELS, KNOTS, APART = 8, 12, 2.0
-"""Levels that are knots themselves, with the depths half-way between; of more, so many are chosen.
-Levels closer than this are one knot [m]."""
+"""Number of levels up to which all levels and their midpoints are knots, number of knots for more
+levels, and the distance below which levels share a knot [m].
+"""
 ABOVE, BELOW = 5.0, 20.0
-"""How far the line must reach beyond the outermost levels for a knot there [m]."""
+"""Least extent of the line above and below the outermost levels for a further knot there [m]."""
 
 METER = 0.02, 0.10
-"""Error of a current meter [m/s], and as a share of its speed; times the factor of its flag."""
+"""Error of a current meter: constant part [m/s], and share of the speed.
+
+A factor for the quality flag multiplies both.
+"""
 FLAGGED: Mapping[int, float] = {0: 1.0, 1: 1.0, 2: 1.5, 3: 2.0, 4: 4.0, 8: 3.0}
-"""That factor, where the record does not say it."""
+"""Default factors on the meter error, by quality flag."""
 FLAG_RANGE, FEWEST = (0.3, 15.0), 20
-"""Least and greatest such factor, and readings from which the record says it."""
+"""Limits of the estimated factor on the meter error, and the least number of readings."""
 STUDENT = 4.0
-"""Degrees of freedom of the errors of a reading."""
+"""Degrees of freedom of Student's law for readings."""
 ALIKE_HOURS = 1.0
-"""Over which the error of a meter is the same [h]."""
+"""Time over which the error of a meter persists [h]."""
 LEAST_SPREAD = 0.02
-"""Of a current about its mean, at least [m/s]."""
+"""Least deviation of a current about its mean [m/s]."""
 CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
-"""Time [h] and depth [m] over which a current is correlated, where the record does not say."""
+"""Default correlation time [h] and correlation depth [m] of the current."""
 
 STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
-"""Stretches whose knockdown is wrong each by its own share, the part of the line over which these
-are alike, and the share of its own knockdown that a point is wrong by besides."""
+"""Number of stretches with separate errors in knockdown, their correlation length as a share of the
+line, and the local error of a point as a share of its own knockdown.
+"""
 SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
-"""Such a share beforehand, its limits, and how long it lasts [h]."""
+"""Prior and limits of the error share of a stretch, and its correlation time [h]."""
 TIDE_HOURS = 6.0
-"""How long tide and air pressure last [h]."""
+"""Correlation time of tide and air pressure [h]."""
 STEP = 0.02
-"""Usual size of what datum and offsets change by in an hour [m]; of this, and of what they begin
-with, Student's law of one degree of freedom also knows values many times as large."""
+"""Typical hourly step of the datum and offsets [m].
+
+Student's law with one degree of freedom applies to these steps and to the initial values, to allow
+steps many times as large.
+"""
 SETTLED = 6
-"""Turns before the error of the line is learnt: it would take up steps of sensors."""
+"""Number of steps before the line error is estimated, as it would absorb sensor steps."""
 LONGER = 30.0
-"""Times a step of the error of the line is lengthened, at most."""
+"""Maximum factor by which a step of the line error is lengthened."""
 FURTHEST = 0.7
-"""Logarithm of a factor, at most."""
+"""Maximum logarithm of a factor."""
 
 
 @dataclass(frozen=True)
 class Knots:
-    """The depths at which the current is unknown, and how levels are read off there.
+    """Depths at which the current is unknown, with interpolation from knots to levels.
 
     Attributes
     ----------
     depth : (K,) at rest, rising [m]
     level : (k, K) weights of the knots in the current of a level
-    hung : the levels that are knots, and the knots they are
+    hung : levels that are knots, and the indices of these knots
     """
 
     depth: Floats
@@ -94,7 +103,7 @@ class Knots:
     seabed: float
 
     def at(self, levels: Floats) -> Floats:
-        """Return (n, K) depths of the knots where the levels are (n, k); others follow these."""
+        """Return (n, K) depths of the knots for levels (n, k), interpolated between levels."""
         level, knot = self.hung
         place = np.append(self.depth[knot], self.seabed)
         off = np.pad(levels[:, level] - self.depth[knot], ((0, 0), (0, 1)))
@@ -133,7 +142,7 @@ def knots_of(place: Floats, top: float, seabed: float) -> Knots:
 
 @dataclass(frozen=True)
 class Columns:
-    """Where each unknown is in the state.
+    """Slices of the state vector, by kind of unknown.
 
     Attributes
     ----------
@@ -149,29 +158,29 @@ class Columns:
 
     @classmethod
     def made(cls, *counts: int) -> Columns:
-        """Return the slices of so many columns each."""
+        """Return slices of the given numbers of columns."""
         ends = np.cumsum([0, *counts]).tolist()
         return cls(*(slice(*pair) for pair in pairwise(ends)))
 
     @property
     def count(self) -> int:
-        """Return how many there are."""
+        """Number of unknowns."""
         return int(self.offset.stop)
 
     @property
     def stays(self) -> slice:
-        """Return datum and offsets, which step."""
+        """Slice of the datum and offsets, which persist and may step."""
         return slice(self.datum.start, self.offset.stop)
 
 
 @dataclass(frozen=True)
 class ErrorScales:
-    """How large the errors are, as far as the record has said.
+    """Error scales estimated from the record.
 
     Attributes
     ----------
     flag : factor on the errors of a meter by its flag
-    share : of the knockdown of each stretch by which the line is wrong
+    share : error of the line, as a share of the knockdown of each stretch
     hours, reach : over which a current is correlated [h, m]
     """
 
@@ -182,7 +191,7 @@ class ErrorScales:
 
 
 class CurrentSmoother:
-    """A record with measured currents, estimated as a whole."""
+    """Estimate of a whole record with measured currents."""
 
     def __init__(
         self, mooring: Design, measured: MooringMeasurements, names: Sequence[str]
@@ -235,7 +244,7 @@ class CurrentSmoother:
         return np.interp(self.knots.depth, place[order], value[order])
 
     def _measured_state(self, place: Floats) -> Floats:
-        """Return (n, 2 K) what was measured less its mean, between levels linear in depth."""
+        """Return (n, 2 K) measured currents less their mean, interpolated to the knots."""
         one, depth = self.measured, np.tile(place, (len(self.measured.time), 1))
         known = np.isfinite(one.u) & np.isfinite(one.v)
         parts = []
@@ -261,7 +270,7 @@ class CurrentSmoother:
         return forward.depths(self.knot_depth[times], *self.currents(state))
 
     def forward(self, factor: Floats) -> Forward:
-        """Return the mooring with factors of these logarithms; the latest ones are kept."""
+        """Return the mooring for logarithms of the factors; the latest moorings are cached."""
         key = tuple(factor.tolist())
         if key not in self._forwards:
             factors = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
@@ -271,7 +280,7 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return (n, p) depths at the state, and renew the slopes where it has moved far."""
+        """Return (n, p) depths at the state, and renew the slopes at times with a large change."""
         now, factor = self.state[:, self.columns.current], self.factor
         there = self.depths(now, factor, slice(None))
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
@@ -285,7 +294,7 @@ class CurrentSmoother:
     def _slopes(
         self, there: Floats, state: Floats, factor: Floats, times: NDArray[np.int64]
     ) -> Floats:
-        """Return (n, p, 2 K + f) slopes of the depths with currents and logarithms of factors."""
+        """Return (n, p, 2 K + f) derivatives of depths by currents and logarithms of factors."""
         steps = SLOPE_STEP * np.eye(state.shape[1]), SLOPE_STEP * np.eye(len(factor))
         columns = [self.depths(state + ahead, factor, times) for ahead in steps[0]]
         columns += [self.depths(state, factor + ahead, times) for ahead in steps[1]]
@@ -293,8 +302,10 @@ class CurrentSmoother:
 
     @cached_property
     def _stretches(self) -> tuple[Floats, NDArray[np.int64], Floats]:
-        """Depths at rest between the stretches, from the seabed up; the stretch of each point; how
-        alike their shares are."""
+        """Return the stretch limits, the stretch of each point, and the correlation of the shares.
+
+        The limits are depths in still water, from the seabed up.
+        """
         edges = np.linspace(self.still.max(), self.still.min(), STRETCHES + 1)
         own = np.clip(np.searchsorted(-edges, -self.still, "right") - 1, 0, STRETCHES - 1)
         middle = 0.5 * (edges[1:] + edges[:-1])
@@ -302,7 +313,7 @@ class CurrentSmoother:
         return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
 
     def by_line(self, there: Floats) -> Floats:
-        """Return (n, p, z) change of the depths with the shares that the stretches are wrong by."""
+        """Return (n, p, z) derivatives of the depths by the error shares of the stretches."""
         edges, own, _ = self._stretches
         order = np.argsort(self.still, kind="stable")
         down = np.maximum(np.nan_to_num(there - self.still), 0.0)
@@ -373,13 +384,13 @@ class CurrentSmoother:
 
     @cached_property
     def alike(self) -> float:
-        """Return how many readings of a meter in a row have the same error."""
+        """Number of successive meter readings with a common error."""
         step = float(np.median(np.diff(self.hours))) if len(self.hours) > 1 else ALIKE_HOURS
         return max(ALIKE_HOURS / max(step, 1e-3), 1.0)
 
     @property
     def meter_noise(self) -> Floats:
-        """Return (n, k) variances of the errors of each component of the currents [m²/s²]."""
+        """Return (n, k) error variances of the current components [m²/s²]."""
         one = self.measured
         table = np.array([self.scales.flag.get(f, FLAGGED[4]) for f in range(256)])
         speed = np.nan_to_num(np.hypot(one.u, one.v))
@@ -388,10 +399,10 @@ class CurrentSmoother:
         ] ** 2
         return noise
 
-    # --- turns
+    # --- iterations
 
     def solve(self) -> None:
-        """Take steps until the depths stay."""
+        """Iterate until the depths converge."""
         before = np.full((len(self.measured.time), len(self.still)), np.inf)
         for turn in range(TURNS):
             there = self.linear()
@@ -411,16 +422,16 @@ class CurrentSmoother:
 
     @property
     def _steps(self) -> Floats:
-        """Return (n, s) how far datum and offsets are from their medians at each time [m]."""
+        """Differences (n, s) of datum plus offsets from their medians at each time [m]."""
         stay = self.state[:, self.columns.stays]
         gone = stay - np.median(stay, axis=0)
         return np.asarray(gone[:, :1] + gone[:, 1:])
 
     def _place(self) -> None:
-        """Take a step of Gauss and Newton of the factors, datum and offsets, beside the meters.
+        """Take a Gauss-Newton step of the factors, datum and offsets, given the metered currents.
 
-        Beside currents that the pressures have a part in, these would shrink and the drag grow.
-        Times whose errors repeat count as fewer, and steps of datum and offsets are taken off.
+        With currents that fit the pressures, the currents would shrink and the drag grow. Times
+        with a common error have a reduced weight, and steps of datum and offsets are subtracted.
         """
         times = chosen_times(self.measured)
         if not self.names or not len(times):
@@ -439,10 +450,10 @@ class CurrentSmoother:
         self.factor = np.clip(value[: len(self.names)], -FURTHEST, FURTHEST)
 
     def _grown(self, step: float) -> float:
-        """Return the share of the line's error after a step of its logarithm.
+        """Return the error share of the line after a step of its logarithm.
 
-        Those of expectation and maximisation are short where the pressures say little of it: they
-        are lengthened while they lead the same way.
+        Steps of expectation and maximisation are short if the pressures constrain the share poorly.
+        They are lengthened while they have the same sign.
         """
         same = step * self._last > 0.0
         self._longer = min(1.5 * self._longer, LONGER) if same else max(self._longer / 3.0, 1.0)
@@ -451,7 +462,7 @@ class CurrentSmoother:
         return float(np.clip(self.scales.share * np.exp(whole), *SHARES))
 
     def _heavy(self, square: Floats) -> Floats:
-        """Return variances of the beginning by Student's law, where such squares are expected."""
+        """Return initial variances by Student's law, from the expected squares."""
         return np.maximum(self.begin, 0.5 * (self.begin + square))
 
     def _turn(self, law: StateSpace, slope: Floats, there: Floats, turn: int) -> None:
@@ -527,10 +538,10 @@ class CurrentSmoother:
                 levels[:, k] = np.where(np.isfinite(there[:, point]), there[:, point], levels[:, k])
         return levels
 
-    # --- what is found
+    # --- results
 
     def common(self) -> Common:
-        """Return what is common to the record, datum and offsets as they are in the median."""
+        """Return the common unknowns, with the medians over time of datum and offsets."""
         at = self.columns
         stay = np.median(self.state[:, at.stays], axis=0)
         factors = np.exp(self.factor).tolist()
@@ -543,7 +554,7 @@ class CurrentSmoother:
         return self.forward(self.factor)
 
     def way(self, times: slice) -> ReadCurrents:
-        """Return the currents that are estimated, at the knots."""
+        """Return the estimated currents at the knots."""
         u, v = self.currents(self.state[times, self.columns.current])
         return ReadCurrents(self.knot_depth[times], u, v, np.zeros((len(u), 0, 0)))
 
@@ -554,13 +565,13 @@ class CurrentSmoother:
 
     @property
     def surface(self) -> Floats:
-        """Return (n,) what is added to the depths of the line: datum, tide and steps [m]."""
+        """Change (n,) in all depths of the line: datum, tide and steps [m]."""
         at = self.columns
         return self.state[:, at.datum.start] + self.state[:, at.tide.start] + self.measured.surface
 
     @cached_property
     def lost(self) -> NDArray[np.bool_]:
-        """Return (n,) which times are too far from any current to say anything of it."""
+        """Mask (n,) of times too far from any measured current."""
         there = (np.isfinite(self.measured.u) & np.isfinite(self.measured.v)).any(axis=1)
         known = self.hours[there]
         after = np.clip(np.searchsorted(known, self.hours), 0, len(known) - 1)
@@ -570,7 +581,7 @@ class CurrentSmoother:
 
     @property
     def current_factor(self) -> Floats:
-        """Return (n,) the currents that are estimated as a share of those measured."""
+        """Return (n,) the estimated currents as a share of the measured currents."""
         one = self.measured
         u, v = (
             each @ self.knots.level.T for each in self.currents(self.state[:, self.columns.current])
@@ -581,10 +592,10 @@ class CurrentSmoother:
 
     @property
     def doubt(self) -> Floats:
-        """Return (n, k) probability that what a level reads has nothing to do with its current.
+        """Probability (n, k) that the reading of a level is unrelated to its current.
 
-        By the odds of both beforehand, and by normal laws: of the error of a meter, and of this and
-        the current.
+        It follows from the prior odds and two normal laws: the meter error alone, and the meter
+        error plus the variability of the current.
         """
         one, noise = self.measured, self.meter_noise
         spread = np.square(self.knots.level @ self.spread)
@@ -599,10 +610,11 @@ class CurrentSmoother:
     def by_meters(
         self, times: NDArray[np.int64], factor: Floats
     ) -> tuple[LinearLaw, ReadCurrents, LineResponse]:
-        """Return what the pressures of some times say beside the meters alone.
+        """Return the linear law of the pressures at several times, given the meters alone.
 
-        The law is about the currents as the meters have them, smoothed; besides, these at the
-        knots, and the times. `factor` are the logarithms of the factors (f,) on the line.
+        The law is linearised at the smoothed currents of the meters. Also return these currents at
+        the knots, and the line response. `factor` holds the logarithms of the factors (f,) on the
+        line.
         """
         one, at, count = self.measured, self.columns, len(times)
         law, _ = self.law(self.depth, sensors=False)

@@ -1,6 +1,6 @@
-"""Measurements on common times: currents at levels or on the line, depths of sensors.
+"""Measurements on common times: currents at levels or on the line, and depths of sensors.
 
-The times are those of the currents; sensors are interpolated to them over gaps that are not long.
+The times of the currents are used; sensor readings are interpolated over short gaps.
 """
 
 from __future__ import annotations
@@ -24,32 +24,32 @@ from calm.records.record import RULES
 from calm.records.velocity import MISSING
 
 MOST_GROUPS = 8
-"""So many levels have errors of their own; of more, neighbours share theirs."""
+"""Maximum number of level groups with separate errors. Neighbouring levels share a group."""
 
 MOST_TIMES = 500
-"""So many times, spread evenly over the record, are what is common to it estimated from."""
+"""Maximum number of times for the common unknowns, spread evenly over the record."""
 
 FREE = -1
-"""In place of a point or a sensor, where a level has none."""
+"""Index for a level without a point or a sensor."""
 
 
 @dataclass(frozen=True)
 class MooringMeasurements:
-    """n times, s sensors, k levels.
+    """Currents and depths at n times, from s sensors and k levels.
 
     Attributes
     ----------
     time : (n,) to the nanosecond, rising
     label : (s,) of the used sensors
-    point : (s,) where they are, see `calm.motion.line_response`
-    depth : (n, s) below the surface by their pressures [m]; NaN where not measured, or flagged
-    level_depth : (n, k) [m]; NaN for levels that hang on the line
-    level_point : (k,) the point that a level hangs at; `FREE` without
-    u, v : (n, k) current [m/s], NaN where not measured
-    flag : (n, k) quality flags of the current; 0 where it has none
-    tide : (n,) height of the sea surface above its mean [m]; None where not known
-    false : (n,) whether a current that cannot be was left out; None where none was
-    sunk : (n,) how much deeper the whole mooring is than at first [m]; None where it never moved
+    point : (s,) point of each sensor, see `calm.motion.line_response`
+    depth : (n, s) below the surface by their pressures [m]; NaN if missing or rejected by a flag
+    level_depth : (n, k) [m]; NaN for levels on the line
+    level_point : (k,) point of each level on the line; `FREE` for fixed levels
+    u, v : (n, k) current [m/s]; NaN if missing
+    flag : (n, k) quality flags of the current; 0 without flags
+    tide : (n,) height of the sea surface above its mean [m]; None if unknown
+    false : (n,) whether an impossible current was removed; None if none was removed
+    sunk : (n,) increase in depth of the whole mooring since the start [m]; None if it never moved
     """
 
     time: NDArray[np.datetime64]
@@ -67,39 +67,37 @@ class MooringMeasurements:
 
     @property
     def surface(self) -> Floats:
-        """Return (n,) what is added to all depths: the tide, and how far all has sunk [m]."""
+        """Change (n,) in all depths: the tide, and the sinking of the whole mooring [m]."""
         none = np.zeros(len(self.time))
         return none + (0.0 if self.tide is None else self.tide) + self.moved
 
     @property
     def moved(self) -> Floats:
-        """Return (n,) how much deeper the whole mooring is than at first [m]."""
+        """Increase (n,) in depth of the whole mooring since the first time [m]."""
         return np.zeros(len(self.time)) if self.sunk is None else self.sunk
 
     @property
     def level_sensor(self) -> Integers:
-        """Return (k,) the used sensor where a level hangs; `FREE` without."""
+        """Index (k,) of the used sensor at the place of a level; `FREE` without a sensor."""
         used = self.point.tolist()
         found = [used.index(at) if at in used else FREE for at in self.level_point.tolist()]
         return np.array(found, np.int64)
 
     @property
     def group(self) -> Integers:
-        """Return (k,) which levels share their error: each has its own where they are few."""
+        """Group (k,) of levels with a common error; each level is a group if there are few."""
         count = len(self.level_point)
         return np.arange(count) * min(count, MOST_GROUPS) // max(count, 1)
 
     def at(self, times: slice | Integers) -> MooringMeasurements:
-        """Return what was measured at some of the times."""
+        """Return the measurements at several times."""
         columns = ("time", "depth", "level_depth", "u", "v", "flag", "tide", "false", "sunk")
         known = {name: getattr(self, name) for name in columns}
         return replace(self, **{name: one[times] for name, one in known.items() if one is not None})
 
 
 def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
-    """Return times that have a current and a pressure, or a pressure alone, evenly spread where
-    they are many.
-    """
+    """Return evenly spread times with a current and a pressure, or if `alone` with a pressure."""
     currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
     used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
     if len(used) <= MOST_TIMES:
@@ -108,7 +106,7 @@ def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers
 
 
 def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[str, ...]:
-    """Return what each level of the currents is called: its part of the line, or its mean depth."""
+    """Return the name of each level of the currents: its part of the line, or its mean depth."""
     names = []
     for k, point in enumerate(measured.level_point.tolist()):
         depth = measured.level_depth[:, k]
@@ -124,11 +122,11 @@ Times = NDArray[np.datetime64]
 def common_times(
     currents: Sequence[CurrentMeasurements], sensors: Sequence[InstrumentSeries]
 ) -> Times:
-    """Return those of the first current, or of the first sensor without; of the others, and then of
-    the sensors, what is far from these.
+    """Return the times of the first current, or of the first sensor if there are no currents.
 
-    Far is more than half of the median step of what is there already; of readings less than a
-    quarter apart, as those of a burst, the first is taken.
+    Distant times of the other currents, and then of the sensors, are added. Their distance must
+    exceed half the median step of the times so far. Only the first of several readings within a
+    quarter of the step (a burst) is used.
     """
     everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time
@@ -142,7 +140,7 @@ def common_times(
 
 
 def _sparse(times: Times, step: np.timedelta64) -> Times:
-    """Return those of rising times that are further than a step from the last one taken."""
+    """Thin rising times to steps longer than `step`."""
     taken: list[np.datetime64] = []
     at = 0
     while at < len(times):
@@ -177,12 +175,13 @@ def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64)
 
 
 def measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Return depths of a sensor at other times; where it has a reading of its own, that one or
-    none.
+    """Return depths of a sensor at other times.
+
+    A reading at exactly that time, even a missing one, is returned without interpolation.
 
     Parameters
     ----------
-    one : the sensor
+    one : series of the sensor
     wanted : (n,) other times
     gap : between known neighbours, at most
     """
@@ -193,15 +192,16 @@ def measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Fl
 
 
 def by_neighbours(time: Times, depth: Floats) -> tuple[Floats, Floats]:
-    """Return (n, s) depths as the readings before and after a time have them, and their deviation.
+    """Return (n, s) depths interpolated between the adjacent readings, and their deviation [m].
 
-    Linear in time between these. The deviation is that of the whole record, by its median, and a
-    quarter of what changes between the two; infinite where either is missing or far [m].
+    The interpolation is linear in time. The deviation is a robust value for the whole record, plus
+    a quarter of the difference between the two readings. It is infinite if either reading is
+    missing or distant.
 
     Parameters
     ----------
     time : (n,) rising
-    depth : (n, s) as measured; NaN where not [m]
+    depth : (n, s) measured depths; NaN if missing [m]
     """
     expected, deviation = np.full_like(depth, np.nan), np.full_like(depth, np.inf)
     hours = (time - time[:1]) / np.timedelta64(1, "h")
@@ -222,7 +222,7 @@ def by_neighbours(time: Times, depth: Floats) -> tuple[Floats, Floats]:
 
 
 FAR_NEIGHBOURS = 4.0
-"""Steps of the record between the readings before and after a time that say something of it."""
+"""Maximum span between the readings before and after a time, in steps of the record."""
 
 
 def joined(
@@ -234,19 +234,19 @@ def joined(
     gap: np.timedelta64,
     sea_level: tuple[Times, Floats] | None = None,
 ) -> MooringMeasurements:
-    """Return all that was measured, on common times; levels and sensors from the top down.
+    """Combine all measurements on common times, with levels and sensors from the top down.
 
     Parameters
     ----------
-    points : where each sensor is
-    labels : of all points
+    points : point of each sensor
+    labels : labels of all points
     still : (p,) their depths in still water [m]
     sea_level : times, and height of the sea surface above its mean [m]
 
     Raises
     ------
     UsageError
-        A current's label is that of no part; no time has both a current and a pressure.
+        A current has a label without a part; no time has both a current and a pressure.
     """
     time = common_times(currents, sensors)
     order = np.argsort([still[point] for point in points], kind="stable")
@@ -303,7 +303,7 @@ def joined(
 
 
 def _nearest(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
-    """Return the worse of the flags on either side of each time; 9 outside of the record."""
+    """Return the worse of the flags before and after each time; 9 outside the record."""
     after = np.searchsorted(one.time, time)
     upper, lower = np.minimum(after, len(one.time) - 1), np.maximum(after - 1, 0)
     exact = one.time[upper] == time
@@ -315,18 +315,18 @@ def _nearest(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
 
 @dataclass(frozen=True)
 class CurrentMeasurements:
-    """Hold what one file says of the current.
+    """Currents of one file.
 
     Attributes
     ----------
     time : (n,) to the nanosecond, rising
-    depth : (n, k) of the levels [m]; NaN where they hang on the line
-    label : (k,) of the parts they hang at; empty for levels of a depth
+    depth : (n, k) of the levels [m]; NaN for levels on the line
+    label : (k,) part of the line at each level; empty for fixed depths
     u, v : (n, k) [m/s]
     flag : (n, k); 0 without
     source : its file
-    notes : what to know of it
-    false : (n,) whether a speed that cannot be was left out
+    notes : remarks on the file
+    false : (n,) whether an impossible speed was removed
     """
 
     time: NDArray[np.datetime64]
@@ -348,15 +348,16 @@ def read_currents(
     declination: float | None,
     maximum_speed: float,
 ) -> list[CurrentMeasurements]:
-    """Return the currents of some files, each given by its path, or as ``LABEL=PATH`` where it has
-    one level.
+    """Read the currents of several files.
+
+    Each file is given by its path, or if it has one level also as ``LABEL=PATH``.
 
     Parameters
     ----------
     seabed : depth of the water [m]
-    place : latitude and longitude of the mooring [degrees], where it is known
+    place : latitude and longitude of the mooring [degrees], if known
     declination : see `calm.records.current_terms.Terms`
-    maximum_speed : what is faster is left out, and said [m/s]
+    maximum_speed : speed above which a current is removed, with a note [m/s]
 
     Raises
     ------
@@ -391,7 +392,7 @@ def read_currents(
 
 
 def _plausible(one: CurrentMeasurements, maximum_speed: float) -> CurrentMeasurements:
-    """Without the levels whose current cannot be."""
+    """Replace impossible currents by gaps."""
     depth = np.where([bool(label) for label in one.label], 0.0, one.depth)
     false = implausible(depth, one.u, one.v, None, maximum_speed)
     if not false.any():

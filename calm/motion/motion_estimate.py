@@ -1,4 +1,4 @@
-"""Estimate of the motion from files of sensors: what ``calm motion`` reads and computes."""
+"""Estimation of the motion from sensor files: input and computation of ``calm motion``."""
 
 from __future__ import annotations
 
@@ -44,27 +44,27 @@ if TYPE_CHECKING:
 
 _MATCHES = ("label", "height", "depth")
 CORRECTABLE = ("clock", "gain", "offset", "drift", "air")
-"""What can be taken off what a sensor reads: of `calm.motion.remarks.Fault`, and the air."""
+"""Correctable errors of a sensor: faults of `calm.motion.remarks.Fault`, and air pressure."""
 GAP = np.timedelta64(2, "h")
-"""Longest time between two values that are interpolated, where nothing else is asked for."""
+"""Default limit on the gap over which values are interpolated."""
 
 
 def by_clocks(
     one: CurrentMeasurements, clocks: Mapping[str, matching.Clock]
 ) -> CurrentMeasurements:
-    """Return currents at their true times, where the one clock of their file was checked."""
+    """Correct the times of currents if their file has one clock, and this clock was checked."""
     found = [clocks[label] for label in one.label if label in clocks]
     return replace(one, time=found[0].true_times(one.time)) if found else one
 
 
 RARE = 0.1
-"""Share of the times below which it is said that few have two sensors."""
+"""Share of times with two sensors below which a note is added."""
 
 
 def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
-    """Return a sentence where few times have two sensors.
+    """Return a note if few times have two sensors.
 
-    UsageError: none has, and no current was measured.
+    UsageError: no time has two sensors, and no current was measured.
     """
     if len(measured.label) < 2:
         return []
@@ -87,12 +87,12 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
 
 
 def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
-    """Return the factors that are estimated: those of the drag, and what is asked for besides.
+    """Return the factors to estimate: the defaults, and the requested factors.
 
-    Without currents a factor on all drag is one on the currents: that of cables is none unless
-    asked for, and the length is one of those that are estimated.
+    By default these are the drag factors. Without currents, a factor on all drag is equivalent to
+    one on the currents. In that case the defaults are the drag of rigid pieces and the length.
 
-    UsageError: what is asked for cannot be estimated.
+    UsageError: a requested factor cannot be estimated.
     """
     for name in asked:
         if name not in FACTORS:
@@ -103,31 +103,31 @@ def fitted(asked: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
 
 @dataclass
 class RecoveredMooring:
-    """A mooring that was recovered: read, put right, estimated and judged, in this order.
+    """A recovered mooring: read, correct, estimate and judge its record, in this order.
 
     Attributes
     ----------
-    mooring : with a position
+    mooring : mooring with a position
     pressures, currents : files, as their paths or as ``LABEL=PATH``
-    match : by `label`, or by nominal `height` or `depth`
-    fit : what is estimated besides the drag
-    hold_out : labels of sensors that are hidden, and at which the result is judged
-    cross_validate : whether each used sensor is hidden in turn
-    correct : of `CORRECTABLE`, what is taken off where nothing else is as likely
+    match : method of matching: by `label`, or by nominal `height` or `depth`
+    fit : factors to estimate in addition to the drag
+    hold_out : labels of sensors that are hidden, to judge the result
+    cross_validate : whether to hide each used sensor in turn
+    correct : members of `CORRECTABLE` to correct, if no other fault is as likely
     sea_level : the height of the sea surface, as a path
-    flags : of the pressures that count as measured, separated by commas
-    gap : longest time between two values that are interpolated
+    flags : accepted quality flags of the pressures, separated by commas
+    gap : longest gap over which values are interpolated
     declination : added to the directions of the currents [degrees]
-    prior : a record of currents whose shapes are taken, where none were measured; None of none
-    without : labels of sensors that are left out altogether
-    moved : the step by which all sensors are deeper, where no currents were measured
-    measured, notes, source : what was read, with notes on it and the source files
+    prior : record of currents with the profile shapes to use, if none were measured, or None
+    without : labels of sensors to ignore
+    moved : common step in the depths of all sensors, if currents were not measured
+    measured, notes, source : measurements, notes on them and the source files
 
     Raises
     ------
     InputError, UsageError
-        A file cannot be read, the mooring has no position, no sensor is left, or what is asked for
-        cannot be done.
+        A file cannot be read, the mooring has no position, no sensor is left, or an option is
+        invalid.
     """
 
     mooring: Design
@@ -168,7 +168,7 @@ class RecoveredMooring:
             several(self.measured, self.hidden)
 
     def _read(self) -> None:
-        """Read what was measured, at common times, less the faults that are known."""
+        """Read the measurements at common times, corrected for known faults."""
         mooring, position = self.mooring, self.mooring.file.position
         if self.match not in _MATCHES:
             raise UsageError(not_among("--match", self.match, _MATCHES))
@@ -251,7 +251,7 @@ class RecoveredMooring:
             self.source["prior"] = hashed(self.prior)
 
     def _without(self, points: dict[int, int], labels: Sequence[str]) -> dict[int, int]:
-        """Return the points of the sensors that are not left out, whose labels must be known."""
+        """Return the points of the sensors in use. Labels to ignore must exist."""
         known = [labels[at] for at in points.values()]
         for option, asked in (("--without", self.without), ("--hold-out", self.hidden)):
             for label in asked:
@@ -271,11 +271,11 @@ class RecoveredMooring:
         progress: Callable[[Progress], None] | None = None,
         tell: Callable[[str], None] = lambda _: None,
     ) -> dict[str, int]:
-        """Estimate what is common to the record, take off what is wrong, and write every time.
+        """Estimate the common unknowns, correct faults, and write the result for every time.
 
         Parameters
         ----------
-        output, workers, progress, tell : see `calm.batch.run.run_batch`, as what is returned
+        output, workers, progress, tell : see `calm.batch.run.run_batch`, also for the return value
         """
         task = self._prepared(tell)
         found = diagnosed(task) if self.correct else ()
@@ -310,12 +310,12 @@ class RecoveredMooring:
         tell: Callable[[str], None] = lambda _: None,
         workers: int | None = None,
     ) -> MotionEstimate:
-        """Return how a finished result agrees with all that was measured.
+        """Compare a finished result with all measurements.
 
         Parameters
         ----------
-        result : of `estimate`
-        tell : is told what is going on
+        result : result of `estimate`
+        tell : receives progress messages
         workers : threads
         """
         faults = (*self._faults, *self.moved, *diagnosed(self.task))
@@ -347,28 +347,28 @@ def estimate_motion(
     without: Sequence[str] = (),
     workers: int | None = None,
 ) -> MotionEstimate:
-    """Estimate the depth of every part of a mooring at every time, as ``calm motion`` does.
+    """Estimate the depth of every part of a mooring at every time, like ``calm motion``.
 
     Parameters
     ----------
-    mooring : with a position
+    mooring : mooring with a position
     pressures : of the sensors on the line: a file or several, as paths or as ``LABEL=PATH``, an
         `xarray.Dataset` as such a file holds it, or a `pandas.DataFrame` with an index of times and
         columns such as ``LABEL[dbar]``
-    currents : in the same ways; none: they are learnt from the pressures
-    match : how sensors are found on the line: by `label`, or by nominal `height` or `depth`
-    fit : what to estimate for the whole record besides the drag: `buoyancy`, `length`
-    hold_out : labels of sensors that are hidden, and at which the result is judged
-    cross_validate : hide each used sensor in turn, and judge
+    currents : records of currents, in the same forms; if empty, CALM infers the currents from the
+        pressures
+    match : method of matching sensors: by `label`, or by nominal `height` or `depth`
+    fit : factors to estimate for the whole record besides the drag: `buoyancy`, `length`
+    hold_out : labels of sensors that are hidden, to judge the result
+    cross_validate : hide each used sensor in turn, and judge the result
     sea_level : the height of the sea surface over time, as a path
-    flags : quality flags of the pressures that count as measured
-    gap : longest time between two values that are interpolated [s]; two hours where not given
+    flags : accepted quality flags of the pressures
+    gap : longest gap over which values are interpolated [s]; two hours by default
     declination : added to the directions of the currents [degrees]
-    correct : what is taken off where a sensor is wrong: `clock`, `gain`, `offset`, `drift`; `air`
-        of absolute pressures
-    prior : a record of currents whose shapes are taken, without `currents`
-    without : labels of sensors that are left out altogether
-    workers : threads; one for each processor that may be used where not given
+    correct : faults to correct: `clock`, `gain`, `offset`, `drift`, or `air` for absolute pressures
+    prior : record of currents with the profile shapes to use, without `currents`
+    without : labels of sensors to ignore
+    workers : number of threads; by default one for each available processor
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Remarks on how well depths are computed, and on sensors and currents that are wrong."""
+"""Remarks on the accuracy of computed depths, and on faults of sensors and currents."""
 
 from __future__ import annotations
 
@@ -16,41 +16,44 @@ Times = NDArray[np.datetime64]
 
 NO_TIME = np.datetime64("NaT", "ns")
 FALSE = 0.5
-"""Probability from which the current of a level is named as false."""
+"""Probability above which the current of a level is reported as false."""
 ALL, LINE, CURRENTS = "all sensors", "the line", "all currents"
 OF_LINE = ("currents", "speed", "slows", "buoyancy", "length", "drag", "fouling")
-"""Faults that are not of sensors but of the line and its currents: their sizes are logarithms."""
+"""Faults of the line and its currents, not of sensors. Their sizes are logarithms."""
 LIKELY = 20.0
-"""Odds from which something is said to be wrong."""
+"""Odds above which a fault is reported."""
 FAR_OFFSET = 2.5
-"""Offset of all sensors that is named, in deviations of what is expected."""
+"""Reported offset of all sensors, in prior standard deviations."""
 FAR_DATUM = 10.0
-"""The same, at most [m]."""
+"""Maximum threshold for a reported offset of all sensors [m]."""
 FAR_LENGTH = 5.0
-"""The same of a length where currents are not known: these take up much of it."""
+"""Reported deviation of the length without measured currents, in prior deviations.
+
+Inferred currents absorb much of an error in length.
+"""
 FAR_FACTOR = 3.0
-"""Deviations from 1 beyond which a factor on a drag is something else."""
+"""Deviations from 1 above which a drag factor does not represent drag."""
 WORST = 0.3
-"""Share of the knockdown from which the error of the line itself is named."""
+"""Share of the knockdown above which the error of the line is reported."""
 
 
 @dataclass(frozen=True)
 class Fault:
-    """Hold one thing that is wrong.
+    """A fault of a sensor, a current meter or the line.
 
     Attributes
     ----------
-    label : of the sensor; `ALL` where it is all of them alike
+    label : label of the sensor; `ALL` for all sensors together
     kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
-    value, low, high : with the ends of its interval of 95 %: how late its times are [h]; factor on
-        its depths; how much too deep it reads, what that grows to, or how far down the line it has
-        moved [m]; 0 of what is exchanged; of `OF_LINE` a factor on what the file or the meter says
-    odds : of this against all else that it may be, and against nothing
-    since : from when on its clamp has slipped, or it drifts; NaT of others
-    until : up to when it drifts; NaT of others
-    other : label of the sensor that it is exchanged with; empty otherwise
-    rival : what it may be as well, where that is not much less likely; empty otherwise
-    corrected : whether it has been taken off
+    value, low, high : size and the ends of its 95 % interval: clock lag [h]; gain; excess depth,
+        its final value, or the displacement down the line [m]; 0 for exchanged labels; for
+        `OF_LINE`, a factor on the value in the file or of the meter
+    odds : odds of this fault against all alternatives, including no fault
+    since : start of the slip or drift, else NaT
+    until : end of the drift, else NaT
+    other : label of the other sensor of an exchange; empty otherwise
+    rival : alternative explanation that is nearly as likely; empty otherwise
+    corrected : whether the fault has been corrected
     """
 
     label: str
@@ -67,13 +70,13 @@ class Fault:
 
     @property
     def size(self) -> float:
-        """Return what is estimated of it, 0 where nothing is wrong."""
+        """Estimated size of the fault, 0 for no fault."""
         if self.kind in OF_LINE:
             return float(np.log(self.value))
         return self.value - (self.kind == "gain")
 
     def sized(self, size: float, deviation: float) -> Fault:
-        """Return the same of another size, with its deviation."""
+        """Return a copy with another size and deviation."""
         three = [size, size - BAND * deviation, size + BAND * deviation]
         if self.kind in OF_LINE:
             three = [float(np.exp(one)) for one in three]
@@ -81,16 +84,16 @@ class Fault:
         return replace(self, value=value, low=low, high=high)
 
     def same(self, other: Fault) -> bool:
-        """Return whether it is the same of the same sensor, by whatever size."""
+        """Return whether two faults have the same kind and sensor, regardless of size."""
         return (self.label, self.kind, self.other) == (other.label, other.kind, other.other)
 
     def alike(self, other: Fault) -> bool:
-        """Return whether it is the same, or both are of the whole line and all its currents."""
+        """Return whether faults are the same, or both concern the line or its currents."""
         both = {self.label, other.label} <= {LINE, CURRENTS}
         return both or self.same(other)
 
     def taken_off(self, time: Times, depth: Floats) -> tuple[Times, Floats]:
-        """Return what a sensor would have read without it, and when: (n,) each [m]."""
+        """Return times and depths (n,) corrected for the fault [m]."""
         if self.kind == "clock":
             return time - np.timedelta64(round(self.value * 3.6e12), "ns"), depth
         if self.kind == "gain":
@@ -104,11 +107,11 @@ class Fault:
 
     @property
     def certain(self) -> bool:
-        """Return whether it can be nothing else."""
+        """Whether the odds exclude other explanations."""
         return self.odds >= LIKELY
 
     def sentence(self, rival: bool = True) -> str:
-        """Return what is said of it; without the other things that it may be unless asked for."""
+        """Describe the fault in a sentence, with its rival explanations only if `rival`."""
         band = f"({self.low:+.2f} to {self.high:+.2f})"
         clock = "their clocks are" if self.label == ALL else "its clock is"
         way = "late" if self.value > 0.0 else "early"
@@ -149,7 +152,7 @@ class Fault:
 
 
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
-    """Return the times at which the current of a level is more likely false than not, by its name.
+    """Return the times at which the current of a level is probably false, by level name.
 
     Parameters
     ----------
@@ -161,7 +164,7 @@ def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dic
 
 
 def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
-    """Return a sentence on each level whose current looks false at some of so many times."""
+    """Return a remark on each level with false currents, out of the given number of times."""
     return [
         f"current at {name}: its direction or speed looks false at {len(when)} of {count} times, "
         f"first at {np.datetime_as_string(when[0], 'm')}"
@@ -170,15 +173,15 @@ def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
 
 
 def no_drag(name: str, value: float) -> bool:
-    """Return whether a factor on a drag is too far from what is assumed to be one."""
+    """Return whether a drag factor is implausible by its prior."""
     far = abs(float(np.log(value))) > FAR_FACTOR * common_unknowns.FACTORS[name][1]
     return name.endswith("drag") and far
 
 
 def alone_remarks(common: Common) -> list[str]:
-    """Return a sentence where a line whose currents are not known does not fit its pressures.
+    """Return a remark if a line with unknown currents is inconsistent with its pressures.
 
-    What is wrong with it they cannot tell: currents are found that agree with most lines.
+    The pressures cannot identify the cause, because currents exist that agree with most lines.
     """
     length = common.factors.get("length", 1.0)
     far = abs(float(np.log(length))) > FAR_LENGTH * common_unknowns.FACTORS["length"][1]
@@ -193,7 +196,7 @@ def alone_remarks(common: Common) -> list[str]:
 
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
-    """Return a sentence where all sensors are off alike, by much of the depth of the seabed [m]."""
+    """Return a remark if all sensors have a large common offset for the seabed depth [m]."""
     if abs(common.datum) <= min(FAR_OFFSET * common_unknowns.DATUM * seabed, FAR_DATUM):
         return []
     return [
@@ -203,14 +206,14 @@ def datum_remarks(common: Common, seabed: float) -> list[str]:
 
 
 CALM = 0.1
-"""Share of the times that count as calm: those of the least knockdown."""
+"""Share of times that count as calm, with the smallest knockdown."""
 BAND = 1.96
-"""Deviations on either side between which 95 % of a normal law lie."""
+"""Half-width of the 95 % interval of a normal law, in standard deviations."""
 
 
 @dataclass(frozen=True)
 class Agreement:
-    """Tell how computed depths agree with measured ones.
+    """Agreement of computed and measured depths.
 
     Attributes
     ----------
@@ -218,7 +221,7 @@ class Agreement:
     bias : mean of computed less measured over them [m]
     rms : root of the mean square of that difference less its mean over the calm times [m]
     r : correlation of computed and measured
-    slope : of computed on measured
+    slope : regression slope of computed on measured depths
     """
 
     count: int
@@ -229,9 +232,7 @@ class Agreement:
 
 
 def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return those of some times at which the knockdown [m] is least: a tenth of them, one at
-    least.
-    """
+    """Return a mask of the times with the smallest knockdown [m]: a tenth, at least one time."""
     known = among & np.isfinite(down)
     chosen = np.zeros_like(known)
     count = int(known.sum())
@@ -260,7 +261,7 @@ def difference(
 
 
 def rms(off: Floats) -> float:
-    """Return the root of the mean square of the values there are; NaN of none."""
+    """Return the root mean square of the finite values; NaN if there are none."""
     known = off[np.isfinite(off)]
     return float(np.sqrt((known**2).mean())) if known.size else float("nan")
 
@@ -268,7 +269,7 @@ def rms(off: Floats) -> float:
 def agreement(
     computed: Floats, measured: Floats, calm: NDArray[np.bool_], among: NDArray[np.bool_]
 ) -> Agreement:
-    """Return how depths agree at some of the times.
+    """Compare computed and measured depths at the times `among`.
 
     Parameters
     ----------
@@ -293,24 +294,23 @@ def agreement(
 
 
 def coverage(off: Floats, deviation: Floats) -> float:
-    """Return the share of the differences within the band of 95 %; NaN of none."""
+    """Return the share of differences within the 95 % interval; NaN if there are no differences."""
     known = np.isfinite(off) & np.isfinite(deviation)
     inside = np.abs(off[known]) <= BAND * deviation[known]
     return float(inside.mean()) if inside.size else float("nan")
 
 
 def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
-    """Return (n,) depths at a point, linear by height in still water between the nearest sensors
-    [m].
+    """Return (n,) depths at a point [m], interpolated linearly between the nearest sensors.
 
     Parameters
     ----------
     depth : (n, s) of the sensors; NaN at a time leaves that time without
-    point : (s,) where they are
+    point : (s,) points of the sensors
     still : (p,) depths in still water
     wanted : the point
 
-    Beyond the sensors the slope of the two nearest goes on; a single one moves everything alike.
+    Extrapolation uses the two nearest sensors; a single sensor shifts all points equally.
     """
     from scipy.interpolate import make_interp_spline
 
@@ -323,13 +323,14 @@ def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats
 
 
 def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
-    """Return (n,) depths at a point, by PCHIP (Fritsch and Carlson 1980) of the knockdown [m].
+    """Return (n,) depths at a point [m], by PCHIP interpolation of the knockdown.
 
-    Over the height in still water above the lowest point of the line, which stays where it is.
+    The method is that of Fritsch and Carlson (1980). The coordinate is the height in still water
+    above the lowest point of the line, which is fixed.
 
     Parameters
     ----------
-    depth, point, still, wanted : as of `linear`
+    depth, point, still, wanted : see `linear`
     """
     from scipy.interpolate import PchipInterpolator
 

@@ -1,6 +1,6 @@
-"""Pressures of instruments on a mooring, turned into depths, and which of these can be right.
+"""Conversion of pressures on a mooring into depths, with tests of their plausibility.
 
-And the height of the sea surface.
+The module also reads the height of the sea surface.
 """
 
 from __future__ import annotations
@@ -38,14 +38,14 @@ _NOT_MEASURED = re.compile(
 def read_sensors(
     given: Sequence[str], flags: frozenset[int], latitude: float, seabed: float
 ) -> list[InstrumentSeries]:
-    """Return the depths that the sensors of some files measured, by instrument [m].
+    """Read the depths measured by the sensors of several files [m].
 
-    A file is given by its path, or as ``LABEL=PATH`` where it has one. Pressures are turned into
-    depths by TEOS-10.
+    Each file is given by its path, or if it has one sensor also as ``LABEL=PATH``. Pressures are
+    converted to depths by TEOS-10.
 
     Parameters
     ----------
-    flags : quality flags of what counts as measured, where there are any
+    flags : accepted quality flags, for files with flags
     latitude : [degrees]
     seabed : depth of the water [m], for nominal heights above it
 
@@ -78,16 +78,14 @@ def read_sensors(
 
 
 def _doubted(sensor: InstrumentSeries) -> InstrumentSeries:
-    """Return a sensor with what is doubtful in the order of its readings in its note."""
+    """Add doubts about the sequence of readings to the note of a sensor."""
     doubts = series_doubts(sensor.value[:, np.newaxis, np.newaxis], sensor.time)
     said = (sensor.note, *(f"{sensor.named}: {doubt}" for doubt in doubts))
     return replace(sensor, note="; ".join(filter(None, said)))
 
 
 def depth_of(dbar: Floats, latitude: float) -> Floats:
-    """Return depths [m] of pressures above that of the air [dbar], by TEOS-10; NaN of infinite
-    ones.
-    """
+    """Convert pressures above atmospheric [dbar] to depths [m] by TEOS-10; infinite gives NaN."""
     import gsw
 
     known = np.where(np.isfinite(dbar), dbar, np.nan)
@@ -106,7 +104,7 @@ def _from_arrays(
         flagged = flag_variable(dataset, name)
         if flagged is None or not {found.axis} < set(flagged.dims):
             raise UnreadableError(f"`{name}` is not a measurement by its attributes: {words[:120]}")
-        # attributes of several instruments in one variable are those of any of them
+        # with several instruments, variable attributes describe no single instrument
         note = (
             f"`{name}` says `{words[:80]}` of one instrument or more: what counts is by its flags"
         )
@@ -122,7 +120,7 @@ def _from_arrays(
 
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
-    """Return the variable of the pressures, or else of the depths; whether it is the former."""
+    """Find the pressure variable, else a depth variable; the flag is true for pressure."""
     if found := instrument_series.named(dataset, *instrument_series.PRESSURE):
         return found[0], True
     for name in map(str, dataset.cf.standard_names.get("depth", [])):
@@ -140,7 +138,7 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 
 
 def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
-    """Return a table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
+    """Read a table ``time,LABEL[dbar],…``, or with units of length instead of dbar."""
     table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
     scales = {"pressure": (1.0 / PASCALS_PER_DBAR, "dbar"), "length": (1.0, "m")}
     summaries = {}
@@ -165,9 +163,9 @@ def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
 
 
 def parse_flags(text: str) -> frozenset[int]:
-    """Return the flags of a text such as ``1,2``.
+    """Parse a list of flags such as ``1,2``.
 
-    UsageError: they are no flags, or 8 is among them: what was interpolated is no measurement.
+    UsageError: the text is not a list of flags, or includes 8, the flag of interpolated values.
     """
     try:
         flags = frozenset(int(part) for part in text.split(","))
@@ -181,7 +179,7 @@ def parse_flags(text: str) -> frozenset[int]:
 
 
 FURTHEST = 20.0
-"""A height of the sea surface is this far from the others at most [m]: no tide has half of it."""
+"""Maximum distance of a sea-surface height from the median [m], over twice any real tide."""
 
 _STANDARD = (
     "sea_surface_height_above_mean_sea_level",
@@ -195,7 +193,7 @@ _STANDARD = (
 def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
     """Return times, rising, and the height of the sea surface above a datum [m].
 
-    InputError: the file cannot be read, or holds no height with its unit, or one that cannot be.
+    InputError: the file is unreadable, has no height with a unit, or has an impossible height.
     """
     if path.is_file() and not cf_files.holds_arrays(path):
         table = read_time_columns(path, ("length",), "level[m]")
@@ -230,36 +228,40 @@ def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None
 
 
 CONSTANT = 1e-6
-"""A sensor whose depths span no more than this measures nothing [m]."""
+"""Range of depths up to which a sensor counts as constant [m]."""
 MISPLACED = 20.0
-"""How far from its place in still water a sensor may be at its least depth [m], where that is
-not within a factor of two either."""
+"""Tolerance for the shallowest depth of a sensor against its place in still water [m].
+
+A factor of two is also accepted.
+"""
 UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}
-"""How many times too great pressures are whose unit was taken for another."""
+"""Ratio of pressures with a confused unit to the true pressures."""
 ALIKE, APART = 0.03, 3.0
-"""How alike that is, twice as much for several; how far apart exchanged sensors are [m]."""
+"""Relative tolerance of that ratio, doubled for several sensors, and least distance between
+exchanged sensors [m].
+"""
 BELOW = 1.1
-"""No reading is deeper than the seabed by this factor, and by `MISPLACED`."""
+"""Readings are too deep if they exceed the seabed by this factor and by `MISPLACED`."""
 
 
 def plausible(
     sensor: InstrumentSeries, place: float, seabed: float
 ) -> tuple[InstrumentSeries, list[str]]:
-    """Return a sensor without the readings that cannot be from its place, and what is said of them.
+    """Remove implausible readings from a sensor, and return notes about the removal.
 
-    Those far above its place in still water (on deck, a fill value), those far below the seabed,
-    and the later ones of a time that stands twice. Where most are so, the sensor is wrong, not
-    these readings, and all stay: see `unusable`.
+    Implausible readings lie far above the sensor's place in still water (on deck, a fill value) or
+    far below the seabed, or repeat a time. If most readings are implausible, the sensor itself is
+    wrong, and all are left unchanged: see `unusable`.
 
     Parameters
     ----------
-    place : depth where it hangs in still water [m]
+    place : depth of the sensor in still water [m]
     seabed : depth of the water [m]
 
     Raises
     ------
     UsageError
-        A third of its times or more stand twice with different depths.
+        A third of its times or more occur twice, with different depths.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)
@@ -308,11 +310,11 @@ def plausible(
 
 
 STUCK, FEWEST_STUCK = 0.1, 24
-"""Share of a series over which a sound sensor does not read the same, and readings at least."""
+"""Share of a series and number of readings above which equal values mark a stuck sensor."""
 
 
 def _stuck(value: Floats) -> NDArray[np.bool_]:
-    """Return (n,) where a series that changes elsewhere reads the same for long."""
+    """Return (n,) a mask of long runs of equal readings in a series that varies otherwise."""
     same = np.zeros(len(value), bool)
     change = np.flatnonzero(np.diff(value) != 0.0)  # also on either side of a gap
     ends = np.concatenate([[-1], change, [len(value) - 1]])
@@ -326,16 +328,16 @@ def _stuck(value: Floats) -> NDArray[np.bool_]:
 
 
 AIR = instrument_text.AIR / 1.0082
-"""What the pressure of the air adds to a depth by pressure [m], at 1.0082 dbar/m of sea water."""
+"""Excess depth from the pressure of the air [m], at 1.0082 dbar/m of sea water."""
 NEAR_AIR, ON_DECK = 2.5, 0.6
-"""How near that is, to what sensors are off in calm water, and to what one reads on deck [m]."""
+"""Tolerances for that excess: in calm water, and for a sensor on deck [m]."""
 
 
 def air_notes(depth: Floats, place: Floats) -> list[str]:
-    """Return a sentence where all depths (n, s) are those of absolute pressures; see `unusable`.
+    """Return a remark if all depths (n, s) include the pressure of the air; see `unusable`.
 
-    In calm water they are all too great by the pressure of the air, where a current takes them
-    deeper still: what counts is the sensor that is the least too deep.
+    Their excess equals this pressure in calm water, and is larger in a current. The sensor with the
+    smallest excess decides.
     """
     off = np.array([_least(column) for column in depth.T]) - place
     alike = float(np.min(off[np.isfinite(off)], initial=np.inf))
@@ -349,13 +351,13 @@ def air_notes(depth: Floats, place: Floats) -> list[str]:
 
 
 def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, str]:
-    """Return why sensors cannot be used, by label.
+    """Return the reasons why sensors are unusable, by label.
 
     Parameters
     ----------
     labels : (s,) of the sensors
     depth : (n, s) as measured [m]
-    place : (s,) depths where they hang in still water [m]
+    place : (s,) depths of the sensors in still water [m]
 
     Raises
     ------
@@ -396,7 +398,7 @@ def _least(depth: Floats) -> float:
 
 
 def _exchanged(labels: Sequence[str], least: Floats, place: Floats) -> list[str]:
-    """Return sentences on pairs of sensors that hang the other way round, as deep as each other."""
+    """Return remarks on pairs of sensors with exchanged depths."""
     return [
         f"`{labels[i]}` is at {least[i]:.1f} m at its least and `{labels[j]}` at {least[j]:.1f} m, "
         f"where the line has them at {place[i]:.1f} m and {place[j]:.1f} m: their labels are "
@@ -409,7 +411,7 @@ def _exchanged(labels: Sequence[str], least: Floats, place: Floats) -> list[str]
 
 
 def _other_unit(least: Floats, place: Floats) -> str:
-    """Return which unit was taken for another, where all depths are so many times too great."""
+    """Return the confused unit that explains the ratio of all depths to their places, if any."""
     known = np.isfinite(least)
     for unit, ratio in UNITS.items():
         meant = ratio * place[known]

@@ -1,10 +1,10 @@
-"""Kalman filter and fixed-interval smoother, forward and backward once over a whole record.
+"""Kalman filter and fixed-interval smoother, with one forward and one backward pass.
 
-The state goes on as x(t+1) = f x(t) + e with a diagonal f; readings are y = H x + noise, whose
-errors are independent. The backward recursion is that of Durbin and Koopman (2012, Time Series
-Analysis by State Space Methods, section 4.4): it needs no inverse of a covariance of the state. The
-filter is kept at the beginning of blocks of times and repeated within each, so that memory does not
-grow with the square of the state at every time.
+The state follows x(t+1) = f x(t) + e with a diagonal f; readings are y = H x + noise, with
+independent errors. The backward recursion is from Durbin and Koopman (2012, Time Series Analysis by
+State Space Methods, section 4.4) and needs no inverse of a state covariance. The filter is stored
+at the start of each block of times and repeated within the block, so that memory does not grow with
+the squared state size at every time.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ import numpy as np
 from calm.physics.line import Floats
 
 BLOCK = 256
-"""Times between which the filter is kept."""
+"""Number of times per stored block."""
 
 
 @dataclass(frozen=True)
 class StateSpace:
-    """A linear law of n times, q states and m readings.
+    """A linear state-space model of n times, q states and m readings.
 
     Attributes
     ----------
     fade : (n, q) share of each state that is left since the time before; the first row is not used
-    gained : (n, q) what its steady variances grow by since then, as a share of `steady`
+    gained : (n, q) growth of the steady variances since the previous time, as a share of `steady`
     steady : (q, q) covariance of states that fade
-    stepped : (n, q) variances of what is added to states that stay, since the time before
+    stepped : (n, q) noise variances of persistent states since the previous time
     first : (q, q) covariance at the first time; the mean is 0 throughout
     seen : (n, m, q) slopes of the readings; rows that hold at every time may come as (1, m, q)
-    read, noise : (n, m) readings, NaN for none, and their variances
+    read, noise : (n, m) readings, NaN if missing, and their variances
     """
 
     fade: Floats
@@ -48,7 +48,7 @@ class StateSpace:
         return np.vstack([each[time if len(each) > 1 else 0] for each in self.seen])
 
     def added(self, time: int) -> Floats:
-        """Return (q, q) covariance of what is added since the time before."""
+        """Return (q, q) covariance of the state noise since the previous time."""
         fade = self.fade[time]
         result = self.steady * (1.0 - np.outer(fade, fade))
         result[np.diag_indices_from(result)] += self.stepped[time]
@@ -57,7 +57,7 @@ class StateSpace:
 
 @dataclass(frozen=True)
 class _Filtered:
-    """A time as the filter leaves it: what was predicted, and what its readings say of that."""
+    """Filter result at one time: the prediction, and its innovation."""
 
     mean: Floats
     spread: Floats
@@ -69,13 +69,13 @@ class _Filtered:
 
 @dataclass(frozen=True)
 class Smoothed:
-    """What all readings say of one time.
+    """Smoothed state at one time, given all readings.
 
     Attributes
     ----------
-    time : which
+    time : index of the time
     mean, covariance : (q,), (q, q) of the state
-    moved : (q,) mean square of what was added to each state after this time; 0 at the last
+    moved : (q,) mean square of the noise of each state after this time; 0 at the last time
     """
 
     time: int
@@ -87,7 +87,7 @@ class Smoothed:
 def _filter(
     law: StateSpace, start: int, stop: int, mean: Floats, spread: Floats
 ) -> Iterator[_Filtered]:
-    """Yield the times from `start`, at which mean and covariance are those predicted."""
+    """Yield the filter results from `start`, given the predicted mean and covariance there."""
     for time in range(start, stop):
         if time > start:
             fade = law.fade[time]
@@ -108,7 +108,7 @@ def _filter(
 
 
 def smoothed(law: StateSpace) -> Iterator[Smoothed]:
-    """Yield what is known of each time from all readings, the last time first."""
+    """Yield the smoothed state of each time, from the last to the first."""
     count = len(law.read)
     starts = range(0, count, BLOCK)
     mean, spread = np.zeros(law.first.shape[0]), law.first
@@ -135,7 +135,7 @@ def smoothed(law: StateSpace) -> Iterator[Smoothed]:
                 )
                 fade = law.fade[time + 1]
                 pull, hold = fade * pull, fade[:, None] * hold * fade
-            # (1 - gain seen)' of what comes later, and what this time says itself
+            # (1 - gain seen)' of later times, plus the information of this time
             kept = pull - one.seen.T @ (one.gain.T @ pull)
             pull = kept + one.seen.T @ (one.inverse @ one.left)
             half = hold - one.seen.T @ (one.gain.T @ hold)

@@ -1,4 +1,4 @@
-"""From what was read to what is estimated, and how well that agrees with what was measured."""
+"""Preparation of the motion estimate, and its comparison with the measurements."""
 
 from __future__ import annotations
 
@@ -44,15 +44,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A sensor that was hidden, and how well its depths were found.
+    """A hidden sensor, and the accuracy of the estimated depths there.
 
     Attributes
     ----------
-    count : times that are judged: it and the used sensors have good pressures
+    count : number of times with good pressures of this sensor and the used sensors
     bias : mean of estimated less measured [m]
-    rms, linear_rms, pchip_rms : of the difference less its mean over the calm times [m]: estimated,
+    rms, linear_rms, pchip_rms : RMS difference less its mean over the calm times [m]: estimated,
         and interpolated between the used sensors, by `linear` and `pchip` of `calm.motion.remarks`
-    coverage : share of those differences within the band of 95 %
+    coverage : share of those differences within the 95 % band
     """
 
     label: str
@@ -66,20 +66,20 @@ class HeldOut:
 
 @dataclass(frozen=True, repr=False)
 class MotionEstimate:
-    """The depth of every part of a mooring at every time, and how well it agrees with the sensors.
+    """Depths of every part of a mooring at every time, and their agreement with the sensors.
 
     Attributes
     ----------
-    task : with what is common to the record
+    task : task with the common unknowns of the record
     dataset : the result of `calm motion`
     factors : each factor of the whole record with the ends of its interval of 95 %
-    sensors, plain : how each used sensor agrees with what is estimated, and with the currents alone
-    held_out : how well the depths of each hidden sensor were found
-    diagnosis : what is wrong with sensors, line and currents, with sizes and odds
-    fits : whether the line fits its pressures in these currents
+    sensors, plain : agreement of each used sensor with the estimate, and with the currents alone
+    held_out : accuracy of the depths of each hidden sensor
+    diagnosis : faults of sensors, line and currents, with sizes and odds
+    fits : whether the line is consistent with its pressures in these currents
     remarks : doubts about the data, in sentences
     false : times at which the current of a level looks false, by its name
-    notes : what was said of the input, in sentences
+    notes : notes on the input, in sentences
     """
 
     task: Task
@@ -95,11 +95,11 @@ class MotionEstimate:
     notes: tuple[str, ...] = ()
 
     def faults(self, *, of_line: bool) -> list[Fault]:
-        """Return what is wrong with the line and its currents, or with the sensors."""
+        """Return the faults of the line and its currents, or those of the sensors."""
         return [one for one in self.diagnosis if (one.kind in OF_LINE) == of_line]
 
     def to_xarray(self) -> Dataset:
-        """Return the dataset that ``calm motion`` writes, with labels and units."""
+        """Return the result dataset of ``calm motion``, with labels and units."""
         return self.dataset.copy()
 
     def plot(self, ax: Any = None) -> Any:
@@ -109,7 +109,7 @@ class MotionEstimate:
 
         Parameters
         ----------
-        ax : axes of matplotlib; new ones if not given
+        ax : axes of matplotlib; by default new ones
         """
         if ax is None:
             from matplotlib.figure import Figure
@@ -131,7 +131,7 @@ class MotionEstimate:
         return ax
 
     def __repr__(self) -> str:
-        """Return the times, the factors and the agreement, in ten lines at most."""
+        """Summarise the times, the factors and the agreement in at most ten lines."""
         time = self.task.measured.time
         name = self.task.mooring.file.name or "mooring"
         span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}"
@@ -158,20 +158,20 @@ def prepare(
     tell: Callable[[str], None] = lambda _: None,
     prior: Sequence[CurrentMeasurements] = (),
 ) -> Task:
-    """Estimate what is common to the record from the sensors that are not hidden.
+    """Estimate the common unknowns of the record from the sensors in use.
 
     Parameters
     ----------
-    mooring : as its file says
-    measured : with the sensors that are hidden
-    names : of the factors that are estimated
+    mooring : mooring as in its file
+    measured : measurements, including the sensors that are hidden
+    names : names of the factors to estimate
     hidden : labels of sensors that are not used
-    tell, prior : see `calm.motion.unknown_currents.learn_currents`, where no current was measured
+    tell, prior : see `calm.motion.unknown_currents.learn_currents`, for records without currents
 
     Raises
     ------
     UsageError
-        A hidden sensor is none; none is left, or one alone without a current.
+        A hidden sensor does not exist, no sensor is left, or a single one without a current.
     """
     for label in hidden:
         if label not in measured.label:
@@ -189,7 +189,7 @@ def prepare(
 
 
 def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
-    """Return the value of each factor and the ends of its interval of 95 %."""
+    """Return the value and the 95 % interval of each factor."""
     spread = np.sqrt(np.diag(task.common.covariance))
     return {
         name: (value, value * float(np.exp(-BAND * sd)), value * float(np.exp(BAND * sd)))
@@ -200,13 +200,13 @@ def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
 def judged(
     task: Task, measured: MooringMeasurements, result: Dataset, diagnosis: Sequence[Fault] = ()
 ) -> MotionEstimate:
-    """Return how a finished result agrees with all that was measured.
+    """Compare a finished result with all measurements.
 
     Parameters
     ----------
-    measured : with the sensors that were hidden
-    result : of `calm motion`
-    diagnosis : what is wrong
+    measured : measurements, including the hidden sensors
+    result : dataset of `calm motion`
+    diagnosis : faults found
     """
     used = task.measured
     alone = task.common.inferred
@@ -245,7 +245,7 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return (n,) how far below its least depth the highest sensor with a pressure is [m]."""
+    """Return (n,) knockdown of the highest sensor with a pressure, from its minimum depth [m]."""
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
         depth = used.depth[:, j]
@@ -262,13 +262,13 @@ def judge_hidden(
     spread: Floats,
     still: Floats,
 ) -> HeldOut:
-    """Return a hidden sensor against what was estimated, and against interpolation.
+    """Compare the estimate and two interpolations with a hidden sensor.
 
     Parameters
     ----------
-    measured : with all sensors
-    used : with those that are used
-    label : of the hidden one
+    measured : measurements of all sensors
+    used : measurements of the used sensors
+    label : label of the hidden sensor
     depth, spread : (n,) estimated there, and its deviation [m]
     still : (p,) depths in still water [m]
     """
@@ -286,7 +286,7 @@ def judge_hidden(
 def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
     """Return the sensors that can be hidden in turn.
 
-    UsageError: there is only one.
+    UsageError: only one sensor is available.
     """
     rest = [label for label in measured.label if label not in hidden]
     if len(rest) < 2:
@@ -303,18 +303,18 @@ def cross_validated(
     workers: int | None = None,
     prior: Sequence[CurrentMeasurements] = (),
 ) -> list[HeldOut]:
-    """Each used sensor hidden in turn, besides those that are hidden anyway.
+    """Hide each used sensor in turn, besides the hidden sensors, and judge the estimate.
 
     Parameters
     ----------
-    mooring, measured, names, hidden, prior : as for `prepare`
-    tell : is told what is going on
+    mooring, measured, names, hidden, prior : see `prepare`
+    tell : receives progress messages
     workers : threads
 
     Raises
     ------
     UsageError
-        There is only one.
+        Only one sensor is available.
     """
     still = Forward(mooring, {}).still
     held = []
@@ -329,14 +329,13 @@ def cross_validated(
 
 @dataclass(frozen=True)
 class SensorSeries:
-    """Hold the depths of one sensor over time.
+    """Depths of one sensor over time.
 
     Attributes
     ----------
-    hidden : whether it was hidden from the estimate, or has no pressure
-    time, measured, estimated, spread : (n,) depths and standard deviation [m]; NaN where none was
-        measured
-    plain : (n,) by the currents alone; None of a hidden sensor
+    hidden : whether the sensor was hidden from the estimate, or has no pressure
+    time, measured, estimated, spread : (n,) depths and standard deviation [m]; NaN if not measured
+    plain : (n,) depths from the currents alone; None for a hidden sensor
     """
 
     label: str
@@ -358,9 +357,9 @@ def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
 
 
 def series_of(study: MotionEstimate, measured: MooringMeasurements) -> list[SensorSeries]:
-    """Return the depths of all sensors from the top down, and then of the other instruments.
+    """Return the depths of all sensors from the top down, then of the other instruments.
 
-    `measured` has the sensors that were hidden.
+    `measured` includes the hidden sensors.
     """
     mooring, used, result = study.task.mooring, study.task.measured.label, study.dataset
     found = []

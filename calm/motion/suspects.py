@@ -1,9 +1,9 @@
-"""Suspects: faults that a record may have, one each, and what each does to the depths.
+"""Suspects: possible faults of a record, with their effects on the depths.
 
-Of the line and its currents: all currents or those of one level read too low or too high, or a
-rotor slows; floats are missing; cables are longer or shorter; the drag is another, or grows by
-fouling. Some do nearly the same to the depths: their odds say whether the record tells them apart.
-Of the readings: two sensors are farther apart than the line between them is long.
+Faults of the line and its currents: all currents or those of one level read too low or too high, or
+a rotor slows; floats are missing; cables are longer or shorter; the drag is wrong, or increases by
+fouling. Some have nearly the same effect on the depths: their odds show if the record distinguishes
+them. Fault of the readings: two sensors are farther apart than the line between them is long.
 """
 
 from __future__ import annotations
@@ -34,23 +34,25 @@ CAUSES: Mapping[str, tuple[float, float]] = {
     "speed": (0.3, 0.001),
     "slows": (0.5, 0.01),
 }
-"""Deviation of the logarithm of each beforehand, beyond what is assumed of every record, and its
-probability; that of a level is shared by all levels."""
+"""Prior deviation of the logarithm of each fault, beyond the common priors, and its probability.
+
+The levels share the probability of a fault in one level.
+"""
 
 
 @dataclass(frozen=True)
 class Suspect:
-    """Hold what one fault does to n times of s sensors.
+    """Effect of one fault on n times of s sensors.
 
     Attributes
     ----------
-    fault : what it is
-    column : (n, s) change of the depths that are read with its size
-    wide : deviation of its size beforehand; 0 of one whose size is fixed
-    log : logarithm of its probability beforehand
-    shift : (n, s) what is added to the depths that are read beforehand [m]
-    ahead : (n, s) change of the depths with a size throughout [m]; None where it is linear
-    share : (n, 1) of the size at each time; None of one that is the same throughout
+    fault : the fault
+    column : (n, s) change in the measured depths per unit of its size
+    wide : prior deviation of its size; 0 for a fixed size
+    log : logarithm of its prior probability
+    shift : (n, s) fixed change in the depths [m]
+    ahead : (n, s) change in the depths for a size that applies throughout [m]; None if linear
+    share : (n, 1) share of the size at each time; None if it is constant
     """
 
     fault: Fault
@@ -62,9 +64,10 @@ class Suspect:
     share: Floats | None = None
 
     def at(self, size: float) -> Suspect:
-        """Return the same with the change that such a size makes, which is not proportional.
+        """Return a copy with the nonlinear effect of a fault of the given size.
 
-        A parabola through nothing, with the slope there, and through the size throughout.
+        The effect is a parabola in the share: it has the linear slope at zero, and passes through
+        the effect of the full size.
         """
         if self.ahead is None or self.share is None or not size:
             return self
@@ -78,7 +81,7 @@ class Suspect:
 def line_suspects(
     task: Task, moments: LineResponse, way: ReadCurrents, at: Linear
 ) -> Iterator[Suspect]:
-    """Yield what may be wrong with the line and its currents, where these were measured.
+    """Yield possible faults of the line and its measured currents.
 
     Parameters
     ----------
@@ -125,7 +128,7 @@ def line_suspects(
     drag = columns["cable_drag"] + columns["rigid_drag"]
     yield suspect(LINE, "drag", drag)
     yield suspect(LINE, "fouling", share * drag, 1, dragged, share)
-    slope = seen(at.slope)  # a meter reads less: the line is deeper than by its currents
+    slope = seen(at.slope)  # a meter that reads low: the line is deeper than computed
     yield suspect(CURRENTS, "currents", -slope.sum(axis=2))
     levels = level_names(task.measured, line_response.labels_of(task.mooring))
     if len(levels) == moments.groups > 1:
@@ -136,19 +139,20 @@ def line_suspects(
 
 
 GOOD, FEWEST_TIMES = 2, 20
-"""Flag of a current up to which it counts, and how many times two meters need in common."""
+"""Highest quality flag of a usable current, and least number of times that two meters share."""
 COHERENT, TURNED, UNLIKE = 0.8, 10.0, 5.0
-"""Correlation of a level with others, and how much it is turned against them [degrees], or how many
-times as fast, from which that is named."""
+"""Correlation of a level with its neighbours, and the rotation [degrees] or speed ratio, above
+which a meter is reported.
+"""
 
 
 def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[str]:
-    """Return a sentence on each meter that is turned, mirrored or in another unit.
+    """Return a remark on each meter that is rotated, mirrored or in another unit.
 
-    That is said by the two nearest, where these agree: by the complex correlation of the currents
-    over the whole record, whose phase is the mean angle between two of them (Kundu 1976, J. Phys.
-    Oceanogr. 6, 238-242), with a deviation of sqrt((1 - r²) / 2 r² n) of n independent times; and
-    by that with the mirror image of another, where east and north are exchanged.
+    The evidence is agreement between the two nearest meters, by the complex correlation of the
+    currents over the whole record. Its phase is the mean angle between two currents (Kundu 1976, J.
+    Phys. Oceanogr. 6, 238-242), with a deviation of sqrt((1 - r²) / 2 r² n) for n independent
+    times. Exchanged east and north components are found from the correlation with a mirror image.
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 
@@ -178,7 +182,7 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
             mean = float(-np.degrees(np.angle(sum(straight))))
             known = flow[np.isfinite(flow[:, k]), k]
             alike = abs(np.vdot(known[1:], known[:-1]) / np.vdot(known, known)) ** 2
-            count = len(known) * (1.0 - alike) / (1.0 + alike)  # of times that are independent
+            count = len(known) * (1.0 - alike) / (1.0 + alike)  # number of independent times
             part = min(min(np.abs(straight)), 1.0) ** 2
             band = BAND * np.degrees(np.sqrt((1.0 - part) / (2.0 * part * count)))
             way = "clockwise" if mean > 0.0 else "anticlockwise"
@@ -195,11 +199,11 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
 
 
 STRETCHED, AMISS = 1.25, 20.0
-"""How many times as long as it was cut a line is at most; how far off pressures may be [m]."""
+"""Maximum ratio of a line's length to its cut length, and tolerance for pressures [m]."""
 
 
 def distances_of(mooring: Design) -> Floats:
-    """Return how far each clamp and piece is from the top along the line as cut (p,) [m]."""
+    """Return distances (p,) of clamps and pieces from the top, along the unstretched line [m]."""
     pieces = mooring.file.pieces
     tops = np.cumsum([0.0, *mooring.line.length.tolist()])[: len(pieces)]
     clamps = [
@@ -211,11 +215,10 @@ def distances_of(mooring: Design) -> Floats:
 
 
 def torn(measured: MooringMeasurements, distance: Floats) -> tuple[MooringMeasurements, list[str]]:
-    """Return what was measured without depths farther apart than the line between two sensors is
-    long, and what is said of them.
+    """Remove depths farther apart than the line between two sensors, with notes on the removal.
 
-    Of the two the one is wrong that is farther from its median. Where most of a sensor's depths
-    are, they stay.
+    The sensor farther from its median is wrong. Nothing is removed from a sensor if half of its
+    depths or more would be.
 
     Parameters
     ----------
@@ -241,15 +244,17 @@ def torn(measured: MooringMeasurements, distance: Floats) -> tuple[MooringMeasur
 
 
 EITHER_SIDE, CLEAR, LEAST_STEP = 4, 8.0, 3.0
-"""Times on either side of a step; how many times its usual change that of the lowest sensor is, at
-least; and the least step [m]."""
+"""Times on either side of a step; ratio of the lowest sensor's step to its usual change; least size
+of a step [m].
+"""
 
 
 def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
-    """Return the step by which all sensors are deeper or shallower alike from one time on.
+    """Find a common step in the depths of all sensors.
 
-    Where no current was measured: strong currents would explain it. They take the lowest sensor
-    down by little, and less than the highest; a mooring that moves takes all down alike.
+    It applies to records without measured currents, as strong currents would otherwise explain a
+    step. Currents move the lowest sensor slightly, and less than the highest; a mooring that moves
+    carries all sensors down equally.
 
     Parameters
     ----------

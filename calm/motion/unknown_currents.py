@@ -1,16 +1,15 @@
-"""Currents that nobody measured: what the pressures of a record say of them, time by time.
+"""Estimation of unmeasured currents from the pressures of a record.
 
-The speed at a few knots in depth is unknown at each time, its direction is the same at all of
-them: the depths do not change with it. The logarithms of the speeds are normal, with a mean and a
-covariance that are learnt from the record itself by expectation and maximisation (Dempster, Laird
-and Rubin 1977): each time is fitted by Gauss and Newton under the law as it stands, and the law
-becomes the mean and the covariance of what was found, with what remains open at each time. Where
-the pressures leave the law open it stays as it was assumed. Besides, the line itself is wrong by a
-smooth error along it, a share of the knockdown; of several shares the pressures choose the most
-likely.
+The speed is unknown at a few knots in depth at each time. All knots share one direction, which has
+no effect on the depths. The logarithms of the speeds are normal. Their mean and covariance are
+learnt from the record by expectation and maximisation (Dempster, Laird and Rubin 1977). Each time
+is fitted by Gauss-Newton under the current law; the law is then updated to the mean and covariance
+of the fits, including their uncertainty. The prior law persists if the pressures do not constrain
+it. The line has also a smooth error along its length, a share of the knockdown; the pressures
+choose the most likely of several shares.
 
-The fits of the times that were learnt from are kept: each other time begins at the one whose depths
-are nearest to its own, with the slopes there.
+The fits of the learning times are stored. Every other time starts from the stored fit with the
+nearest depths, with the slopes of that fit.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -35,49 +34,58 @@ from calm.motion.measurements import FREE, CurrentMeasurements, MooringMeasureme
 from calm.physics.line import Floats, Integers
 
 KNOTS, FINER = 6, 2.2
-"""Depths at which the speed is unknown; the power of their share of the depth below the uppermost
-by which they are closer together above, as currents change most there."""
+"""Number of knots, and the exponent of their spacing, which is finer near the top because currents
+vary most there.
+"""
 DOWN = 0.9
-"""Share of the times at which the top of the line is at the uppermost of them or above it."""
+"""Share of the times at which the top of the line is at or above the uppermost knot."""
 SURFACE, DECAY, LEAST = 0.3, 400.0, 0.03
-"""The speeds that are assumed: at the top [m/s], decaying over this depth [m], the scale of the
-thermocline, and what is added everywhere [m/s]."""
+"""Prior speed: value at the top [m/s], decay depth [m] (the scale of the thermocline), and a
+constant [m/s].
+"""
 ALL, EACH, ALIKE = 0.7, 1.4, 0.5
-"""Deviations of the logarithm of the speed that is assumed: of all knots alike, of each, and the
-share of the knots over which these are alike."""
+"""Deviations of the logarithm of the prior speed, common to all knots and for each knot, and the
+share of the knots over which these are correlated.
+"""
 PRIOR = 20.0
-"""So many times are what is assumed worth beside those of the record."""
+"""Weight of the prior law, in times of the record."""
 SHAPED, OTHER, FEWEST_PROFILES = 60.0, 0.2, 20
-"""The same of shapes that were given; by how much each speed may differ from them, as a logarithm;
-and profiles that show a shape, at least."""
+"""Weight of given shapes, in times of the record; tolerance of their logarithms; and the least
+number of profiles for a shape.
+"""
 APART = 25.0
-"""Beyond the levels of a profile its ends still hold [m]."""
+"""Distance beyond the levels of a profile to which its end values extend [m]."""
 MOST_TIMES, TURNS, FIRST = 240, 12, 2
-"""Times that the law is learnt from, turns, and those before the law is first changed."""
+"""Number of learning times, all iterations, and iterations before the law changes."""
 STRONGER = 0.5
-"""Share of these times that it is learnt from: those with more knockdown, as the others are blurred
-by the tide."""
+"""Share of the learning times used for the law.
+
+They have the largest knockdown, as the tide blurs the others.
+"""
 LONGEST = 1.0
-"""Step of a logarithm, at most."""
+"""Maximum step of a logarithm."""
 SHARES = (0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4)
-"""Errors of the line that are tried, as shares of the knockdown of each stretch."""
+"""Trial errors of the line, as shares of the knockdown of each stretch."""
 USUAL, WITHIN = 0.07, 0.7
-"""The one that is assumed, and the deviation of its logarithm."""
+"""Prior median of the error share, and the deviation of its logarithm."""
 SEABED = 0.0005
-"""Of the depth of the water, as a share of it: where pressures alone place a line, a wrong length
-stands for what is wrong by more."""
+"""Prior deviation of the datum, as a share of the water depth.
+
+If pressures alone place a line, a wrong length represents larger errors.
+"""
 LEAST_PART, HIGH, HIGH_KNOWN = 5.0, 3.0, 0.1
-"""Percentile of its depths that counts as the least of a sensor; how far that is above its place in
-still water before the place is doubted [m]; and how well that is known, as a share of it."""
+"""Percentile that defines the shallowest depth of a sensor, height above its place in still water
+that makes the place doubtful [m], and relative uncertainty of that height.
+"""
 AGAIN = 3
-"""Steps from a fit that is kept to that of another time."""
+"""Number of steps from a stored fit to the fit of another time."""
 
 
 def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasurements:
-    """Return what was measured with the knots as its levels, whose currents are not known.
+    """Return the measurements with the knots as levels of unknown current.
 
-    The uppermost is where the top of the line is in strong currents, by the uppermost sensor: above
-    it no pressure says anything of the speed.
+    The uppermost knot is at the depth of the top in strong currents, from the uppermost sensor:
+    pressures contain no information on the current above it.
     """
     still, seabed = Forward(mooring, {}).still, float(mooring.water.depth)
     sensor = int(np.argmin(still[measured.point]))
@@ -97,7 +105,7 @@ def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasure
 
 
 def assumed_law(measured: MooringMeasurements) -> tuple[Floats, Floats]:
-    """Return (k,), (k, k) mean and covariance of the logarithms of the speeds beforehand."""
+    """Return (k,), (k, k) prior mean and covariance of the logarithms of the speeds."""
     knots = measured.level_depth[0]
     mean = np.log(SURFACE * np.exp(-(knots - knots[0]) / DECAY) + LEAST)
     place = np.linspace(0.0, 1.0, len(knots))
@@ -108,14 +116,14 @@ def assumed_law(measured: MooringMeasurements) -> tuple[Floats, Floats]:
 def shaped_law(
     measured: MooringMeasurements, record: Sequence[CurrentMeasurements], still: Mapping[str, float]
 ) -> tuple[Floats, Floats]:
-    """Return the same with the shapes of the profiles of a record; how strong they are is not used.
+    """Return the prior law with the profile shapes of a record; its mean strength is not used.
 
-    Knots above or below all of its levels keep what is assumed of them.
+    Knots outside the levels of the record keep their prior.
 
     Parameters
     ----------
     record : the currents, anywhere and at any time
-    still : depths of the parts that levels may hang at, by label [m]
+    still : depths of the parts of the line in still water, by label [m]
     """
     knots, (mean, covariance) = measured.level_depth[0], assumed_law(measured)
     rows = []
@@ -155,15 +163,16 @@ def learn_currents(
     tell: Callable[[str], None] = lambda _: None,
     prior: Sequence[CurrentMeasurements] = (),
 ) -> Common:
-    """Learn the law of the speeds, and what is common to the record beside it.
+    """Learn the law of the speeds jointly with the common unknowns.
 
     Parameters
     ----------
-    mooring : as its file says
-    measured : with the knots as levels
-    names : of the factors that are estimated
-    tell : is told what is going on
-    prior : currents of another record, whose shapes are taken; none for what is assumed
+    mooring : mooring as in its file
+    measured : measurements with the knots as levels
+    names : names of the factors to estimate
+    tell : receives progress messages
+    prior : currents of another record, for their profile shapes; if empty, the default prior
+        applies
     """
     part = measured.at(_chosen(measured))
     mean, covariance = assumed_law(part)
@@ -220,10 +229,10 @@ def learn_currents(
 
 
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
-    """Return by how much all sensors are shallower than the line in still water, at most 0 [m].
+    """Return the common depth of the sensors less that in still water, at most 0 [m].
 
-    No current lifts a line: where the shallowest readings of a sensor are above its place, the
-    depth of the water, a length or the place is another than in the file.
+    Currents cannot raise a line. If the shallowest readings of a sensor are above its place, the
+    water depth, a length or the place in the file is wrong.
     """
     still = Forward(mooring, {}).still
     depth = measured.depth - measured.moved[:, None]
@@ -236,7 +245,7 @@ def raised(mooring: Design, measured: MooringMeasurements) -> float:
 
 @dataclass(frozen=True)
 class _Fit:
-    """The times that are learnt from, under a law."""
+    """Fit of the learning times under a law."""
 
     moments: LineResponse
     common: Common
@@ -247,20 +256,20 @@ class _Fit:
         return self.law.read(self.moments.measured.level_depth)
 
     def linear(self, logs: Floats) -> Linear:
-        """Return the line in these currents with its slopes there."""
+        """Return the line in these currents, with its slopes."""
         return self.moments.linear(self.way, logs)
 
     def moved(self, at: Linear, logs: Floats) -> Linear:
-        """Return the same currents where law and line have changed little: the slopes stay."""
+        """Return the line at new speeds with the old slopes, for small changes in law and line."""
         return replace(at, logs=logs, depth=self.moments.depths(self.way, logs))
 
     def posterior(self, at: Linear, common: Common | None = None) -> Posterior:
-        """Return what the pressures make of the currents by the slopes at a state."""
+        """Return the posterior of the currents, linearised at a state."""
         one, still = self.moments.measured, self.moments.forward.still
         return posterior(one, at, self.way.spread, common or self.common, still)
 
     def misfit(self, at: Linear) -> Floats:
-        """Return (n,) twice the negative logarithm of how likely a state is, with its pressures."""
+        """Return (n,) twice the negative log-posterior of a state."""
         one, point = self.moments.measured, self.moments.measured.point
         found = self.posterior(at)
         seen = at.slope[:, point]
@@ -283,7 +292,7 @@ def _either(first: NDArray[np.bool_], one: Linear, other: Linear) -> Linear:
 
 
 def _with_mean(fit: _Fit, at: Linear | None) -> Linear:
-    """Return the fits of some times, and before them that of the mean."""
+    """Return the fits of several times, preceded by a fit at the mean."""
     assert at is not None
     moments, one = fit.moments, fit.moments.measured.at(slice(0, 1))
     alone = LineResponse(one, moments.forward, moments.shifted)
@@ -293,7 +302,7 @@ def _with_mean(fit: _Fit, at: Linear | None) -> Linear:
 
 
 def _chosen(measured: MooringMeasurements) -> Integers:
-    """Return times with the most pressures, spread evenly over the depth they measure."""
+    """Return times with the most pressures, spread evenly over the measured depths."""
     known = np.isfinite(measured.depth)
     count = known.sum(axis=1)
     used = np.flatnonzero(count == count.max())
@@ -304,9 +313,9 @@ def _chosen(measured: MooringMeasurements) -> Integers:
 
 
 def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
-    """Return the error of the line by the pressures: its mean square over all that are likely.
+    """Estimate the error share of the line: root mean square, weighted by likelihood.
 
-    Times that follow each other have the same error, and count as one.
+    Successive times with the same error count as one.
     """
     now, log = fit.posterior(at), []
     white = np.linalg.solve(np.linalg.cholesky(now.expected), now.innovation[:, :, None])
@@ -321,7 +330,7 @@ def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
 
 
 def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterior) -> Common:
-    """Return factors, datum and offsets after a step of Gauss and Newton, and their covariance."""
+    """Return factors, datum and offsets after a Gauss-Newton step, and their covariance."""
     seen = fixed_slopes(at.common[:, fit.moments.measured.point])
     inverse = np.linalg.inv(found.expected)
     pulls = np.einsum("nsq,nst,nt->nq", seen, inverse, found.innovation)
@@ -335,7 +344,7 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Return the best state of each time, from the nearest of the fits that were kept."""
+    """Return the best state of each time, starting from the nearest stored fit."""
     law, one = common.law, moments.measured
     assert law is not None and law.kept is not None
     way, kept, still = law.read(one.level_depth), law.kept, moments.forward.still

@@ -1,1 +1,1 @@
-"""Currents, pressures, ranges and the like out of files: one reader of columns, one of datasets."""
+"""Readers of measurement files: currents, pressures, ranges and similar records."""

@@ -1,7 +1,7 @@
-"""Attributes with a defined meaning: CF's standard names and cell methods, frames, the datum.
+"""Attributes with a defined meaning: CF standard names, cell methods, frames and the datum.
 
-Free text (titles, comments, long names) decides nothing here: it is shown to a person as it
-stands, on the card of `calm.records.card`.
+CALM does not interpret free text (titles, comments, long names). The card of `calm.records.card`
+quotes it for the reader.
 """
 
 from __future__ import annotations
@@ -38,16 +38,16 @@ _TOWARD = re.compile(r"\bto direction\b|\btowards?\b|\bflow(s|ing)? to\b|\bgoing
 _FROM = re.compile(r"\bfrom direction\b|\bdirection from\b|\bcom(es|ing) from\b|\bfrom which\b")
 
 _OF_SHIPS = ("vmdas", "winriver", "winriver2", "winriver ii", "uhdas", "uhdas+codas", "codas")
-"""Programs that write the files of ADCPs on moving ships (`source_program`)."""
+"""Programs that write files of ship-mounted ADCPs (`source_program`)."""
 _PLATFORM = (
     "platform_speed_wrt_ground", "eastward_platform_velocity", "northward_platform_velocity",
 )  # fmt: skip
 _BOTTOM_TRACK = re.compile(r"(?i)vel_bt|bt_vel\w*|bottom_?track_?vel\w*|[uv]_?bt|uship|vship")
-_MOVING = 0.1  # m/s over the ground, that no mooring's platform has as its median
+_MOVING = 0.1  # m/s over the ground: median speeds above this exclude a mooring
 
 
 def words_of(variable: xr.DataArray, *attributes: str) -> str:
-    """Return some attributes of a variable as plain lower-case words, one blank between them."""
+    """Join the given attributes of a variable as lower-case words, separated by single blanks."""
     told = " ".join(str(variable.attrs.get(name, "")) for name in attributes)
     return re.sub(r"[\W_]+", " ", told.lower()).strip()
 
@@ -55,8 +55,8 @@ def words_of(variable: xr.DataArray, *attributes: str) -> str:
 def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | None:
     """Return why a variable holds no measured or modelled values; None if it may.
 
-    Its cell methods count (a spread, a climatology, a mean over depth), and a packing that makes
-    all values the same.
+    Reasons are its cell methods (a spread, a climatology, a mean over depth), or a packing that
+    makes all values equal.
 
     Parameters
     ----------
@@ -74,8 +74,9 @@ def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | N
 
 
 def other_frame(attributes: Mapping[Any, Any]) -> str | None:
-    """Return why velocities are not to the east and north, by the coordinate system that a dataset
-    or a variable gives; None if they may be.
+    """Return why velocities are not to the east and north; None if they may be.
+
+    The evidence is the coordinate system in the attributes of a dataset or a variable.
     """
     for name in filter(_FRAMES.fullmatch, map(str, attributes)):
         frame = str(attributes[name]).lower()
@@ -88,8 +89,8 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 def moving_platform(dataset: xr.Dataset) -> str | None:
     """Explain why a dataset comes from a moving ship; None if it may come from a mooring.
 
-    Its `source_program` says so, or a velocity of the platform over the ground, by a bottom track
-    or a position, whose median is that of no mooring.
+    Reasons are its `source_program`, or a median platform speed over the ground (from bottom track
+    or position) above that of any mooring.
     """
     program = str(dataset.attrs.get("source_program", "")).strip()
     if program.lower() in _OF_SHIPS:
@@ -108,8 +109,8 @@ def moving_platform(dataset: xr.Dataset) -> str | None:
 def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
     """Return whether a velocity or direction is relative to magnetic north.
 
-    Its name, long name, standard name, unit or datum says so, or an attribute such as
-    `magnetic_declination_applied: no` of it or of its dataset.
+    The evidence is its name, long name, standard name, unit or datum, or an attribute of the
+    variable or dataset such as `magnetic_declination_applied: no`.
     """
     own = f"{variable.name} " + " ".join(
         str(variable.attrs.get(name, "")) for name in ("long_name", "standard_name", "units")
@@ -126,7 +127,7 @@ def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProx
 
 
 def is_true(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
-    """Return whether an attribute for it says that directions are relative to true north."""
+    """Return whether attributes of the variable or dataset refer directions to true north."""
     for name, said in (*variable.attrs.items(), *dataset.items()):
         if _UNTURNED.fullmatch(str(name)) and str(said).strip().lower() not in _NO:
             return True
@@ -141,8 +142,10 @@ def _is_magnetic_text(text: str) -> bool:
 
 
 def way_of(variable: xr.DataArray) -> str | None:
-    """Return whether a direction without a standard name is where the current flows ``"to"`` or
-    comes ``"from"``, by its long name or comment; None where they do not say.
+    """Return the convention of a direction that has no standard name.
+
+    The long name and comment decide: ``"to"`` if the current flows to it, ``"from"`` if it comes
+    from it, and None if they do not decide.
     """
     own = words_of(variable, "long_name", "standard_name", "comment")
     toward, origin = _TOWARD.search(own), _FROM.search(own)

@@ -1,6 +1,6 @@
 """Summary card of a file: its texts, variables, levels, times, flags and declination.
 
-A person reads the card to confirm that the file is the intended one. Texts are quoted verbatim, and
+The user reads the card to confirm that the file is the intended one. Texts are quoted verbatim, and
 values are in their declared units.
 """
 
@@ -17,7 +17,7 @@ from calm.records.current_terms import time_text
 from calm.records.value_tests import gaps_of
 
 LONGEST = 300
-"""Characters of a text that are shown."""
+"""Maximum number of characters shown of a text."""
 _MOST_GAPS = 20
 _TEXTS = {
     "title": ("title",),
@@ -78,7 +78,7 @@ class ReadCard:
     declination: float | None = None
 
     def sentence(self) -> str:
-        """Format the card as one line for a `history` attribute."""
+        """Format the card as a line of the `history` attribute."""
         rows = card_rows(self.to_dict())
         told = "; ".join(f"{name}: {' '.join(value.split())}" for name, value in rows)
         return f"read {self.file}: {told}"
@@ -115,7 +115,7 @@ class ReadCard:
 
 
 def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
-    """Merge the cards of several parts of one file."""
+    """Merge the cards of the parts of one file."""
     variables = {taken: one for card in cards for taken, one in card.variables.items()}
     flags = {name: count for card in cards for name, count in card.flags.items()}
     return replace(cards[0], variables=variables, flags=flags)

@@ -1,7 +1,7 @@
-"""Datasets by the CF conventions as they stand in files: opening, values, units, times, labels.
+"""Access to CF datasets: opening, values, units, times and labels.
 
-NetCDF 3 and 4 and zarr are opened by xarray, their times undecoded, their values read when asked
-for. What is wrong with a file is an `UnreadableError` inside, an `InputError` outside `reading`.
+xarray opens NetCDF 3 and 4 and zarr, with undecoded times and lazily read values. Faults of a file
+raise `UnreadableError`, which `reading` converts to `InputError`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
 _ZONED = ("time_zone", "timezone", "tz", "time_reference")
 _MOST_LISTED = 5
 MOST_VALUES = 50_000_000
-"""Values that are read at once: as times, those of a second for a year and a half."""
+"""Maximum number of values read at once; as times, one a second for a year and a half."""
 _NORTH_NAMED = re.compile(
     r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
 )
@@ -50,7 +50,7 @@ _KINDS = {
     b"\x7f\x7f": "a raw file of a Teledyne ADCP; let its software or MHKiT turn it into NetCDF",
     b"\xa5": "a raw file of a Nortek instrument; let its software or MHKiT turn it into NetCDF",
 }
-"""What files begin with that hold currents, and are of a kind that is not read."""
+"""First bytes of unsupported files that may hold currents, and the remedy for each kind."""
 
 
 _SHELLS = {
@@ -59,28 +59,28 @@ _SHELLS = {
     rb"(?m)^\*IOS HEADER VERSION": "an IOS Shell file; turn it into NetCDF "
     "(`ocean-data-parser` does)",
 }
-"""What stands in a line among the first of texts of a kind that is not read."""
+"""Line near the start of unsupported text files that may hold currents, and the remedy."""
 
-_SHELL = 400  # bytes in which it stands
+_SHELL = 400  # number of bytes searched
 
 _ENGINES = {b"\x89HDF": "h5netcdf", **dict.fromkeys((b"CDF\x01", b"CDF\x02", b"CDF\x05"), "scipy")}
 _ZARR = ("zarr.json", ".zgroup", ".zmetadata")
 
 
 class UnreadableError(Exception):
-    """The file does not hold a current that can be understood; the text says why."""
+    """Error of a file that holds no readable current; the text gives the reason."""
 
 
 def holds_arrays(path: Path) -> bool:
-    """Return whether a file is NetCDF or text of one instrument, or a folder zarr; others are CSV.
+    """Return whether a path is NetCDF, instrument text or a zarr store; other files are CSV.
 
-    InputError: it is a folder of something else, or of a kind that is known, and not read.
+    InputError: another kind of folder, or a file of a known but unsupported kind.
     """
     if path.is_dir():
         if not is_zarr(path):
             raise refused(path, "is a folder, and not a zarr store; join its files into one first")
         return True
-    if not path.is_file():  # a pipe or a device would be waited for
+    if not path.is_file():  # opening a pipe or a device could block
         raise refused(path, "is not a regular file" if path.exists() else "no such file")
     with path.open("rb") as file:
         head = file.read(_SHELL)
@@ -98,14 +98,14 @@ def is_zarr(path: Path) -> bool:
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Turn what is wrong with a file into an InputError."""
+    """Convert errors in reading a file to InputError."""
     try:
         yield
     except (CalmError, TimeChoiceError, ModuleNotFoundError):
         raise
     except UnreadableError as error:
         raise refused(path, str(error)) from None
-    # Damaged files leave the libraries by exceptions of many kinds.
+    # The libraries raise many kinds of exception on damaged files.
     except Exception as error:
         kind = "zarr" if path.is_dir() else "NetCDF"
         reason = str(error).partition("\n")[0]
@@ -114,7 +114,7 @@ def reading(path: Path) -> Iterator[None]:
 
 @contextmanager
 def opened(path: Path) -> Iterator[xr.Dataset]:
-    """Open a dataset; what is wrong with the file is an InputError that says what it holds."""
+    """Open a dataset; its errors are InputErrors that list the contents of the file."""
     if not path.exists():
         raise refused(path, "no such file")
     if not holds_arrays(path):
@@ -125,7 +125,7 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
 
 @contextmanager
 def saying_what_it_holds(dataset: xr.Dataset) -> Iterator[None]:
-    """Add what a dataset holds to what is wrong with it."""
+    """Append a list of the dataset's contents to any UnreadableError."""
     try:
         yield
     except UnreadableError as error:
@@ -133,7 +133,7 @@ def saying_what_it_holds(dataset: xr.Dataset) -> Iterator[None]:
 
 
 def open_current(path: Path) -> xr.Dataset:
-    """Return the dataset of a file, its values read as they are asked for, its times undecoded."""
+    """Open a dataset with lazily read values and undecoded times."""
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
     import xarray as xr
 
@@ -150,10 +150,11 @@ def open_current(path: Path) -> xr.Dataset:
 
 
 def _refuse_large(path: Path) -> None:
-    """Refuse a file that declares more than is read at once, before anything of it is read.
+    """Reject a file that declares more values than may be read at once.
 
-    Variables of one dimension are read whole, others by their chunks. A classic NetCDF file cannot
-    declare more than it has. UnreadableError: with the variable.
+    The check precedes all reading. One-dimensional variables are read whole, others by their
+    chunks. A classic NetCDF file cannot declare more values than it holds. UnreadableError: names
+    the variable.
     """
     declared: list[tuple[str, Any]] = []
     if path.is_dir():
@@ -186,7 +187,7 @@ def _too_large(name: object, count: int) -> str:
 
 
 def engine_of(path: Path) -> str:
-    """Return what reads a NetCDF file, by its first bytes; empty where it is none."""
+    """Return the xarray engine for a NetCDF file, from its first bytes; empty for other files."""
     with path.open("rb") as file:
         return _ENGINES.get(file.read(4), "")
 
@@ -194,7 +195,7 @@ def engine_of(path: Path) -> str:
 def holdings(dataset: xr.Dataset) -> str:
     """Return the variables of a dataset with their dimensions, units and standard names."""
     listed = []
-    # what has most dimensions first: it may be what was meant
+    # most dimensions first: probably the variable that the user wants
     for name, variable in sorted(dataset.variables.items(), key=lambda each: -each[1].ndim):
         sizes = ", ".join(f"{dim} {size}" for dim, size in variable.sizes.items())
         words = [f"{name} ({sizes})" if sizes else str(name)]
@@ -214,7 +215,7 @@ def holdings(dataset: xr.Dataset) -> str:
 
 
 def groups_of(path: Path) -> list[str]:
-    """Return the names of the groups of a NetCDF 4 file; of any other file it has none."""
+    """Return the names of the groups of a NetCDF 4 file; empty for other files."""
     import h5netcdf
 
     if not path.is_file() or engine_of(path) != "h5netcdf":
@@ -224,9 +225,9 @@ def groups_of(path: Path) -> list[str]:
 
 
 def factor_of(variable: xr.DataArray, dimension: str) -> float:
-    """Return what turns a variable into SI (angles: degrees).
+    """Return the factor from the unit of a variable to SI (angles: degrees).
 
-    UnreadableError: it has no unit, or that of something else.
+    UnreadableError: it has no unit, or a unit of another dimension.
     """
     unit = str(variable.attrs.get("units", ""))
     plain = {"db": "dbar"}.get(unit.strip(), _NORTH_NAMED.sub("", unit.strip()))
@@ -242,9 +243,9 @@ def factor_of(variable: xr.DataArray, dimension: str) -> float:
 
 
 def converted(variable: xr.DataArray, values: Floats, wanted: str) -> Floats:
-    """Return values of a variable in another unit, as pint writes it.
+    """Convert values of a variable to another unit, in pint notation.
 
-    UnreadableError: it has no unit, or that of something else.
+    UnreadableError: it has no unit, or a unit of another dimension.
     """
     unit = str(variable.attrs.get("units", "")).strip()
     if not unit:
@@ -261,7 +262,7 @@ _PRACTICAL = ("", "1", "psu", "pss", "pss-78", "pss78", "1e-3", "0.001", "ppt", 
 
 
 def refuse_other_salinity(variable: xr.DataArray) -> None:
-    """Refuse a salinity that is not practical by its unit (UnreadableError)."""
+    """Reject a salinity whose unit is not that of practical salinity (UnreadableError)."""
     unit = str(variable.attrs.get("units", "")).strip()
     if unit.lower() not in _PRACTICAL:
         said = f"`{unit}`, is not that of a practical salinity: 1 (or PSU)"
@@ -269,15 +270,15 @@ def refuse_other_salinity(variable: xr.DataArray) -> None:
 
 
 def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
-    """Return those of the names that the dataset has, each once."""
+    """Return the names that the dataset contains, without duplicates."""
     return [name for name in dict.fromkeys(names) if name in dataset.variables]
 
 
 def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
-    """Return the values of a variable as it stands in its file, NaN outside its valid range.
+    """Return the values of a variable in its declared unit, NaN outside its valid range.
 
-    `valid_range`, or `valid_min` and `valid_max`, are those of the NetCDF User Guide: of packed
-    values where they are of the packed kind.
+    `valid_range`, `valid_min` and `valid_max` follow the NetCDF User Guide: they refer to packed
+    values if they have the packed type.
     """
     if variable.size > MOST_VALUES:
         raise UnreadableError(_too_large(variable.name, variable.size))
@@ -289,7 +290,7 @@ def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
 
 
 def valid_range(variable: xr.DataArray) -> tuple[float, float]:
-    """Return the least and the greatest valid value, unpacked."""
+    """Return the minimum and maximum valid value, unpacked."""
     low, high = (variable.attrs.get(name) for name in ("valid_min", "valid_max"))
     both = variable.attrs.get("valid_range")
     if both is not None and len(both) == 2:
@@ -301,7 +302,7 @@ def valid_range(variable: xr.DataArray) -> tuple[float, float]:
 def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
     try:
         value = float(absent if limit is None else limit)
-    except (TypeError, ValueError):  # a text that is no number limits nothing
+    except (TypeError, ValueError):  # ignore a limit that is not a number
         return absent
     packed = np.dtype(variable.encoding.get("dtype", np.float64))
     if limit is None or not (packed.kind in "iu" and np.asarray(limit).dtype.kind in "iu"):
@@ -317,7 +318,7 @@ def texts_of(variable: xr.DataArray) -> list[str]:
 
 
 def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
-    """Return the labels of what a dimension counts; None where it has none."""
+    """Return the text labels along a dimension; None if it has none."""
     for name in first_present(dataset, (*_LABELS, dimension)):
         variable = dataset[name]
         if variable.dims == (dimension,) and variable.dtype.kind in "SUO":
@@ -326,14 +327,14 @@ def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
 
 
 def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> Floats | None:
-    """Return the nominal depths of what a dimension counts [m]; of the one instrument without it.
+    """Return the nominal depths of the instruments along a dimension [m], or of a single one.
 
-    Heights above the bottom are counted from `seabed` [m].
+    Heights above the seabed are converted with `seabed`.
 
     Parameters
     ----------
-    dataset : of instruments
-    dimension : what counts these; None for one instrument
+    dataset : dataset of the instruments
+    dimension : dimension of the instruments; None for a single instrument
     seabed : depth of the water, for heights above it [m]
     """
     dims = () if dimension is None else (dimension,)
@@ -345,16 +346,16 @@ def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> F
                 except UnreadableError:
                     if name != "InstrDepth" or "units" in dataset[name].attrs:
                         continue
-                    factor = 1.0  # RODB has metres, and whoever takes its name no unit
+                    factor = 1.0  # RODB and its imitators omit the unit, metres
                 values = np.atleast_1d(known_values(dataset[name])) * factor
                 return start + sign * values
     return None
 
 
 def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
-    """Return the name of the variable with the times of a velocity; None where it has none.
+    """Return the name of the time variable of a velocity; None if it has none.
 
-    Its dimension, if it has one, is one of the velocity's.
+    Any dimension of the time variable is also a dimension of the velocity.
     """
     axes, coordinates = dataset.cf.axes, dataset.cf.coordinates
     units = {name: str(one.attrs.get("units", "")) for name, one in dataset.variables.items()}
@@ -367,9 +368,9 @@ def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
 
 
 def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
-    """Return its times to the nanosecond, one-dimensional, in the order of the file.
+    """Return the times to the nanosecond, one-dimensional, in the order of the file.
 
-    UnreadableError: they are no times, are missing, or follow a calendar that has other days than
+    UnreadableError: the values are not times, are missing, or follow a calendar that differs from
     the real one.
     """
     times = dataset[name]
@@ -390,7 +391,7 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
 
 
 def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
-    """Return what is said where an attribute for it names another zone than UTC."""
+    """Return a notice if an attribute of the times names a zone other than UTC."""
     for attributes in (dataset[name].attrs, dataset.attrs):
         for key in _ZONED:
             zone = str(attributes.get(key, "")).strip()
@@ -405,7 +406,7 @@ def _decoded(times: xr.DataArray) -> NDArray[Any]:
     import xarray as xr
 
     if times.dtype.kind == "f" and not times.notnull().any():
-        return np.array("NaT", "datetime64[ns]")  # to xarray, no numbers at all are no times
+        return np.array("NaT", "datetime64[ns]")  # xarray cannot decode an empty time
     unit = str(times.attrs.get("units", ""))
     zone = _ZONE.search(unit)
     if zone is not None and zone[1].upper() not in ZONES_OF_UTC:
@@ -419,7 +420,7 @@ def _decoded(times: xr.DataArray) -> NDArray[Any]:
     )
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of years without their zeros, `1-1-1`
+            warnings.simplefilter("ignore")  # about years without leading zeros, `1-1-1`
             whole = xr.decode_cf(times.to_dataset(name="times"))["times"]
             decoded: NDArray[Any] = whole.values.ravel()
     except (ValueError, OverflowError):
@@ -434,7 +435,7 @@ def _decoded(times: xr.DataArray) -> NDArray[Any]:
 
 
 def _no_date(times: xr.DataArray) -> UnreadableError:
-    """Return what is said where the unit of times is understood, but not all of their values."""
+    """Build the error for times whose unit is valid but whose values lie outside the range."""
     values = times.values.ravel()
     worst = values[np.nanargmax(np.abs(values - np.nanmedian(values)))]
     return UnreadableError(

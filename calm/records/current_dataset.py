@@ -1,4 +1,4 @@
-"""A dataset of currents as arrays of depth, u, v and w: one profile or many, read as asked for."""
+"""Dataset of currents as arrays of depth, u, v and w, for one or many profiles, read lazily."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ if TYPE_CHECKING:
     import xarray as xr
 
 AHEAD = 16_000_000
-"""Bytes that are read together where a file has compressed them together."""
+"""Upper limit on the size of profiles read together because the file compresses them together."""
 
 LOOKED_AT = 64_000_000
-"""Bytes of a record that are looked at for what is odd, spread over it where it has more."""
+"""Size of the sample of a record that is tested for doubtful values, spread over the record."""
 
 
 class CurrentDataset:
-    """A dataset whose current, levels, times and place have been found, its currents not read.
+    """A dataset of currents with its velocity, levels, times and place identified.
 
-    Its times are undecoded. UnreadableError: it holds no current that can be understood: why, and
-    what it holds.
+    Current values are read later, and times are undecoded. UnreadableError: no readable current;
+    the message gives the reason and the contents of the file.
 
     Attributes
     ----------
     times : (n,) in the order of the file; None for a profile without a time
-    notices : what a person should know before trusting it
+    notices : remarks to read before the data are used
     turned : angle by which a current relative to magnetic north was turned
-    rules : what was understood beyond doubt, and how
+    rules : rules by which the file was read
     source : names of the variables, and the place
     labels : see `Record`
     """
@@ -60,7 +60,7 @@ class CurrentDataset:
         self._time = None if clock is None else next(map(str, dataset[clock].dims), None)
         column, self._levels, self.labels = GridColumn({}, None), None, tuple[str, ...]()
         along = [str(dim) for dim in dataset[current.names[0]].dims if dim != self._time]
-        if terms.on_the_line and len(along) == 1:  # levels may be parts of a line
+        if terms.on_the_line and len(along) == 1:  # levels may be labels of parts of a line
             self.labels = cf_files.labels_along(dataset, along[0]) or ()
         if not self.labels:
             column = choose_column(dataset, current.names, self._time, terms.place)
@@ -91,28 +91,28 @@ class CurrentDataset:
 
     @property
     def moves(self) -> bool:
-        """Return whether the levels move with time."""
+        """Whether the levels move with time."""
         return self._levels is not None and self._levels.vary_in(self._time)
 
     @property
     def chunk(self) -> int:
-        """Return how many times the file decompresses together; 1 where it does not compress."""
+        """Number of times that the file compresses together; 1 without compression."""
         variable = self._parts[0][0]
         chunks: dict[str | None, int] = variable.encoding.get("preferred_chunks", {})
         return chunks.get(self._time, 1)
 
     @property
     def size(self) -> int:
-        """Bytes of one profile as it is read."""
+        """Size of one profile in memory [bytes]."""
         variable = self._parts[0][0]
         levels: int = variable.size // max(variable.sizes.get(self._time, 1), 1)
         return 8 * levels * (len(self._parts) + self.moves)
 
     def read(self, index: Index) -> Levels:
-        """Return the profiles of some times, by their index; all of them where there is no time.
+        """Return the profiles at the given time indices, or all profiles if there is no time.
 
-        Depths are (k,), or (n, k) where levels move. Currents are inf where the file has a negative
-        speed or a direction outside -360 to 360°.
+        Depths are (k,), or (n, k) if levels move. Currents are inf if the file has a negative speed
+        or a direction outside -360 to 360°.
         """
         first, second, *up = (
             self._along(variable, index, cf_files.known_values) * factor
@@ -124,30 +124,30 @@ class CurrentDataset:
         if self._velocity.turn is not None:
             impossible = (first < 0.0) | (np.abs(second) > 360.0)
             first, second = self._velocity.components(first, second)
-            first[impossible] = second[impossible] = np.inf  # to be refused by whoever asked
+            first[impossible] = second[impossible] = np.inf  # callers reject infinite currents
         if self._terms.declination:
-            with np.errstate(invalid="ignore"):  # of what is infinite
+            with np.errstate(invalid="ignore"):  # inf from above
                 first, second = turned_by(self._terms.declination, first, second)
         none, levels = np.full(first.shape[1], np.nan), self._levels
         depth = none if levels is None else levels.depths(self._time, index)
         return depth, first, second, up[0] if up else None
 
     def flags(self, index: Index) -> NDArray[np.int8] | None:
-        """Return (n, k) the worse quality flags of both components; None without flags."""
+        """Return (n, k) the worse of the quality flags of both components; None without flags."""
         if not self._flags:
             return None
         every = [self._along(one, index, velocity.flags_of) for one in self._flags]
         return np.asarray(np.maximum.reduce(every), np.int8)
 
     def inspected(self, file: str, index: Index) -> tuple[ReadCard, list[str]]:
-        """Return the card of some times, and what is doubtful about their values.
+        """Return the card of the profiles at the given times, and doubts about their values.
 
-        Where there is much, a part is looked at that is spread over them.
+        Large records are sampled evenly.
 
         Parameters
         ----------
         file : name of the file
-        index : of the times, rising
+        index : indices of the times, rising
         """
         every, times = self.times, None
         said: list[str] = []
@@ -209,14 +209,14 @@ class CurrentDataset:
 
     @property
     def _taken(self) -> tuple[str, ...]:
-        """What the variables of the current are taken for."""
+        """Role of each variable of the current."""
         components = self._velocity.turn is None
         return ("east", "north", "up") if components else ("speed", "direction", "up")
 
     def _along(
         self, variable: xr.DataArray, index: Any, read: Callable[[xr.DataArray], Any]
     ) -> Any:
-        """Return times by levels, contiguous, so that equal values give equal results anywhere."""
+        """Return times by levels, contiguous so that equal values give equal results."""
         like = self._parts[0][0]
         if set(variable.dims) != set(like.dims):
             variable = variable.broadcast_like(like)
@@ -228,12 +228,15 @@ class CurrentDataset:
 
 
 def share_of(good: Floats) -> Floats:
-    """Return shares of good pings as fractions; the greatest of percentages is above 1."""
+    """Convert shares of good pings to fractions; values are percentages if any exceeds 1."""
     return good / 100.0 if np.nanmax(good, initial=0.0) > 1.0 else good
 
 
 def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str, ...]:
-    """Return what is reported of a current that is relative to magnetic north."""
+    """Return the notice on a current relative to magnetic north, if it was rotated.
+
+    UnreadableError: the declination is missing, or the current is relative to true north already.
+    """
     counted = current.names if current.turn is None else current.names[1:]
     which = " and ".join(f"`{name}`" for name in counted)
     if current.magnetic and declination is None:
@@ -255,7 +258,7 @@ def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str,
 def _single_levels(
     dataset: xr.Dataset, current: velocity.Velocity, time: str | None
 ) -> tuple[str | None, xr.Dataset]:
-    """Return the dimension of the levels, and the dataset without dimensions of one value."""
+    """Return the dimension of the levels, and the dataset without dimensions of length one."""
     name = current.names[0]
     single = [dim for dim, size in dataset.sizes.items() if size == 1 and dim != time]
     dataset = dataset.isel(dict.fromkeys(single, 0))
@@ -278,9 +281,9 @@ def _spread(variable: xr.DataArray) -> str:
 
 
 class ArrayRecord(Record):
-    """A record whose profiles are found as `calm run` finds that of one time.
+    """A record of profiles in NetCDF or zarr, read by the same rules as a single profile.
 
-    Parameters and errors are those of `open_record`.
+    Parameters and errors are the same as in `open_record`.
     """
 
     def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
@@ -317,7 +320,7 @@ class ArrayRecord(Record):
             return self._current.flags(part(self._index, start, stop))
 
     def _window(self, start: int, stop: int) -> tuple[int, int, Levels]:
-        """Return which profiles are decompressed with those wanted, and these profiles."""
+        """Return the range of profiles that are decompressed together, and these profiles."""
         if self._ahead is not None and self._ahead[0] <= start and stop <= self._ahead[1]:
             return self._ahead
         self._ahead = None
@@ -329,7 +332,7 @@ class ArrayRecord(Record):
         return window
 
     def _end_of_chunk(self, start: int) -> int:
-        """Return the profile after those that a file has compressed together with one."""
+        """Return the index of the first profile after the compressed chunk with `start`."""
         chunk = self._current.chunk
         if isinstance(self._index, slice):
             position = self._index.start + start * self._index.step

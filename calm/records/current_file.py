@@ -1,9 +1,9 @@
-"""A current from a file of measurements or of a model: NetCDF by its first bytes, zarr, or CSV.
+"""Currents from a file of measurements or of a model: NetCDF, zarr or CSV.
 
-Tables of text are `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`. A record has the
-column `time` first and a row for every time and depth, the levels of one time in lines that follow.
-It is read once, its numbers kept in a temporary file. A level of a record may have no value, its
-cell blank, `nan` or `NA`: it is left out.
+A text table has the columns `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`. A record
+has a first column `time` and a row for each time and depth; the rows of one time must be adjacent.
+The record is read once, and its numbers are stored in a temporary file. A level without a value
+(blank, `nan` or `NA`) is omitted.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from calm.records.value_tests import CurrentValues, current_doubts, step_doubts
 
 _BLOCK = 10_000
 AT_ONCE = 50_000
-"""Lines of a record that are read together."""
+"""Number of lines of a record that are read together."""
 
 COLUMNS = 4
 """Depth [m], u, v and w [m/s]."""
@@ -41,20 +41,20 @@ EXAMPLE = "depth[m],u[m/s],v[m/s]"
 
 
 def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
-    """Return the profile of a file at a time, and what to report about it.
+    """Return the profile of a file at a time, and the notices on it.
 
     Parameters
     ----------
     path : CSV, NetCDF or zarr
-    time : in ISO 8601; None where there is only one
-    terms : how the current is to be taken
+    time : ISO 8601; None if the file has only one
+    terms : options for reading the current
 
     Raises
     ------
     InputError
         With the mistakes of the file.
     TimeChoiceError
-        The time is not in the file, or is needed to choose one of several.
+        The time is not in the file, or is missing although the file has several.
     """
     read = _from_arrays if holds_arrays(path) else _from_text
     table, notices = read(path, time, terms)
@@ -62,7 +62,7 @@ def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[Curre
 
 
 def strongest_of(path: Path, terms: Terms) -> float:
-    """Return the greatest horizontal speed of a record at any time and depth [m/s]."""
+    """Return the maximum horizontal speed of a record over all times and depths [m/s]."""
     strongest = 0.0
     with open_record(path, terms) as record:
         for start in range(0, record.count, _BLOCK):
@@ -72,20 +72,20 @@ def strongest_of(path: Path, terms: Terms) -> float:
 
 
 def open_record(path: Path, terms: Terms, time: Period | None = None, every: int = 1) -> Record:
-    """Return a record in NetCDF, in zarr, or in CSV.
+    """Open a record in NetCDF, zarr or CSV.
 
     Parameters
     ----------
-    path, terms : the record, and how its currents are to be taken
+    path, terms : path of the record, and options for reading its currents
     time : first and last time, see `parse_period`
-    every : take one profile in so many
+    every : read one profile in this number
 
     Raises
     ------
     InputError
-        It cannot be understood: why, and what it holds.
+        The file is unreadable; the message gives the reason and its contents.
     UsageError
-        No profile of it is asked for.
+        The options select no profile.
     """
     if not (path.is_file() or path.is_dir()):
         raise refused(path, "is not a regular file" if path.exists() else "no such file")
@@ -109,7 +109,7 @@ def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTab
 
 
 def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
-    """Return the levels in water that have a value, by depth."""
+    """Return the levels below the surface that have a value, sorted by depth."""
     depth, u, v, up = found
     up = np.zeros_like(u) if up is None else up
     depth, u, v, w = (values.ravel() for values in (depth, u, v, up))
@@ -160,7 +160,7 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
 
 
 def _rows_of(rows: Sequence[CellRow], time: str | None) -> tuple[list[CellRow], list[str]]:
-    """Return the rows of the time nearest to the one wanted, and the notice that says so."""
+    """Return the rows of the time nearest to the requested time, and a notice if they differ."""
     problems: list[Problem] = []
     moments = np.array([_moment_of(row, problems) for row in rows], "datetime64[us]")
     if problems:
@@ -172,7 +172,7 @@ def _rows_of(rows: Sequence[CellRow], time: str | None) -> tuple[list[CellRow], 
 
 
 def _moment_of(row: CellRow, problems: list[Problem]) -> np.datetime64 | None:
-    """Return the time of a row; None, with its mistake added, where it has none."""
+    """Return the time of a row; None if it has none, with the mistake added to `problems`."""
     try:
         return current_terms.parse_time(row.cells[0])
     except TimeChoiceError as error:
@@ -181,9 +181,9 @@ def _moment_of(row: CellRow, problems: list[Problem]) -> np.datetime64 | None:
 
 
 class CsvRecord(Record):
-    """Read a record once, and keep its numbers in a temporary file until it is closed.
+    """A record in CSV, read once; its numbers are stored in a temporary file until it is closed.
 
-    Parameters and errors are those of `open_record`; every mistake of the file is reported.
+    Parameters and errors are the same as in `open_record`; all mistakes of the file are reported.
     """
 
     def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
@@ -203,13 +203,13 @@ class CsvRecord(Record):
     def _inspect(
         self, header: CurrentHeader, period: Period | None, every: int, path: Path
     ) -> list[str]:
-        """Return what is doubtful about the values of a period, and keep their card."""
+        """Return doubts about the values of a period, and store their card."""
         mine = self._index
         self._index = choose_profiles(self._times, period, 1, path)[0] if every > 1 else mine
         times = self._times[self._index]
         depth, u, v, _ = self.profiles(0, min(len(times), AT_ONCE))
         self._index = mine
-        # levels of one number where all profiles have the same
+        # reduce the levels to (k,) if all profiles share them
         same = (depth == depth[:1]) | np.isnan(depth)
         values = CurrentValues(
             depth[0] if same.all() else depth, u, v, times[:AT_ONCE], self._terms.water_depth
@@ -218,7 +218,7 @@ class CsvRecord(Record):
         return [*current_doubts(values)]
 
     def _read(self, path: Path) -> CurrentHeader:
-        """Return every profile of the file into the temporary one."""
+        """Read all profiles of the file into the temporary file."""
         try:
             with path.open("rb") as file:
                 bare = (COMMENT.sub(rb"\1", line) if b"#" in line else line for line in file)
@@ -311,9 +311,9 @@ def _card_of(
 
 
 def _whole_profiles(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[list[CellRow]]:
-    """Yield the rows of so many whole profiles that they are some `AT_ONCE`.
+    """Yield the rows of whole profiles, in batches of about `AT_ONCE` rows.
 
-    The rows of a profile follow each other with one time.
+    Adjacent rows with the same time form a profile.
     """
     gathered: list[CellRow] = []
     for _, rows in groupby((header.below(*line) for line in lines), lambda row: row.cells[0]):
@@ -326,7 +326,7 @@ def _whole_profiles(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[
 
 
 def _refuse(problems: list[Problem], header: CurrentHeader, *, at_least: int = 0) -> None:
-    """Raise the mistakes where there are more than `at_least`, or where the header has one."""
+    """Raise InputError if there are more than `at_least` mistakes, or any in the header."""
     in_header = [problem for problem in problems if problem.line == header.row.number]
     if in_header:
         raise InputError(abridged(in_header))
@@ -336,7 +336,7 @@ def _refuse(problems: list[Problem], header: CurrentHeader, *, at_least: int = 0
 
 @dataclass(frozen=True)
 class CurrentHeader:
-    """Know the columns of a table of currents after its time, if it has one."""
+    """Columns of a table of currents after its time column, if any."""
 
     row: CellRow
 
@@ -346,12 +346,12 @@ class CurrentHeader:
 
     @property
     def timed(self) -> bool:
-        """Return whether the file is a record."""
+        """Whether the file is a record."""
         return is_time(self.row.cells[0])
 
     @property
     def columns(self) -> list[str]:
-        """Return the names with their units, without that of the time."""
+        """Column names with their units, without the time column."""
         return list(self.row.cells[int(self.timed) :])
 
     def currents(
@@ -361,15 +361,16 @@ class CurrentHeader:
         terms: Terms,
         profile: Integers | None = None,
     ) -> Floats:
-        """Return (n, 4) depth [m], u, v and w [m/s] of rows; none, with mistakes added, of wrong
-        ones.
+        """Return (n, 4) depth [m], u, v and w [m/s] of rows.
+
+        If any row is wrong, the array is empty and the mistakes are added to `problems`.
 
         Parameters
         ----------
-        rows : of the table
-        problems : to add to
-        terms : how the current is to be taken
-        profile : (n,) which profile each row is of; None where all are of one
+        rows : rows of the table
+        problems : list to which mistakes are added
+        terms : options for reading the current
+        profile : (n,) index of the profile of each row; None if all rows form one profile
         """
         first = int(self.timed)
 

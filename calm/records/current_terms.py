@@ -1,4 +1,4 @@
-"""Terms on which a person wants currents taken, at which time, and what cannot be had."""
+"""Options for reading currents, choice of a time, and limits of plausible values."""
 
 import re
 from dataclasses import dataclass
@@ -18,22 +18,22 @@ IMPOSSIBLE = (
     "an infinite or negative speed, or a direction outside -360 to 360°: a fill value, or "
     "another unit?"
 )
-"""What is said of a current whose speed is infinite in `too_fast`."""
+"""Message of `too_fast` for an infinite speed."""
 
 
 @dataclass(frozen=True)
 class Terms:
-    """Describe how a person wants the currents of a file to be taken.
+    """Options for reading the currents of a file.
 
     Attributes
     ----------
-    water_depth : places heights above the seabed [m]; inf where it is not known
-    place : whose column is wanted, where a file holds several
-    declination : of magnetic north from true north, positive to the east [degrees]; turns what
-        the file says is magnetic
-    maximum_speed : a faster current is a mistake of the file [m/s]
-    on_the_line : whether levels may be parts of a line by their labels, and currents that the file
-        flags as bad are kept with their flags; these are left out otherwise
+    water_depth : water depth, to convert heights above the seabed [m]; inf if unknown
+    place : position of the wanted grid column, for a file with several
+    declination : magnetic declination, positive to the east [degrees]; rotates currents that the
+        file refers to magnetic north
+    maximum_speed : speed above which a current is a mistake of the file [m/s]
+    on_the_line : whether levels may be labels of parts of a line, and bad currents are kept with
+        their flags; both are excluded otherwise
     """
 
     water_depth: float = inf
@@ -44,7 +44,7 @@ class Terms:
 
 
 def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
-    """Return what is wrong with a current beyond the greatest plausible speed; None if nothing is.
+    """Return a message if a current exceeds the maximum plausible speed, else None.
 
     Parameters
     ----------
@@ -62,28 +62,28 @@ def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
 
 
 def too_deep(depth: float) -> str | None:
-    """Return what is wrong with a depth [m] below that of any sea; None if it is not."""
+    """Return a message if a depth [m] exceeds `DEEPEST`, else None."""
     if not depth > DEEPEST:
         return None
     return f"depth {depth:g} m is deeper than any sea, {DEEPEST:g} m"
 
 
 ZONES_OF_UTC = ("UTC", "GMT", "Z", "ZULU", "UTC+0", "UTC+00:00", "+00:00", "ETC/UTC")
-"""What a zone is called that is no other than UTC, in capitals."""
+"""Names of time zones equivalent to UTC, in capitals."""
 
 
 _PART_OF_HOUR = re.compile(r"[^\d.,:]\d\d(?::?\d\d)?[.,]")
-"""A point after hours or minutes, as in `06.30`, of which `fromisoformat` makes 0.3 seconds."""
+"""Decimal point after hours or minutes, as in `06.30`, which `fromisoformat` reads as 0.3 s."""
 
 
 class TimeChoiceError(ValueError):
-    """The time asked for is none, is not in the record, or is needed and not given."""
+    """Error of a requested time: invalid, outside the record, or missing although needed."""
 
 
 def parse_time(text: str) -> np.datetime64:
-    """Return an ISO 8601 time in UTC [µs], in which it is taken where it names no zone.
+    """Parse an ISO 8601 time [µs]; UTC is the default zone.
 
-    TimeChoiceError: the text is no such time.
+    TimeChoiceError: the text is not a valid time.
     """
     try:
         if _PART_OF_HOUR.search(text):
@@ -95,16 +95,16 @@ def parse_time(text: str) -> np.datetime64:
 
 
 def time_text(time: np.datetime64) -> str:
-    """Return a time as a person reads it."""
+    """Format a time for display."""
     text: str = np.datetime_as_string(time.astype("datetime64[s]"))
     return text.removesuffix(":00")
 
 
 def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int, str | None]:
-    """Return the index of the time nearest to the one wanted, and a notice where it is another.
+    """Return the index of the time nearest to the requested one, and a notice if they differ.
 
-    TimeChoiceError: there is no time to choose from, several and none is wanted, or all lie to one
-    side.
+    TimeChoiceError: the file has no times, it has several and none is requested, or the request
+    lies outside the record.
     """
     if not len(times):
         raise TimeChoiceError("the file has no times")

@@ -1,7 +1,7 @@
-"""Tables in text: the sign between their cells, quotes, decimal commas, and where a cell stands.
+"""Tables in text: separators, quotes, decimal commas and the position of each cell.
 
-Cells are between tabs, semicolons, commas or blanks, whichever parts the lines alike; a cell may be
-in quotation marks. Empty lines and lines after ``#`` are left out.
+Cells are separated by tabs, semicolons, commas or blanks, whichever divides the lines most evenly;
+cells may be quoted. Empty lines and text after ``#`` are ignored.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ from calm.physics.line import Floats
 from calm.whole_file import decoded, read_content
 
 LARGEST_CSV = 50_000_000
-"""Largest table that is read whole [bytes]."""
+"""Maximum size of a table that is read whole [bytes]."""
 
 MOST_PROBLEMS = 20
-"""Most mistakes shown of one file; a wrong unit makes thousands of the same."""
+"""Maximum number of mistakes shown for one file; a wrong unit would cause thousands."""
 
 GAPS = frozenset({"", "nan", "na", "n/a", "-", "none", "null"})
-"""Cells, in small letters, that say that nothing was measured."""
+"""Lower-case cell texts that mark a missing value."""
 
 COMMENT = re.compile(rb"(?m)^([ \t]*#).*")
-"""A comment, whose letters may be of any encoding."""
+"""A comment; its text may have any encoding."""
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
-_SAMPLE = 200  # lines that tell how a table is written
-_LONGEST_CELL = 10  # lines of one cell in quotation marks
+_SAMPLE = 200  # lines from which the dialect is found
+_LONGEST_CELL = 10  # most lines of one quoted cell
 _SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", " ": "blank"}
 _QUOTED = r'"(?:[^"]|"")*"'
 _CELLS = {
@@ -53,16 +53,16 @@ NumberedLine = tuple[int, str]
 
 
 class NoTableError(ValueError):
-    """Say why a text is no table: which line is wrong, and how."""
+    """Error of a text that is not a table; the message gives the line and the fault."""
 
 
 @dataclass(frozen=True)
 class Dialect:
-    """Know the signs of a table in text.
+    """Separator and decimal sign of a table in text.
 
     Attributes
     ----------
-    separator : a tab, a semicolon or a comma; a blank stands for any run of blanks
+    separator : tab, semicolon, comma or blank; a blank means any run of blanks
     decimal : a point or a comma
     """
 
@@ -70,7 +70,7 @@ class Dialect:
     decimal: str = "."
 
     def cells(self, line: str) -> list[str]:
-        """Return the cells of a line without blanks and quotation marks, decimals with a point."""
+        """Return the cells of a line, stripped and unquoted, with decimal points."""
         if '"' in line:
             found = [text for _, text in self._placed(line)]
         elif self.separator == " ":
@@ -81,17 +81,17 @@ class Dialect:
         return [self.with_point(text) for text in found] if self.decimal == "," else found
 
     def column(self, line: str, cell: int) -> int:
-        """Return where a cell begins in its line, counted from 1; 1 where there is none."""
+        """Return the column at which a cell begins in its line, from 1; 1 for a missing cell."""
         placed = self._placed(line)
         return placed[cell][0] + 1 if cell < len(placed) else 1
 
     def with_point(self, cell: str) -> str:
-        """Return a number with a decimal comma as one with a point, and any other cell as it is."""
+        """Replace the decimal comma of a number by a point; other cells are unchanged."""
         found = _COMMA.fullmatch(cell) if self.decimal == "," else None
         return f"{found[1]}.{found[2]}{found[3]}" if found else cell
 
     def _placed(self, line: str) -> list[tuple[int, str]]:
-        """Return the cells of a line, each after its place in it."""
+        """Return the position and text of each cell of a line."""
         if self.separator == " ":
             return [(one.start(), _unquoted(one[0])) for one in _WORDS.finditer(line)]
         pattern, at, found = _CELLS[self.separator], 0, []
@@ -105,15 +105,15 @@ class Dialect:
 
 
 class CellRow(NamedTuple):
-    """Hold a line of a table as cells.
+    """A line of a table, divided into cells.
 
     Attributes
     ----------
-    path : of its file
-    number : of the line
-    line : as it stands
-    cells : without `skipped` ones before them
-    dialect : of the table
+    path : path of the file
+    number : line number
+    line : original text of the line
+    cells : cells of the line, without the first `skipped` cells
+    dialect : dialect of the table
     """
 
     path: Path
@@ -124,7 +124,7 @@ class CellRow(NamedTuple):
     skipped: int = 0
 
     def problem(self, message: str, cell: int | None = None) -> Problem:
-        """Return a mistake where a cell begins in the line; at its beginning without one."""
+        """Return a mistake located at a cell of the line, or at the start of the line."""
         at = 1 if cell is None else self.dialect.column(self.line, cell + self.skipped)
         return Problem(str(self.path), self.number, at, message)
 
@@ -140,9 +140,9 @@ class CellRow(NamedTuple):
         ]
 
     def below(self, number: int, line: str) -> CellRow:
-        """Return a line below this header as cells, by its number.
+        """Divide a line below this header into cells.
 
-        Between blanks, a time may be a date and a clock, which are two words.
+        In tables separated by blanks, a time may consist of two words: a date and a clock time.
         """
         cells, skipped = self.dialect.cells(line), self.skipped
         if self.dialect.separator == " " and len(cells) == len(self.cells) + skipped + 1:
@@ -152,13 +152,13 @@ class CellRow(NamedTuple):
 
 @dataclass(frozen=True)
 class TextTable:
-    """Hold a table of a file: its header, and the rows below it."""
+    """Table of a file: its header, and the rows below."""
 
     header: CellRow
     rows: Sequence[CellRow]
 
     def whole_rows(self, problems: list[Problem]) -> list[CellRow]:
-        """Return the rows with as many cells as the header; mistakes are added for the others."""
+        """Return the rows with as many cells as the header; the others are added to `problems`."""
         whole = []
         for row in self.rows:
             problems += row.mixed_decimals()
@@ -173,11 +173,11 @@ class TextTable:
 
 @dataclass(frozen=True)
 class CopiedTable:
-    """Hold the cells of a text that was copied.
+    """Cells of copied text.
 
     Attributes
     ----------
-    headings : of the columns; None where the first line is one of numbers
+    headings : column headings; None if the first line holds numbers
     rows : cells without the blanks around them, as many in each as there are columns
     """
 
@@ -186,13 +186,13 @@ class CopiedTable:
 
 
 def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = None) -> TextTable:
-    """Return the table of a file of UTF-8 text.
+    """Read a table from a file of UTF-8 text.
 
     Parameters
     ----------
-    path : of the file
-    example : of a header, for messages
-    lines : that another reader made of the file
+    path : path of the file
+    example : sample header, for messages
+    lines : numbered lines of the file, if another reader has already split it
 
     Raises
     ------
@@ -209,15 +209,15 @@ def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = 
 def table_lines(
     path: Path, lines: Iterable[NumberedLine], example: str
 ) -> tuple[CellRow, Iterator[NumberedLine]]:
-    """Return the header of a table and the lines below it, which are read as they are needed.
+    """Return the header of a table and an iterator over the lines below.
 
-    A first column without a heading numbers the rows, as R and pandas do, and is skipped.
+    An unnamed first column holds row numbers, as from R and pandas, and is skipped.
 
     Parameters
     ----------
-    path : of its file
+    path : path of the file
     lines : all lines of the file
-    example : of a header, for messages
+    example : sample header, for messages
 
     Raises
     ------
@@ -245,10 +245,10 @@ def table_lines(
 
 
 def copied_table(text: str) -> CopiedTable:
-    """Return the table of a text that was copied from a spreadsheet, a file or a page.
+    """Parse a table copied from a spreadsheet, a file or a web page.
 
-    A first line without a number is its headings. `calm.records.profile_tables` reads what it
-    holds. NoTableError: there are no rows, or rows of different length.
+    A first line without a number is a header. `calm.records.profile_tables` interprets the cells.
+    NoTableError: there are no rows, or rows differ in length.
     """
     lines = list(_content(enumerate(text.splitlines(), 1)))
     dialect = dialect_of([line.strip(" ") for _, line in lines])
@@ -269,18 +269,20 @@ def copied_table(text: str) -> CopiedTable:
 
 
 def cells_in(text: str) -> list[list[str]]:
-    """Return the cells of a text that need not begin with its headings, decimals as they stand."""
+    """Return the cells of a text that may lack a header; decimal signs are unchanged."""
     lines = [line for _, line in _content(enumerate(text.splitlines(), 1))]
     dialect = Dialect(dialect_of(lines[:_SAMPLE], words=True).separator)
     return [dialect.cells(line) for line in lines]
 
 
 def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
-    """Return how a table is written, by the sign that parts most of its lines into as many cells.
+    """Find the separator and the decimal sign of a table.
 
-    The lines are neither empty nor comments. Where cells are of several words no blank parts them.
-    Numbers have decimal commas where some have a comma that is none of thousands, and none has a
-    point.
+    The separator divides most lines into the same number of cells.
+
+    The lines must be neither empty nor comments. If `words`, cells may contain several words, and
+    blanks are no separator. The decimal sign is a comma if a number has a comma that cannot
+    separate thousands, and no number has a point.
     """
     best, most = ",", 0
     for separator in _SEPARATORS:
@@ -298,7 +300,7 @@ def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
 
 
 def no_number(cell: str) -> str | None:
-    """Return what is wrong with a cell that is to be a plain number; None where it is one."""
+    """Return a message if a cell is not a plain number, else None."""
     if NUMBER.fullmatch(cell):
         return None
     pointed = Dialect(";", ",").with_point(cell)
@@ -308,12 +310,12 @@ def no_number(cell: str) -> str | None:
 
 
 def is_gap(cell: str | None) -> bool:
-    """Return whether a cell says that nothing was measured."""
+    """Return whether a cell marks a missing value."""
     return cell is None or cell.lower() in GAPS
 
 
 def plain_numbers(cells: Sequence[str | None]) -> Floats | None:
-    """Return cells as numbers, NaN where they say so; None where one is anything else."""
+    """Convert cells to numbers, NaN for missing values; None if any cell is not a plain number."""
     try:
         found = np.array([float(cell) for cell in cells], np.float64)  # type: ignore[arg-type]
     except (TypeError, ValueError):
@@ -323,7 +325,7 @@ def plain_numbers(cells: Sequence[str | None]) -> Floats | None:
 
 
 def abridged(problems: list[Problem]) -> list[Problem]:
-    """Return the first mistakes in the order of the file, and how many more there are."""
+    """Return the first mistakes in the order of the file, and a count of further mistakes."""
     ordered = sorted(dict.fromkeys(problems), key=lambda one: (one.line, one.column))
     hidden = len(ordered) - MOST_PROBLEMS
     if hidden <= 0:
@@ -333,7 +335,7 @@ def abridged(problems: list[Problem]) -> list[Problem]:
 
 
 def _content(lines: Iterable[NumberedLine]) -> Iterator[NumberedLine]:
-    """Return the lines that are neither blank nor comments, cells of several lines in one."""
+    """Yield lines with content, with quoted cells that span lines joined into one line."""
     begun: list[NumberedLine] = []
     for number, line in lines:
         if not begun and (not line.strip() or line.lstrip().startswith("#")):
@@ -359,7 +361,7 @@ def _unquoted(cell: str) -> str:
 
 
 def _begins_with_number(cell: str) -> bool:
-    """Return whether a cell is a number, with a unit behind it or not."""
+    """Return whether a cell is a number, with or without a unit."""
     cell = Dialect(";", ",").with_point(cell)
     number = NUMBER.match(cell)
     rest = cell[number.end() :] if number else "?"
@@ -370,11 +372,11 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\n")
 
 
 def table_csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return a table as CSV text; what is unknown, None or NaN, is left empty.
+    """Return a table as CSV text, with empty cells for None and NaN.
 
-    Numbers have twelve significant digits at most, so that none shows the noise of its computing.
-    A spreadsheet takes a text that begins with ``=``, ``+``, ``-`` or ``@`` for a formula: such
-    texts are written with an apostrophe before them.
+    Numbers have at most twelve significant digits, to hide rounding noise. An apostrophe precedes
+    texts that begin with ``=``, ``+``, ``-`` or ``@``, which spreadsheets would interpret as
+    formulas.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

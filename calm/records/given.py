@@ -22,21 +22,21 @@ def is_record(given: Any) -> bool:
 
 @contextmanager
 def as_file(given: Given) -> Iterator[Path]:
-    """The file of a record; a dataset or a table is in a temporary file while it is read."""
+    """Path of a record; a dataset or table is written to a temporary file meanwhile."""
     with TemporaryDirectory() as folder:
         yield Path(as_files(given, Path(folder), "record")[0])
 
 
 def as_files(given: Any, folder: Path, name: str) -> list[str]:
-    """Files of datasets and tables, which are written to a folder; paths stay as they are.
+    """Write datasets and tables to a folder, and return the paths of all records.
 
-    Datasets hold what NetCDF files hold that CALM reads. A table has the columns of a CSV file,
-    and may have times as its index.
+    Datasets need the same contents as a NetCDF file for CALM. Tables need the columns of a CSV
+    file; their index may hold the times.
 
     Parameters
     ----------
-    given : one record or several
-    folder, name : where to write, and how the names of the files begin
+    given : a record, or several
+    folder, name : output folder, and prefix of the file names
 
     Raises
     ------

@@ -1,6 +1,6 @@
-"""Grids at a place: the nearest column of currents with water, the depth of the seabed.
+"""Gridded data at a place: the nearest column of currents with water, and the seabed depth.
 
-Depths of the seabed are those of GEBCO, EMODnet or a survey.
+Seabed depths may come from GEBCO, EMODnet or a survey.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 REACH = 8
-"""Columns to each side of the nearest among which one with water is looked for."""
+"""Columns on each side of the nearest one that are searched for water."""
 
 FAR = 5.0
-"""Distance beyond which the place of a record of a single place is reported [km]."""
+"""Distance from the mooring above which the place of a single-point record is reported [km]."""
 
 _EARTH = 6371.0
 _LATITUDES = ("lat", "latitude", "LATITUDE", "nav_lat", "Latitude", "LAT")
@@ -40,9 +40,9 @@ class GridColumn:
 
     Attributes
     ----------
-    index : of every horizontal dimension
-    place : where it is, None where the file does not say
-    notes : how it was found
+    index : index along every horizontal dimension
+    place : position of the column, None if the file does not give it
+    notes : remarks on the choice
     """
 
     index: dict[str, int]
@@ -51,7 +51,7 @@ class GridColumn:
 
 
 def is_regular(dataset: xr.Dataset) -> bool:
-    """Return whether latitude and longitude are axes of their own: x is east, y is north."""
+    """Return whether latitude and longitude are separate axes: x is east, y is north."""
     latitudes = {dataset[name].dims for name in _named(dataset, "latitude", _LATITUDES)}
     longitudes = {dataset[name].dims for name in _named(dataset, "longitude", _LONGITUDES)}
     alone = all(len(dims) == 1 for dims in latitudes | longitudes)
@@ -61,7 +61,7 @@ def is_regular(dataset: xr.Dataset) -> bool:
 def choose_column(
     dataset: xr.Dataset, velocity: tuple[str, str], time: str | None, wanted: Place | None
 ) -> GridColumn:
-    """Return the column of a place; the only one where there is but one.
+    """Select the grid column nearest to a place, or the only column.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def choose_column(
 
 
 def written(place: Place) -> str:
-    """Return a place as a person reads it."""
+    """Format a place for display."""
     latitude, longitude = place[0], _signed(place[1])
     return (
         f"{abs(latitude):.6g}° {'S' if latitude < 0 else 'N'} "
@@ -134,7 +134,7 @@ def _named(dataset: xr.Dataset, coordinate: str, usual: tuple[str, ...]) -> list
 
 
 def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.DataArray] | None:
-    """Return latitude and longitude of the columns that the dimensions span."""
+    """Return latitude and longitude over the given dimensions; None if either is missing."""
     found = []
     for coordinate, usual in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
         named = [dataset[name] for name in _named(dataset, coordinate, usual)]
@@ -142,7 +142,7 @@ def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.Da
         fitting = [one for one in numbers if one.size == 1 or set(one.dims) <= dims]
         if not fitting:
             return None
-        # the one that varies, before a nominal position
+        # a position that varies precedes a nominal one
         found.append(max(fitting, key=lambda one: one.size))
     return found[0], found[1]
 
@@ -168,9 +168,9 @@ def _box(
 
 
 def _nearest(away: Floats) -> NDArray[Any]:
-    """Return which points of an axis are nearest, `REACH` on either side, in their order.
+    """Return the indices of the nearest points of an axis, `REACH` on each side, in axis order.
 
-    Those of an axis of longitudes that goes round the earth may be its last and its first.
+    On a global longitude axis they may include both ends.
     """
     near = np.argsort(np.abs(away), kind="stable")[: 2 * REACH + 1]
     return near[np.argsort(away[near], kind="stable")]
@@ -179,9 +179,9 @@ def _nearest(away: Floats) -> NDArray[Any]:
 def _wet(
     near: xr.Dataset, velocity: tuple[str, str], time: str | None, horizontal: list[str]
 ) -> NDArray[Any]:
-    """Return which columns have a current other than zero, which some models have on land.
+    """Return a mask of the columns with a nonzero current; some models have zero on land.
 
-    The first time, the middle and the last are asked: one may be a gap.
+    The first, middle and last times are tested, as any one time may be a gap.
     """
     if time in near.dims:
         count = near.sizes[time]
@@ -194,12 +194,12 @@ def _wet(
 
 
 def kilometres_from(latitude: Any, longitude: Any, place: Place) -> NDArray[Any]:
-    """Return how far places are from another, along great circles [km].
+    """Return great-circle distances from a place [km].
 
     Parameters
     ----------
-    latitude, longitude : of the places [degrees]
-    place : the other one
+    latitude, longitude : coordinates of the places [degrees]
+    place : reference position
     """
     first, second = np.radians(latitude), np.radians(place[0])
     east = np.radians(longitude - place[1])
@@ -209,14 +209,14 @@ def kilometres_from(latitude: Any, longitude: Any, place: Place) -> NDArray[Any]
 
 
 def _spacing(latitude: NDArray[Any], longitude: NDArray[Any], at: tuple[Any, ...]) -> float:
-    """Return distance from a column to the farthest of those next to it [km]."""
+    """Return the distance from a column to its farthest neighbour [km]."""
     around = tuple(slice(max(i - 1, 0), i + 2) for i in at)
     place = float(latitude[at]), float(longitude[at])
     return float(np.nanmax(kilometres_from(latitude[around], longitude[around], place)))
 
 
 def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple[str, ...]:
-    """Return what to report about a record whose place changes, such as that of a drifter."""
+    """Return notices on a record of changing position, such as a drifter's."""
     found = []
     for which in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
         moving = [name for name in _named(dataset, *which) if dataset[name].dims == (time,)]
@@ -253,24 +253,24 @@ def _turned(degrees: Any) -> Any:
 
 
 def _signed(longitude: float) -> float:
-    """Return a longitude between −180° and 180°; as it stands where it is there already."""
+    """Return a longitude between −180° and 180°."""
     return longitude if -180.0 <= longitude <= 180.0 else float(_turned(longitude))
 
 
 _UP, _DOWN = ("elevation", "z", "Band1", "topo"), ("depth", "deptho", "bathymetry")
-_MOST = 1000  # nodes that are read along a side; of a finer grid not every one
+_MOST = 1000  # most nodes read along a side; finer grids are thinned
 
 
 @dataclass(frozen=True)
 class SeabedGrid:
-    """Depths about a point, linear between nodes; the file is read when they are asked for.
+    """Seabed depths around a point, interpolated linearly; the file is read on first use.
 
     Attributes
     ----------
-    path, sha256 : of the file
-    latitude, longitude : of the origin of the mooring's places [degrees]
-    reach : how far from it nodes count, east and north [m]
-    east, north : of the point, from the origin [m]
+    path, sha256 : path and checksum of the file
+    latitude, longitude : origin of the mooring's coordinates [degrees]
+    reach : distance up to which nodes are read, east and north [m]
+    east, north : offset of the point from the origin [m]
     """
 
     path: str
@@ -283,7 +283,10 @@ class SeabedGrid:
 
     @classmethod
     def of_file(cls, path: Path, latitude: float, longitude: float, reach: float) -> SeabedGrid:
-        """Return that of a file at a position; InputError where it cannot be understood."""
+        """Open the grid of a file around a position.
+
+        InputError: the file is unreadable, or has no positive depth at the position.
+        """
         if path.suffix.lower() in (".tif", ".tiff"):
             turn = f"gdal_translate -of netCDF {path.name} {path.stem}.nc"
             raise refused(path, f"is a GeoTIFF, which is not read; turn it into NetCDF: `{turn}`")
@@ -300,37 +303,36 @@ class SeabedGrid:
         return grid
 
     def at(self, east: float, north: float) -> SeabedGrid:
-        """Return the same about another point, by its distance from this one [m]."""
+        """Return the grid around another point, given by its offset from this point [m]."""
         return replace(self, east=self.east + east, north=self.north + north)
 
     @property
     def depth(self) -> float:
-        """Depth at the point [m]; NaN outside the grid, and where it has none."""
+        """Depth at the point [m]; NaN outside the grid and in its gaps."""
         return float(self._depths(np.zeros((1, 2)))[0])
 
     def deeper(self, places: Floats) -> Floats:
-        """Return how much deeper it is (n,) at places (n, 2) east and north of the point [m]."""
+        """Return the depth (n,) at places (n, 2) less that of the point [m].
+
+        Places are given by their distances east and north of the point [m].
+        """
         return self._depths(places) - self.depth
 
     @property
     def slope(self) -> float:
-        """The steepest slope to a node's distance from the point [degrees]."""
+        """Steepest slope of the seabed, over one node spacing [degrees]."""
         across, along = np.abs(self._falls).max(axis=1)
         return float(np.degrees(np.arctan(np.hypot(across, along))))
 
     @property
     def plane(self) -> tuple[float, float]:
-        """Return how much deeper it is per metre to the east and to the north [-]: the mean over a
-        node's distance to either side.
-        """
+        """Depth gradient to the east and to the north [-], over one node spacing on each side."""
         east, north = self._falls.mean(axis=1).tolist()
         return east, north
 
     @property
     def _falls(self) -> Floats:
-        """Return how much deeper it is per metre along east (2,) and north (2,), on either side
-        [-].
-        """
+        """One-sided depth gradients along east (2,) and north (2,), over one node spacing [-]."""
         step = float(np.diff(_nodes(self.at(-self.east, -self.north))[0]).mean())
         rises = self.deeper(step * np.array([(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]))
         falls = rises.reshape(2, 2) * np.array([1.0, -1.0]) / step

@@ -1,7 +1,7 @@
-"""Columns of tables in text, and their headings: a name and its unit, as people write them.
+"""Column headings of text tables: a name and its unit, in the common notations.
 
 ``depth[m]``, ``Depth (m)``, ``depth m``, ``toward[deg magnetic]``, ``time (UTC)``. A name of
-several words needs brackets around its unit, or a unit that is known.
+several words needs brackets around its unit, or a known unit.
 """
 
 import re
@@ -26,10 +26,10 @@ _MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 
 
 def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
-    """Return the name and the unit of a heading; the unit is empty where it gives none.
+    """Split a heading into its name and unit; the unit is empty if missing.
 
-    A name of several words ends where a unit of one of the dimensions of `calm.units.DIMENSIONS`
-    begins.
+    If `dimensions` (keys of `calm.units.DIMENSIONS`) are given, a name of several words ends where
+    a known unit begins, preferably one of these dimensions.
     """
     text = " ".join(column.split())
     bracketed = _BRACKETED.fullmatch(text)
@@ -58,9 +58,9 @@ def column_unit(
     Parameters
     ----------
     column : its heading, for the message
-    unit : that it gives
-    dimensions : those it may be of, of `calm.units.DIMENSIONS`
-    usual : the unit to offer; that of SI where it is empty
+    unit : unit in the heading, may be empty
+    dimensions : allowed dimensions, keys of `calm.units.DIMENSIONS`
+    usual : unit to suggest; by default that in SI
 
     Raises
     ------
@@ -86,12 +86,12 @@ def column_unit(
 
 
 def is_time(column: str) -> bool:
-    """Return whether a heading is that of the times."""
+    """Return whether a heading is the heading of the time column."""
     return heading(column)[0].lower() == "time"
 
 
 def zone_complaint(column: str) -> str | None:
-    """Return what is wrong with a heading of times that gives another zone than UTC."""
+    """Return a message if the heading of a time column names a zone other than UTC, else None."""
     zone = heading(column)[1]
     if not zone or zone.upper() in ZONES_OF_UTC:
         return None
@@ -102,7 +102,7 @@ def zone_complaint(column: str) -> str | None:
 
 
 def magnetic_columns(columns: Sequence[str]) -> tuple[list[str], set[str]]:
-    """Return headings without the word for their north, and the names of those that had one."""
+    """Return headings without the word ``magnetic``, and the names of the columns that had it."""
     plain = [_without_north(column) for column in columns]
     pairs = zip(columns, plain, strict=True)
     return plain, {heading(column)[0].lower() for column, other in pairs if column != other}
@@ -128,15 +128,15 @@ _INFINITE = ("inf", "infinity")
 
 @dataclass(frozen=True)
 class NamedColumns:
-    """Hold the rows of a table whose columns are known by name.
+    """Rows of a table with its known columns identified by name.
 
     Attributes
     ----------
-    factors : of the known columns that are there, to SI (degrees)
-    places : of the known columns in a row
-    rows : as many cells in each as there are headings
+    factors : factors to SI (degrees) of the known columns present
+    places : index of each known column in a row
+    rows : rows with as many cells as the header
     others : headings of the other columns
-    header : of the table
+    header : header of the table
     """
 
     factors: Mapping[str, float]
@@ -146,19 +146,19 @@ class NamedColumns:
     header: delimited.CellRow
 
     def lacks(self, name: str, unit: str) -> Problem:
-        """Return the mistake that there is no column of a name, for which a unit is offered."""
+        """Return the mistake of a missing column, with a suggested unit."""
         message = unknown(f"there is no column `{name}[{unit}]`", name, self.others or [name])
         return self.header.problem(message)
 
 
 @dataclass(frozen=True)
 class TimeColumns:
-    """Hold the columns of a table over time.
+    """Columns of a table over time.
 
     Attributes
     ----------
     time : (n,) to the nanosecond, rising
-    names, dimensions : of the columns; dimensions are those of `calm.units.DIMENSIONS`
+    names, dimensions : labels and dimensions of the columns; keys of `calm.units.DIMENSIONS`
     values : (n, c) in SI, NaN in gaps
     """
 
@@ -175,14 +175,14 @@ def read_named_columns(
     *,
     other_names: Mapping[str, str] = MappingProxyType({}),
 ) -> NamedColumns:
-    """Return the cells of a table as they stand; mistakes of its form are added to `problems`.
+    """Find the known columns of a table; mistakes of form are added to `problems`.
 
     Parameters
     ----------
-    table : of a file
+    table : table of a file
     known : dimensions of the columns by their names, blanks in which may be underscores
-    problems : to add to
-    other_names : what columns may be called too
+    problems : list to which mistakes are added
+    other_names : alternative names of columns
     """
     header = table.header
     names = [heading(column)[0].lower().replace(" ", "_") for column in header.cells]
@@ -206,13 +206,13 @@ def read_named_columns(
 
 
 def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> TimeColumns:
-    """Return a table of times and quantities, each column headed by a label and its unit.
+    """Read a table of times and quantities; each heading has a label and its unit.
 
     Parameters
     ----------
-    path : of the table
-    dimensions : what the columns may be, of `calm.units.DIMENSIONS`
-    example : of a heading, for messages
+    path : path of the table
+    dimensions : allowed dimensions of the columns, keys of `calm.units.DIMENSIONS`
+    example : sample heading, for messages
 
     Raises
     ------
@@ -261,7 +261,10 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
 
 
 def _number_of(cell: str, factor: float, quantity: QuantityRange) -> float:
-    """Return the number of a cell in SI, NaN of a gap; QuantityError where it is none."""
+    """Return a cell in SI, NaN for a gap.
+
+    QuantityError: the cell is not a quantity.
+    """
     if delimited.NUMBER.fullmatch(cell):
         return float(cell) * factor
     if delimited.is_gap(cell) or cell.lower().lstrip("+-") in _INFINITE:

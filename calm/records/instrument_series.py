@@ -1,8 +1,8 @@
-"""Series of the instruments of a mooring: temperature, salinity, velocity over time.
+"""Time series from the instruments of a mooring: temperature, salinity, velocity.
 
-A file holds several instruments along a dimension, as `calm motion` takes them, or one, as archives
-keep them (OceanSITES, IMOS). Who an instrument is, its file says by a label, a serial number or a
-nominal place.
+A file holds several instruments along a dimension, as for `calm motion`, or a single instrument, as
+in archives (OceanSITES, IMOS). The file identifies an instrument by a label, a serial number or a
+nominal depth.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _ENDINGS = (".nc", ".cnv", ".use", ".microcat", ".rcm")
 _SAID = ", ".join(_ENDINGS)
 
 INTERPOLATED = 8
-"""The flag of what was interpolated, which is no measurement."""
+"""Quality flag of interpolated values, which CALM rejects as measurements."""
 
 _SERIALS = (
     "serial", "serial_number", "SERIAL", "instrument_serial", "instrument_serial_number",
@@ -42,12 +42,12 @@ _ONE_PLACE = ("instrument_nominal_depth", "nominal_depth", "sensor_depth")
 
 @dataclass(frozen=True)
 class Identity:
-    """Tell who an instrument is, as its file says.
+    """Identity of an instrument, from its file.
 
     Attributes
     ----------
-    label, serial : empty where its file does not say
-    nominal : its nominal depth [m]; NaN where its file does not say
+    label, serial : label and serial number; empty if missing in the file
+    nominal : nominal depth [m]; NaN if missing in the file
     source : name of its file
     """
 
@@ -58,29 +58,29 @@ class Identity:
 
     @property
     def known(self) -> bool:
-        """Return whether its file says anything of it."""
+        """Whether the file identifies the instrument."""
         return bool(self.label or self.serial) or np.isfinite(self.nominal)
 
     @property
     def named(self) -> str:
-        """Return what a person calls it."""
+        """Name of the instrument for display."""
         return self.label or self.serial or self.source
 
 
 @dataclass(frozen=True)
 class InstrumentSeries(Identity):
-    """Hold what one instrument measured of one quantity.
+    """Time series of a quantity from one instrument.
 
     Attributes
     ----------
     time : (n,) to the nanosecond, rising
-    value : (n,) in the unit of its quantity; NaN where not measured, or the flag is not wanted
+    value : (n,) in the unit of the quantity; NaN if missing or rejected by its flag
     dropped : readings that were left out for their flag
-    below : depth of what is measured below the instrument, a profiler's [m]
-    note : what a person should know before trusting it
-    card : what was read from its file
-    pressure : median of those in its file [dbar]; NaN without
-    called : what its own file calls it, whatever label a person gives; empty where it does not
+    below : depth of a profiler's bin below the instrument [m]
+    note : remarks on doubts and assumptions
+    card : summary card of the file
+    pressure : median pressure in the file [dbar]; NaN without pressures
+    called : label in the file, regardless of the label given by the user; empty if missing
     """
 
     time: NDArray[np.datetime64]
@@ -93,18 +93,18 @@ class InstrumentSeries(Identity):
     called: str = ""
 
     def judged(self, quantity: str, variable: str, notes: Sequence[str] = ()) -> InstrumentSeries:
-        """Return it without values that cannot be, and with what is doubtful in its note.
+        """Return the series without impossible values, with the doubts added to its note.
 
         Parameters
         ----------
-        quantity : name of what was measured
-        variable : that it was read from
-        notes : what is said besides
+        quantity : name of the quantity
+        variable : source variable
+        notes : further remarks
 
         Raises
         ------
         UnreadableError
-            Most values are those of no sea water: its unit is another.
+            Most values are impossible for sea water, so the unit must be wrong.
         """
         value, said = self.value, [*notes]
         if quantity in WATER:
@@ -125,19 +125,19 @@ class InstrumentSeries(Identity):
 def read_series(
     given: Sequence[str], names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
-    """Return what files hold of some quantities, by the name of these.
+    """Read the series of several quantities from files; the keys are the names of the quantities.
 
     Parameters
     ----------
-    given : a path each, or ``LABEL=PATH`` of a file of one instrument, or a folder of such files
-    names : of `QUANTITIES_MEASURED`
-    flags : quality flags of what counts as measured, where there are any; 8 never does
-    seabed : depth of the water, for nominal heights above it [m]; NaN where not known
+    given : paths of files, ``LABEL=PATH`` for a file of one instrument, or folders of such files
+    names : keys of `QUANTITIES_MEASURED`
+    flags : accepted quality flags, for files with flags; 8 is never accepted
+    seabed : water depth, for nominal heights above the seabed [m]; NaN if unknown
 
     Raises
     ------
     InputError
-        A file is none, cannot be read, or has none of the quantities, or one without its unit.
+        A file is missing or unreadable, has none of the quantities, or omits a unit.
     UsageError
         A label is given for a file of several instruments.
     """
@@ -159,9 +159,9 @@ def read_series(
 
 
 def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
-    """Return the files of some arguments, each with the label that is given for it, or ``""``.
+    """Return the files of the arguments, each with its given label or ``""``.
 
-    InputError: there is no such file, or a folder has no NetCDF files.
+    InputError: a file does not exist, or a folder has no NetCDF files.
     """
     found: list[tuple[str, Path]] = []
     problems = []
@@ -182,7 +182,7 @@ def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
 
 
 def split_label(text: str) -> tuple[str, Path]:
-    """Return label and path of ``LABEL=PATH``; an empty label of a path alone."""
+    """Split ``LABEL=PATH`` into label and path; the label is empty for a path alone."""
     label, equals, path = text.partition("=")
     if equals and not Path(text).exists():
         return label.strip(), Path(path)
@@ -206,10 +206,11 @@ def _of_file(
 
 
 def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
-    """Return the datasets of instruments whose readings stand one after the other in a file.
+    """Split a dataset whose instruments follow each other along one dimension.
 
-    An index says whose a reading is, by its `instance_dimension` (CF's indexed ragged arrays, as in
-    the aggregated and hourly products of IMOS). A dataset without one is returned alone.
+    An index with `instance_dimension` assigns each reading to an instrument (CF's indexed ragged
+    arrays, as in the aggregated and hourly products of IMOS). A dataset without such an index is
+    returned alone.
     """
     for name, index in dataset.variables.items():
         instances = str(index.attrs.get("instance_dimension", ""))
@@ -228,15 +229,15 @@ PRESSURE = (
     ("sea_water_pressure_due_to_sea_water", "sea_water_pressure"),
     ("PRES_REL", "PRES", "pressure", "pres"),
 )
-"""Standard names and usual names of quantities that others are computed from."""
+"""Standard and usual names of quantities used to compute others."""
 PASCALS_PER_DBAR = 1e4
-_LATITUDE = 45.0  # where the file does not say: pressures of depths differ by 0.3 % at most
-_FEWEST = 6  # zeros, of which it is no chance that there is nothing else
+_LATITUDE = 45.0  # default; it changes the pressure at a depth by 0.3 % at most
+_FEWEST = 6  # least length of a series of zeros alone that is a fault
 
 
 @dataclass(frozen=True)
 class _SeriesFile:
-    """A dataset of instruments, the name of its file, and how it is read; see `read_series`."""
+    """A dataset of instruments, with its file name and the options of `read_series`."""
 
     dataset: xr.Dataset
     name: str
@@ -244,7 +245,7 @@ class _SeriesFile:
     seabed: float
 
     def series(self, name: str) -> list[InstrumentSeries]:
-        """Return what the instruments measured of a quantity; nothing where they did not."""
+        """Return the series of a quantity, one per instrument; empty if the file lacks it."""
         dataset, quantity = self.dataset, QUANTITIES_MEASURED[name]
         current = self._velocity(quantity) if quantity.dimension == "speed" else None
         if current is not None:
@@ -286,7 +287,7 @@ class _SeriesFile:
         who: Sequence[Identity],
         current: velocity.Velocity | None,
     ) -> tuple[Floats, list[str]]:
-        """Return (n, k) a quantity in its unit, and what is said of how it was computed."""
+        """Return values (n, k) in the unit of the quantity, and notes on their computation."""
         first = self.dataset[next(iter(taken.values()))]
         if current is not None:
             dimensions = ("speed", "speed" if current.turn is None else "angle")
@@ -304,7 +305,7 @@ class _SeriesFile:
         return found.values[0], []
 
     def _median_pressure(self, found: Readings) -> float:
-        """Return the median pressure of the one instrument of a file [dbar]; NaN without."""
+        """Return the median pressure of a single-instrument file [dbar]; NaN without pressures."""
         names = named(self.dataset, *PRESSURE)[:1]
         if found.along is not None or not names:
             return float("nan")
@@ -313,7 +314,7 @@ class _SeriesFile:
         return float(np.median(known)) if known.size else float("nan")
 
     def _velocity(self, quantity: MeasuredQuantity) -> velocity.Velocity | None:
-        """Return the velocity of the file; None where it has none."""
+        """Return the velocity of the file; None if it has none."""
         try:
             current = velocity.find_velocity(self.dataset, regular=False)
         except UnreadableError:
@@ -329,7 +330,10 @@ class _SeriesFile:
         return current
 
     def _bins(self, along: str, time: str) -> Floats:
-        """Return how far the bins of a profiler are below it [m]; nowhere else are they known."""
+        """Return the depths of a profiler's bins below it [m].
+
+        UnreadableError: the dimension is not one of bins.
+        """
         levels = find_levels(self.dataset, along, time, self.seabed)
         if levels.instrument is None or time in levels.variable.dims:
             raise UnreadableError(f"`{along}` counts neither instruments nor bins of a profiler")
@@ -337,9 +341,10 @@ class _SeriesFile:
 
 
 def conductivity_in(dataset: xr.Dataset) -> dict[str, str]:
-    """Return the variables that a salinity is computed from, by what they are.
+    """Return the variables from which salinity is computed, by quantity.
 
-    Conductivity, temperature and, where there is one, pressure; none without the first two.
+    They are conductivity, temperature and, if present, pressure. The result is empty unless the
+    dataset has the first two.
     """
     temperature = QUANTITIES_MEASURED["temperature"]
     sought = {
@@ -355,13 +360,13 @@ def conductivity_in(dataset: xr.Dataset) -> dict[str, str]:
 def practical_salinity(
     dataset: xr.Dataset, taken: Mapping[str, str], values: Sequence[Floats], depth: Floats
 ) -> Floats:
-    """Return practical salinities (PSS-78) by TEOS-10.
+    """Compute practical salinity (PSS-78) by TEOS-10.
 
     Parameters
     ----------
-    taken : see `conductivity_in`
-    values : of these variables as they stand, all of one shape
-    depth : whose pressure counts where none is measured [m]; 10 m amiss are 0.004 in salinity
+    taken : variables as returned by `conductivity_in`
+    values : values of these variables in their file units, with equal shapes
+    depth : depth for a missing pressure [m]; an error of 10 m changes salinity by 0.004
     """
     import gsw
 
@@ -387,10 +392,10 @@ def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
 
 
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
-    """Return the variables of the first standard name that any has, or else of a usual name.
+    """Return the variables with the first standard name present, else with a usual name.
 
-    UnreadableError: there are several, and none is called as usual; or one that is called as usual
-    is of another standard name.
+    UnreadableError: there are several, and none has a usual name; or a variable with a usual name
+    has another standard name.
     """
     there = _standard(dataset, sought)
     known = [one for one in usual if one in (there or dataset.data_vars)]
@@ -411,13 +416,13 @@ def _standard(dataset: xr.Dataset, sought: Sequence[str]) -> list[str]:
 
 @dataclass(frozen=True)
 class Readings:
-    """Hold what variables say of k instruments at n times.
+    """Values of several variables for k instruments at n times.
 
     Attributes
     ----------
     time : (n,) rising
-    axis, along : dimension of the times, and of the instruments; None of a single one
-    values : (n, k) of each variable, as they stand
+    axis, along : dimensions of the times and of the instruments; None for a single instrument
+    values : (n, k) of each variable, in file units
     dropped : (n, k) which are left out for the flag of any
     clock : name and unit of the times
     flags : readings that are left out, by the variable of flags
@@ -432,7 +437,7 @@ class Readings:
     flags: dict[str, int]
 
     def series(self, value: Floats, who: Sequence[Identity]) -> list[InstrumentSeries]:
-        """Return what each instrument measured, by values (n, k) that were made of these."""
+        """Build the series of each instrument from values (n, k) that were computed from these."""
         counts = self.dropped.sum(axis=0).tolist()
         return [
             InstrumentSeries(**vars(one), time=self.time, value=column, dropped=count)
@@ -441,12 +446,12 @@ class Readings:
 
 
 def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -> Readings:
-    """Return the readings of some variables of the same dimensions.
+    """Read several variables that share their dimensions.
 
     Parameters
     ----------
-    names : of the variables
-    flags : of what counts as measured; 8 never does
+    names : names of the variables
+    flags : accepted quality flags; 8 is never accepted
 
     Raises
     ------
@@ -488,12 +493,12 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
 def card_of(
     dataset: xr.Dataset, source: str, taken: Mapping[str, str], found: Readings
 ) -> ReadCard:
-    """Return the card of readings.
+    """Return the summary card of readings.
 
     Parameters
     ----------
     source : name of the file
-    taken : names of the variables, by what each was taken for, in the order of the readings
+    taken : names of the variables by role, in the order of the readings
     """
     summaries = {}
     for (meaning, name), values in zip(taken.items(), found.values, strict=True):
@@ -507,11 +512,11 @@ def card_of(
 
 
 def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str) -> list[Identity]:
-    """Return who the instruments along a dimension are.
+    """Identify the instruments along a dimension.
 
     Parameters
     ----------
-    along : None for the one instrument of a file
+    along : dimension of the instruments; None for a file of one instrument
     seabed : depth of the water, for heights above it [m]
     source : name of the file
     """
@@ -533,7 +538,7 @@ def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str
 
 
 def _serials(dataset: xr.Dataset, dims: tuple[str, ...]) -> list[str]:
-    """Return the serial numbers over some dimensions; none where the file has none."""
+    """Return the serial numbers along the given dimensions; empty if the file has none."""
     for name in first_present(dataset, _SERIALS):
         if dataset[name].dims == dims:
             # IMOS has `deployment; model; serial number` in `instrument_id`

@@ -1,8 +1,8 @@
-"""Text files of one instrument, as datasets like those of archives.
+"""Text files of one instrument, converted to datasets in the form of archives.
 
-RODB files, `.use`, `.microcat` and `.rcm` of RAPID and OSNAP, have lines ``Name = value`` above
-columns in known units. Sea-Bird's `.cnv` files name each column, with its unit, in their head, and
-so do the tables of RBR's own library.
+RODB files (`.use`, `.microcat` and `.rcm` of RAPID and OSNAP) have lines ``Name = value`` above
+columns in known units. Sea-Bird's `.cnv` files and the tables of RBR's library name each column and
+its unit in their headers.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     import xarray as xr
 
 LARGEST = 500_000_000
-"""Largest file that is read [bytes]."""
+"""Maximum file size [bytes]."""
 
 AIR = 10.1325
 """Pressure of the air [dbar]."""
-_HEAD = 100_000  # bytes in which a head ends
+_HEAD = 100_000  # bytes searched for a header
 _WHAT = {
     "temperature": ("TEMP", "sea_water_temperature"),
     "conductivity": ("CNDC", "sea_water_electrical_conductivity"),
@@ -65,12 +65,12 @@ _MISSING = (-9999.0, -999.0, -99.999, -9.99e-29, 1e35)
 
 
 def reader_of(path: Path) -> Callable[[Path], xr.Dataset] | None:
-    """Return what reads a text file of an instrument; None of any other file.
+    """Return the reader for a text file of an instrument; None for any other file.
 
-    It returns what the file holds, in the names and attributes of OceanSITES. Times are seconds
-    since 1970; values are NaN where they are missing. A current has its depth in
-    `INSTRUMENT_DEPTH`: that of the pressure, by TEOS-10, or the nominal one. InputError: it cannot
-    be read, has no times, or a row that is none.
+    The reader returns a dataset with the names and attributes of OceanSITES. Times are seconds
+    since 1970, and missing values are NaN. A current has its depth in `INSTRUMENT_DEPTH`, computed
+    from pressure by TEOS-10, else nominal. InputError: the file is unreadable, has no times, or has
+    an invalid row.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD).decode("latin-1")
@@ -89,7 +89,7 @@ def _dataset(
     latitude: float = math.nan,
     serial: str = "",
 ) -> xr.Dataset:
-    """Return columns, by what they are and their unit, as a dataset."""
+    """Build a dataset from columns, with (quantity, unit) as keys."""
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
     import xarray as xr
 
@@ -114,7 +114,7 @@ def _dataset(
 def _depths(
     columns: dict[tuple[str, str], Floats], count: int, nominal: float, latitude: float
 ) -> Floats:
-    """Return depths [m] of the pressures, and the nominal one where there is none."""
+    """Return depths [m] from pressures, or the nominal depth in their gaps."""
     import gsw
 
     pressure = columns.get(("pressure", "dbar"), np.full(count, np.nan))
@@ -141,7 +141,7 @@ def _rodb(path: Path) -> xr.Dataset:
     of = dict(zip(names, values.T, strict=True))
     year, month, day = (of[name].astype(np.int64) for name in _DATE[:3])
     months = (year - 1970).astype("M8[Y]").astype("M8[M]") + (month - 1)
-    seconds = np.rint(of.get("HH", np.zeros(len(values))) * 3600.0)  # it has five digits
+    seconds = np.rint(of.get("HH", np.zeros(len(values))) * 3600.0)  # hours have five digits
     time = months.astype("M8[us]") + (day - 1) * np.timedelta64(1, "D")
     columns = {_RODB[name]: of[name] for name in names if name in _RODB}
     latitude = said.get("latitude", "nan")
@@ -185,7 +185,7 @@ def _cnv(path: Path) -> xr.Dataset:
         assert start is not None
         text = start[1] if ":" in start[1] else f"{start[1]} 00:00:00"
         epoch = np.datetime64(datetime.strptime(text, "%b %d %Y %H:%M:%S"), "us")
-        if clock[1].startswith("timeJ"):  # days of the year, its first being 1
+        if clock[1].startswith("timeJ"):  # day of the year, from 1
             epoch, seconds = epoch.astype("M8[Y]").astype("M8[us]"), seconds - 86_400.0
     time = epoch + np.rint(seconds * 1e3).astype("m8[ms]")
     serial = re.search(r"(?m)^\* (?:Temperature|Conductivity) SN = (\S+)", head)
@@ -193,7 +193,7 @@ def _cnv(path: Path) -> xr.Dataset:
 
 
 def _rbr(path: Path) -> xr.Dataset:
-    """Return a table of RSKtools, whose `pressure` holds that of the air."""
+    """Read a table of RSKtools; its `pressure` includes the pressure of the air."""
     lines = _lines(path)
     first = sum(1 for line in lines if line.startswith("//") or not line.strip())
     head = next((line for line in lines[:first][::-1] if line.startswith("// timestamp")), "")
@@ -217,7 +217,7 @@ def _rbr(path: Path) -> xr.Dataset:
 
 
 def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats:
-    """Return the `count` columns of the lines that have any."""
+    """Return the `count` columns of the lines with content."""
     there = [i for i in range(first, len(lines)) if lines[i].strip()]
     rows, problems = [], []
     for i in there:

@@ -35,15 +35,15 @@ _STANDARD_DEPTH = "depth"
 
 @dataclass(frozen=True)
 class LevelDepths:
-    """Levels at ``start + sign * values``, positive down, `values` in metres.
+    """Levels at depths ``start + sign * values``, positive down, with `values` in metres.
 
     Attributes
     ----------
-    variable : its dimensions are those of the velocity, or fewer
-    factor : to metres, with the sign: negative where values grow upwards
+    variable : level variable; it has no dimension that the velocity lacks
+    factor : factor to metres with sign, negative if values increase upwards
     start : depth of their zero [m]
     instrument : depth of the instrument they are counted from, and its factor to metres
-    notes : what was assumed
+    notes : remarks on assumptions
     """
 
     variable: xr.DataArray
@@ -53,12 +53,12 @@ class LevelDepths:
     notes: tuple[str, ...]
 
     def vary_in(self, time: str | None) -> bool:
-        """Return whether the levels move with time."""
+        """Whether the levels move with time."""
         moving = [self.variable, *([self.instrument[0]] if self.instrument else [])]
         return any(time in one.dims for one in moving)
 
     def depths(self, time: str | None, index: Any) -> NDArray[Any]:
-        """Return the depths [m], times by levels; levels alone where they never move."""
+        """Return the depths [m] as times by levels, or as levels alone if these never move."""
 
         def values(variable: xr.DataArray) -> NDArray[Any]:
             chosen = variable.isel({time: index}) if time in variable.dims else variable
@@ -77,21 +77,21 @@ class LevelDepths:
 def find_levels(
     dataset: xr.Dataset, level: str | None, time: str | None, water_depth: float
 ) -> LevelDepths:
-    """Return the levels of a velocity that spreads over `level` and `time`, either of them None.
+    """Find the levels of a velocity with the dimensions `level` and `time`, either of them None.
 
-    Those that move with time come before those that do not.
+    Levels that move with time are preferred to fixed levels.
 
     Parameters
     ----------
-    dataset : of the velocity
-    level : its dimension of levels, None where it has none
-    time : its dimension of times, None where it has none
-    water_depth : where heights above the seabed begin [m]
+    dataset : dataset of the velocity
+    level : level dimension of the velocity, None if it has none
+    time : time dimension of the velocity, None if it has none
+    water_depth : water depth, the zero of heights above the seabed [m]
 
     Raises
     ------
     UnreadableError
-        There are none, or the file does not say which way they grow.
+        There are no levels, or the file does not define their direction.
     """
     standard, wanted = dataset.cf.standard_names, {level} - {None}
     names = [
@@ -119,7 +119,7 @@ def find_levels(
 
 @dataclass(frozen=True)
 class _Levels:
-    """The variable of the levels, and what tells where these are."""
+    """Level variable of a dataset and the evidence for its reference."""
 
     dataset: xr.Dataset
     variable: xr.DataArray
@@ -128,7 +128,7 @@ class _Levels:
     water_depth: float
 
     def placed(self) -> LevelDepths:
-        """Return the levels from the surface, the seabed or the instrument, as the file has it."""
+        """Return the levels relative to the surface, the seabed or the instrument."""
         levels, name = self.variable, self.variable.name
         if _MODEL_COORDINATE.fullmatch(str(levels.attrs.get("standard_name", ""))):
             raise UnreadableError(
@@ -163,7 +163,7 @@ class _Levels:
 
     @property
     def _sign(self) -> int:
-        """1 or -1 where all values other than zero have that sign, else 0; of the first time."""
+        """Sign that all nonzero values of the first time share, else 0."""
         moving = self.time in self.variable.dims
         first = self.variable.isel({self.time: slice(1)}) if moving else self.variable
         values = known_values(first)
@@ -172,9 +172,9 @@ class _Levels:
     def _from_instrument(self, way: str) -> LevelDepths:
         """Return levels counted from an instrument that looks up or down.
 
-        MHKiT adds the height of the instrument above the seabed to `range` where a person gives it,
-        or the instrument's depth where it looks down, and then calls the depth of the water
-        `depth`.
+        MHKiT adds the height of the instrument above the seabed to `range` if the user supplies
+        this height. For an instrument that looks down it adds the instrument's depth, and calls the
+        water depth `depth`.
         """
         name, factor = self.variable.name, self.factor if way == "down" else -self.factor
         if way not in ("up", "down"):
@@ -184,7 +184,7 @@ class _Levels:
                 "file)"
             )
         instrument, water = self._depths()
-        # Teledyne's offsets are of its head
+        # for Teledyne instruments, the offset is that of the head
         attributes = self.dataset.attrs
         by_hand = any(attributes.get(each) for each in ("range_offset", "h_deploy"))
         offset = by_hand and "rdi" not in str(attributes.get("inst_make", "")).lower()
@@ -205,7 +205,7 @@ class _Levels:
         return LevelDepths(self.variable, factor, 0.0, instrument, (note,))
 
     def _way_it_looks(self, words: str) -> str:
-        """Return whether an instrument looks ``"up"`` or ``"down"``; empty where nothing says."""
+        """Return the orientation of an instrument, ``"up"`` or ``"down"``; empty if unstated."""
         for word, way in (("above", "up"), ("below", "down")):
             if word in words.split():
                 return way
@@ -217,7 +217,7 @@ class _Levels:
         return "up" if up else "down"
 
     def _depths(self) -> tuple[_Depth | None, _Depth | None]:
-        """Return the depth of the instrument and that of the water, None where there is none."""
+        """Return the depths of the instrument and of the water, each None if unknown."""
         found: dict[bool, _Depth] = {}
         standard = self.dataset.cf.standard_names.get(_STANDARD_DEPTH, [])
         for name in first_present(self.dataset, [*standard, *_NAMES, "depth_avg"]):

@@ -17,13 +17,13 @@ _NEAR = 0.01
 
 _OPPOSITE = 150.0
 _SAME_WAY = 60.0
-"""Angles between currents that are opposite, at least, and that agree, at most [degrees]."""
+"""Minimum angle between opposite currents, and maximum angle between similar ones [degrees]."""
 
 _LEAST_REVERSED = 0.05
 """Minimum speed of a current with a reliable direction [m/s]."""
 
 _AT_THE_BED = 0.98
-"""Share of the water depth from which a level is at the seabed."""
+"""Share of the water depth below which a level counts as at the seabed."""
 
 _SHELF, _DEEP = 200.0, 1000.0
 _FASTEST = {_SHELF: 3.0, _DEEP: 1.5}
@@ -38,8 +38,8 @@ def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
 
     Parameters
     ----------
-    directions : of currents that flow [degrees], as they were written
-    name : of the column or key
+    directions : directions in which currents flow, in the original unit
+    name : name of the column or key
     """
     if not directions or max(map(abs, directions)) > _TURN:
         return
@@ -64,7 +64,7 @@ def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> I
     ----------
     depth : (n,) rising [m]
     u, v : (n,) to the east and to the north [m/s], without gaps
-    water_depth : [m]; inf where it is not known
+    water_depth : water depth [m]; inf if unknown
     """
     speed, toward = np.hypot(u, v), np.degrees(np.arctan2(u, v))
     yield from _reversed_levels(depth, speed, toward)
@@ -105,7 +105,7 @@ def strength_doubts(depth: Floats, speed: Floats, water_depth: float) -> Iterato
     Parameters
     ----------
     depth : (n,) of the levels [m]
-    speed : (n,) greatest at each [m/s]
+    speed : (n,) maximum at each depth [m/s]
     water_depth : [m]; inf if unknown
     """
     if not _SHELF < water_depth < inf:

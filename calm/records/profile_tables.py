@@ -21,12 +21,12 @@ from calm.records.profile_doubts import direction_doubts
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 Report = Callable[[Sequence[str | int], str], Problem]
-"""Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
+"""Function from a place, ``("columns", j)`` or ``("rows", i, j)``, and a message to a problem."""
 
 
 @dataclass(frozen=True)
 class QuantityTable:
-    """Hold a table of quantities as text, and where its mistakes go.
+    """A table of quantities as text, with the destination of its mistakes.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class QuantityTable:
         own
     rows : numbers, or quantities with a unit, as text
     report : makes a mistake of its place and a message
-    problems : to which mistakes are added
+    problems : list to which mistakes are added
     """
 
     columns: Sequence[str]
@@ -54,7 +54,7 @@ _NO_WAY = ("direction", "dir", "heading", "bearing")
 def read_columns(
     table: QuantityTable, known: Mapping[str, QuantityRange], gaps: Booleans | None = None
 ) -> dict[str, Floats]:
-    """Return the known columns by name, in SI, NaN where a value is wrong, or lacks in `gaps`."""
+    """Return the known columns in SI, by name; wrong values and missing ones in `gaps` are NaN."""
     columns, rows = table.columns, table.rows
     units = _read_headings(table, known)
     if len(units) == len(columns) and "depth" not in units:
@@ -82,7 +82,7 @@ def read_columns(
         if not unit and DIMENSIONS[quantity.dimension].unit and _bare(cells):
             try:
                 column_unit(columns[j], "", [quantity.dimension], quantity.usual_unit or "")
-            except QuantityError as error:  # once for the column, whatever its length
+            except QuantityError as error:  # report once per column
                 table.refuse(("columns", j), str(error))
                 continue
         for i, cell in zip(whole, cells, strict=True):
@@ -96,7 +96,7 @@ def read_columns(
 
 
 def _bare(cells: Sequence[str | None]) -> bool:
-    """Return whether two cells at least are numbers without a unit; zero needs none."""
+    """Return whether at least two cells are nonzero numbers without a unit."""
     numbers = (cell for cell in cells if cell is not None and _BARE_NUMBER.fullmatch(cell))
     return sum(any(digit in "123456789" for digit in number) for number in numbers) > 1
 
@@ -104,7 +104,7 @@ def _bare(cells: Sequence[str | None]) -> bool:
 def _read_together(
     cells: Sequence[str | None], unit: str, quantity: QuantityRange, gaps: bool
 ) -> Floats | None:
-    """Return a column in SI; None where a cell is no plain number, or beyond the limits."""
+    """Return a column in SI; None if a cell is not a plain number, or exceeds the limits."""
     numbers = plain_numbers(cells) if unit else None
     if numbers is None or (not gaps and np.isnan(numbers).any()):
         return None
@@ -114,7 +114,7 @@ def _read_together(
 
 
 def _read_headings(table: QuantityTable, known: Mapping[str, QuantityRange]) -> dict[str, str]:
-    """Return the unit of each known column by its name, empty where the column gives none."""
+    """Return the unit of each known column by name; empty if the heading has no unit."""
     units: dict[str, str] = {}
     for j, column in enumerate(table.columns):
         name, unit = heading(column)
@@ -148,9 +148,9 @@ def check_depths(
     rows: Integers,
     profile: Integers | None = None,
 ) -> None:
-    """Depths must not be negative, and must increase from one of the rows of a profile to another.
+    """Check that depths are not negative, and increase within each profile.
 
-    Rows that are not among `rows` are not looked at.
+    Only the given `rows` are checked.
     """
     if "depth" not in values:
         return
@@ -187,7 +187,7 @@ Speed = TypeVar("Speed", float, Floats)
 
 TEMPERATURE = QuantityRange("temperature", at_least=-6, at_most=40)
 SALINITY = QuantityRange("salinity", at_least=0, at_most=42)
-"""Temperatures and salinities are limited to those that TEOS-10 is valid for."""
+"""Limits of temperature and salinity: the range of validity of TEOS-10."""
 
 WATER_DENSITY = QuantityRange("density", at_least=900, at_most=1350)
 """From fresh water under a glacier to the brines at the bottom of the Red Sea."""
@@ -208,11 +208,11 @@ _WATER = {"depth": _DEPTH, "density": DENSITY, "temperature": TEMPERATURE, "sali
 
 @dataclass(frozen=True)
 class CurrentTable:
-    """Hold a current: east, north and upward speeds [m/s] at increasing depths [m].
+    """A current: east, north and upward speeds [m/s] at increasing depths [m].
 
-    `record` is the file of many times that this profile is from, with the terms for reading it.
-    `doubts` are unusual features of its directions as written, and `card` describes what was read
-    from its file.
+    `record` holds the path of a record from which the profile was read, and the options for reading
+    it. `doubts` lists unusual features of its directions, and `card` summarises the contents of its
+    file.
     """
 
     depth: tuple[float, ...]
@@ -226,7 +226,7 @@ class CurrentTable:
 
 @dataclass(frozen=True)
 class DepthTable:
-    """Hold a quantity at increasing depths [m]; linear between them, constant beyond."""
+    """A quantity at increasing depths [m], linear in between and constant beyond the ends."""
 
     depth: tuple[float, ...]
     value: tuple[float, ...]
@@ -234,20 +234,22 @@ class DepthTable:
 
 @dataclass(frozen=True)
 class SeaWater:
-    """Hold the temperature in situ [°C] and the practical salinity of sea water."""
+    """In-situ temperature [°C] and practical salinity of sea water."""
 
     temperature: DepthTable
     salinity: DepthTable
 
 
 def read_current(table: QuantityTable, terms: Terms = _AS_THEY_STAND) -> CurrentTable | None:
-    """Read a current from a table; None, with its mistakes added, if it has any.
+    """Parse a current from a table.
+
+    If the table has mistakes, they are added to its `problems`, and None is returned.
 
     Parameters
     ----------
     table : with `depth`, with `u` and `v`, or `speed` and `toward` or `from`, and optionally `w`. A
         unit such as ``"deg magnetic"`` says that a column is relative to magnetic north.
-    terms : the declination that turns what is relative to magnetic north, the greatest speed
+    terms : options: the declination for columns relative to magnetic north, and the maximum speed
     """
     found = read_currents(table, terms)
     if found is None:
@@ -271,15 +273,15 @@ def _direction_doubts(table: QuantityTable) -> tuple[str, ...]:
 def read_currents(
     table: QuantityTable, terms: Terms, profile: Integers | None = None
 ) -> Floats | None:
-    """Return (n, 4) depths [m] and u, v, w [m/s] of a table as that of `read_current`.
+    """Return (n, 4) depths [m] and u, v, w [m/s] of a table in the form for `read_current`.
 
-    None, with its mistakes added, if it has any.
+    If the table has mistakes, they are added to its `problems`, and None is returned.
 
     Parameters
     ----------
-    table, terms : as for `read_current`
-    profile : (n,) growing number of the profile of a record that a row is of, which may have gaps,
-        NaN then; None where all are of one
+    table, terms : see `read_current`
+    profile : (n,) increasing index of the profile of each row of a record, in which gaps become
+        NaN; None if all rows form one profile
     """
     columns, rows, before = table.columns, table.rows, len(table.problems)
     plain, turned = _from_magnetic_north(table, terms)
@@ -327,7 +329,7 @@ def read_currents(
 
 
 def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
-    """Return what is reported of a current whose columns counted from magnetic north."""
+    """Return the notice on columns that were rotated from magnetic to true north, if any."""
     if terms.declination is None:
         return ()
     which = " and ".join(f"`{name}`" for name in sorted(magnetic_columns(columns)[1]))
@@ -335,7 +337,7 @@ def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
 
 
 def _from_magnetic_north(table: QuantityTable, terms: Terms) -> tuple[list[str], float]:
-    """Return the columns without the word for their north, and their turn [degrees]."""
+    """Return the columns without ``magnetic``, and their rotation [degrees]."""
     columns = table.columns
     plain, magnetic = magnetic_columns(columns)
     if not magnetic:
@@ -377,7 +379,10 @@ def read_water(
 
 
 def read_profile(name: str, table: QuantityTable) -> DepthTable | None:
-    """Read `temperature` [°C] or `salinity` by depth from a table, as `read_water` does."""
+    """Parse `temperature` [°C] or `salinity` by depth from a table.
+
+    If the table has mistakes, they are added to its `problems`, and None is returned.
+    """
     values = _by_depth(table, {"depth": _DEPTH, name: _WATER[name]})
     return None if values is None else values[name]
 
@@ -385,7 +390,10 @@ def read_profile(name: str, table: QuantityTable) -> DepthTable | None:
 def _by_depth(
     table: QuantityTable, known: Mapping[str, QuantityRange]
 ) -> dict[str, DepthTable] | None:
-    """Return what a table says of the water by its names; None, with mistakes, if it has any."""
+    """Return the water properties of a table by name.
+
+    If the table has mistakes, they are added to its `problems`, and None is returned.
+    """
     before = len(table.problems)
     values = read_columns(table, known)
     given = values.keys() - {"depth"}
@@ -415,7 +423,7 @@ def turned_by(angle: float, u: Speed, v: Speed) -> tuple[Speed, Speed]:
     Parameters
     ----------
     angle : clockwise [degrees]
-    u, v : to the east and to the north [m/s]
+    u, v : velocity to the east and to the north [m/s]
     """
     sine, cosine = math.sin(math.radians(angle)), math.cos(math.radians(angle))
     return u * cosine + v * sine, v * cosine - u * sine

@@ -1,6 +1,6 @@
-"""Records of currents in NetCDF, zarr or CSV: many profiles, read as they are needed.
+"""Records of currents in NetCDF, zarr or CSV: many profiles, read lazily.
 
-A made record to begin with has thirty days of a tide, a mean flow and a storm surge.
+The synthetic example record has thirty days with a tide, a mean flow and a storm surge.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ Times = NDArray[np.datetime64]
 Index = slice | NDArray[np.intp]
 
 Period = tuple[np.datetime64 | None, np.datetime64 | None]
-"""First and last time, both included; None where it is open."""
+"""First and last time, both included; None for an open end."""
 
 REACH = "1678-01-01", "2261-12-31T23:59:59.999999"
-"""The times that a record can have."""
+"""Earliest and latest time of a record."""
 
 _PART_OF_A_DATE = re.compile(r"\d{4}(-\d\d(-\d\d)?)?")
 
 Levels = tuple[Floats, Floats, Floats, Floats | None]
-"""Depth, u, v and w of some profiles, as `solve_profiles` takes them."""
+"""Depth, u, v and w of profiles, in the layout of `solve_profiles`."""
 
 RULES = (
     "levels where the current or their depth has no value are left out of their profile",
@@ -40,21 +40,21 @@ RULES = (
     "between",
     "between levels the current is linear in depth, beyond the first and the last it is constant",
 )
-"""What holds in every record."""
+"""Rules that apply to every record."""
 
 
 class Record(ABC):
-    """The profiles of a record that were asked for, in the order of time.
+    """The selected profiles of a record, in the order of time.
 
-    Reading is for one thread at a time. A record is closed by `close`, or by a `with` statement.
+    Use a record from one thread at a time, and close it with `close` or a `with` statement.
 
     Attributes
     ----------
     time : (n,) to the nanosecond, rising
-    notes : the rules by which it was read, and what to know before trusting it
+    notes : rules by which the record was read, and doubts about it
     source : its file, its variables and its place, by name
-    cards : what was read from each file, for a person to look at
-    labels : of the parts of a line that its levels hang at, which have no depth then; else empty
+    cards : summary card of each file
+    labels : parts of a line at which the levels are placed (without depths), else empty
     """
 
     time: NDArray[np.datetime64]
@@ -70,19 +70,19 @@ class Record(ABC):
 
     @abstractmethod
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of some profiles, NaN in gaps.
+        """Return depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of profiles, NaN in gaps.
 
-        The depths are positive down, in any order; `w` is None where the record has none.
-        InputError: the file is damaged there.
+        The depths are positive down, in any order; `w` is None if the record lacks it. InputError:
+        the file is damaged in this range.
         """
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
-        """Return (m, k) quality flags of the currents of some profiles; None where it has none."""
+        """Return (m, k) quality flags of currents; None if the record has no flags."""
         return None
 
     @abstractmethod
     def close(self) -> None:
-        """Leave the file."""
+        """Close the file."""
 
     def __enter__(self) -> Record:
         return self
@@ -92,10 +92,10 @@ class Record(ABC):
 
 
 def parse_period(text: str) -> Period:
-    """Return a period ``A/B`` of ISO times; a year, a month or a day as B counts whole.
+    """Parse a period ``A/B`` of ISO times. A year, month or day as B is included in full.
 
-    Either end may be left out, or be two points: ``2026-03/``, ``../2026-03-31``. UsageError: the
-    text is none, or ends before it begins.
+    Either end may be empty or two points: ``2026-03/``, ``../2026-03-31``. UsageError: the text is
+    not a period, or ends before it begins.
     """
     first, slash, last = text.partition("/")
     if not slash:
@@ -107,7 +107,7 @@ def parse_period(text: str) -> Period:
 
 
 def parse_place(text: str) -> Place:
-    """Return a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
+    """Parse a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
 
     Either may be of degrees and minutes: ``57 28.84 N, 19 10.2 W``. UsageError: the text is none,
     or no place on the earth.
@@ -126,14 +126,14 @@ def parse_place(text: str) -> Place:
 def choose_profiles(
     times: Times, period: Period | None, every: int, path: Path
 ) -> tuple[Index, tuple[str, ...]]:
-    """Return the indices of the profiles wanted, in the order of time, and what to report about it.
+    """Return the indices of the profiles to read, in the order of time, and notices.
 
     Parameters
     ----------
     times : (n,) in the order of the file
     period : first and last time wanted; None for all
-    every : take one in so many
-    path : of the record, for messages
+    every : read one profile in this number
+    path : path of the record, for messages
 
     Raises
     ------
@@ -172,12 +172,12 @@ def choose_profiles(
 
 
 def part(index: Index, start: int, stop: int) -> Index:
-    """Return the indices of some of the chosen profiles.
+    """Return a range of the chosen profiles as indices.
 
     Parameters
     ----------
-    index : of the chosen profiles
-    start, stop : which of these
+    index : indices of the chosen profiles
+    start, stop : range of the chosen profiles
     """
     if not isinstance(index, slice):
         return index[start:stop]
@@ -185,13 +185,13 @@ def part(index: Index, start: int, stop: int) -> Index:
 
 
 def _end(text: str, *, whole: bool) -> np.datetime64 | None:
-    """One end of a period [ns]."""
+    """Parse one end of a period [ns]."""
     text = text.strip()
     if text in ("", ".."):
         return None
     try:
         if _PART_OF_A_DATE.fullmatch(text):
-            date: Any = np.datetime64(text) + int(whole)  # of a year, a month or a day
+            date: Any = np.datetime64(text) + int(whole)  # unit: a year, a month or a day
             return _in_reach(date.astype("M8[us]")) - np.timedelta64(int(whole), "ns")
         return _in_reach(parse_time(text))
     except TimeChoiceError as error:
@@ -201,7 +201,7 @@ def _end(text: str, *, whole: bool) -> np.datetime64 | None:
 
 
 def _in_reach(moment: np.datetime64) -> np.datetime64:
-    """Return a time to the nanosecond; one beyond those of any record as the first or last."""
+    """Convert a time to nanoseconds, limited to the range `REACH`."""
     first, last = (np.datetime64(end, "us") for end in REACH)
     near: Any = min(max(moment, first), last)
     return np.datetime64(near, "ns")
@@ -209,25 +209,25 @@ def _in_reach(moment: np.datetime64) -> np.datetime64:
 
 DAYS = 30
 DEPTHS = (4.0, 12.0, 24.0, 40.0, 60.0, 90.0, 130.0, 180.0, 230.0, 290.0)
-"""Of the levels [m], for water of 300 m."""
+"""Depths of the levels [m], for a water depth of 300 m."""
 
 START = "2026-03-01T00:00:00"
 LATITUDE, LONGITUDE = 48.3, -5.2
 
 RESOLUTION = 1e-3
-"""Steps of the currents [m/s], which the last digits of a sine do not pass."""
+"""Resolution of the currents [m/s], too coarse to show platform differences in sines."""
 
 _SEABED = 300.0
 # period [h], to the east and to the north [m/s], phase [degrees]; M2, S2, K1
 _TIDE = ((12.4206, 0.17, 0.05, 40.0), (12.0, 0.06, 0.02, 75.0), (23.9345, 0.03, 0.02, 10.0))
 _MEAN = (0.12, 0.05, 120.0)  # to the east and to the north at the surface [m/s], fading in [m]
 _SURGE = (0.40, -0.15, 150.0)
-_SURGE_DAY, _SURGE_LENGTH = 18.5, 0.8  # its middle and its width [days]
+_SURGE_DAY, _SURGE_LENGTH = 18.5, 0.8  # middle and width [days]
 _MISSING = -32767
 
 
 def made_record() -> bytes:
-    """Return the record as a classic NetCDF file: the same bytes wherever it is made."""
+    """Return the synthetic record as a classic NetCDF file, identical on all platforms."""
     import xarray as xr
 
     hours = np.arange(24 * DAYS)
@@ -267,10 +267,10 @@ def made_record() -> bytes:
 
 
 def _currents(hours: Any) -> tuple[Any, Any]:
-    """To the east and to the north [m/s], times by levels."""
+    """Return currents to the east and to the north [m/s], as times by levels."""
     hours = hours[:, np.newaxis].astype(np.float64)
     depth = np.array(DEPTHS)
-    # slower near the seabed, as the seventh power of the height has it
+    # slower near the seabed: 1/7 power law of the height
     friction = ((_SEABED - depth) / _SEABED) ** (1 / 7)
     east, north = (speed * np.exp(-depth / _MEAN[2]) for speed in _MEAN[:2])
     surge = np.exp(-(((hours / 24 - _SURGE_DAY) / _SURGE_LENGTH) ** 2) / 2 - depth / _SURGE[2])

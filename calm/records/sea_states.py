@@ -1,4 +1,4 @@
-"""Sea states: spectra of the elevation of the sea, and the waves that they are made of."""
+"""Sea states: spectra of the surface elevation, and their harmonic components."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -20,29 +20,31 @@ SPECTRA = ("bretschneider", "jonswap", "pierson-moskowitz", "ochi-hubble")
 """Spectra by name."""
 
 OF_HEIGHT = ("pierson-moskowitz", "ochi-hubble")
-"""Those that follow from the significant height alone."""
+"""Spectra determined by the significant height alone."""
 
 STEEPEST = 1.0 / 7.0
-"""Height over length of a wave that breaks (Michell 1893); a sea is far below it."""
+"""Ratio of height to length of a breaking wave (Michell 1893); seas are far below it."""
 
 HIGHEST, LONGEST_PERIOD = 30.0, 30.0
-"""Beyond every significant height and peak period measured: 19 m by a buoy (WMO 2016) [m], [s]."""
+"""Limits above all measured significant heights [m] (19 m by a buoy, WMO 2016) and periods [s]."""
 
 BETWEEN = 0.5, 12.0
-"""Frequencies solved for, as multiples of that of the peak: beyond them a sea of Bretschneider's
-form has less than 1e-4 of its variance."""
+"""Frequency range of the solution, as multiples of the peak frequency.
+
+Outside it, a Bretschneider spectrum has less than 1e-4 of its variance.
+"""
 
 UNSEEN = 1e-3
-"""Share of the variance of a measured sea that is longer than all that is solved for."""
+"""Share of the variance of a measured sea that may lie below the frequencies of the solution."""
 
 PEAK_BY_MEAN = "Tp is 1.41 Tz, the mean zero-crossing period; 1.29 Tz of jonswap"
 """The ratio follows from the moments of the forms: 1.408 and 1.286."""
 
 SHARES = 0.02
-"""How far shares of the time may be from 1 in all, where they are rounded."""
+"""Tolerance for the sum of shares of time, which may be rounded."""
 
 CUT_OFF = 0.5
-"""Share of its greatest density that a measured spectrum may have at its last frequency."""
+"""Limit on a measured spectrum at its last frequency, as a share of its maximum density."""
 
 _STANDARD_NAMES = (
     "sea_surface_wave_variance_spectral_density",
@@ -51,16 +53,18 @@ _STANDARD_NAMES = (
 _SPECTRAL_NAMES = ("spectral_wave_density", "ef", "efth")
 
 LARGEST_FREQUENCY = 10.0
-"""Above it lines are not solved for [rad/s]."""
+"""Highest angular frequency of the solution [rad/s]."""
 
 SHORTEST_PERIOD, BEYOND = 2.0, 0.02
-"""Of a peak [s]: a hundredth of such a sea is above `LARGEST_FREQUENCY`; and the share of a
-measured sea that may be."""
+"""Shortest peak period [s], and largest share of a measured sea above `LARGEST_FREQUENCY`.
+
+A sea of the shortest period has a hundredth of its variance above that frequency.
+"""
 
 
 @dataclass(frozen=True)
 class SpectralForm:
-    """Represent a spectrum by its law and figures, so that equal seas are equal."""
+    """A spectrum in the form of its law and parameters, so that equal seas compare equal."""
 
     law: Callable[..., Floats]
     figures: tuple[Any, ...]
@@ -71,16 +75,16 @@ class SpectralForm:
 
 @dataclass(frozen=True)
 class SeaState:
-    """Represent a sea by its spectrum.
+    """A sea state with its spectrum.
 
     Attributes
     ----------
     significant_height : Hs, four times the standard deviation of the elevation [m]
     peak_period : Tp [s]
-    density : spectrum of the elevation by angular frequency [rad/s], one-sided [m² s/rad]
-    share : of the time, where it is one of several
-    longest, shortest : periods of the peaks of a sea of several parts [s]; of a measured sea
-        `longest` is that of its longest waves that count
+    density : one-sided spectrum of the elevation over angular frequency [rad/s], [m² s/rad]
+    share : share of the time, for one of several seas
+    longest, shortest : longest and shortest peak period of a sea of several parts [s]; for a
+        measured sea, `longest` is the period of its longest relevant waves
     """
 
     significant_height: float
@@ -92,12 +96,12 @@ class SeaState:
 
     @property
     def cut_off(self) -> float:
-        """Return the highest frequency that is solved for [rad/s]."""
+        """Highest frequency of the solution [rad/s]."""
         peak = 2.0 * pi / (self.shortest or self.peak_period)
         return min(BETWEEN[1] * peak, LARGEST_FREQUENCY)
 
     def frequencies(self, count: int) -> Floats:
-        """Return angular frequencies to solve for [rad/s], evenly spread in their logarithm."""
+        """Return angular frequencies for the solution [rad/s], with logarithmic spacing."""
         first = 2.0 * pi / (self.longest or self.peak_period)
         return np.geomspace(BETWEEN[0] * first, self.cut_off, count)
 
@@ -132,7 +136,7 @@ def _gamma_form(parts: tuple[tuple[float, float, float], ...], omega: Floats) ->
 
 
 def jonswap(height: float, period: float, gamma: float = 3.3) -> Density:
-    """Return the spectrum of a sea short of its fetch, by Hs [m], Tp [s] and its peakedness.
+    """Return the spectrum of a fetch-limited sea, by Hs [m], Tp [s] and peakedness.
 
     Bretschneider's times gamma^exp(-(ω - ωp)²/(2 σ² ωp²)), σ 0.07 below the peak and 0.09 above it
     (Hasselmann and others 1973), normalised so that Hs is kept.
@@ -159,8 +163,8 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float) ->
 
     Parameters
     ----------
-    kind : of `SPECTRA`
-    height, period : Hs [m] and Tp [s]; of those of `OF_HEIGHT` None stands for its own period
+    kind : name of the spectrum, from `SPECTRA`
+    height, period : Hs [m] and Tp [s]; for spectra in `OF_HEIGHT`, None selects their own period
     gamma : peakedness of "jonswap"
 
     Raises
@@ -180,7 +184,7 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float) ->
 
 
 def _impossible(height: float, period: float) -> str | None:
-    """Return why no sea has this height [m] and peak period [s], or is not solved for."""
+    """Return why a height [m] and peak period [s] are impossible or unsupported, else None."""
     length, said = 9.80665 * period**2 / (2.0 * pi), f"waves of {height:.3g} m and {period:.3g} s"
     if height > HIGHEST or period > LONGEST_PERIOD:
         return f"{said}: no sea is higher than {HIGHEST:g} m or longer than {LONGEST_PERIOD:g} s"
@@ -193,7 +197,7 @@ def _impossible(height: float, period: float) -> str | None:
 
 
 def doubted(sea: SeaState) -> str | None:
-    """Return why a sea is doubted: it is steeper than seas that were measured.
+    """Return a remark if a sea is steeper than measured seas, else None.
 
     Hs over the length of waves of Tp is 1/15 at most up to a Tp of 8 s, falling to 1/25 at 15 s
     (DNV-RP-C205, steepness criteria).
@@ -210,11 +214,11 @@ def doubted(sea: SeaState) -> str | None:
 
 
 def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
-    """Return a sea with a swell of Hs [m] and Tp [s], which runs the same way.
+    """Add a swell of Hs [m] and Tp [s], in the same direction, to a sea.
 
-    The swell has the narrow form that Ochi and Hubble give it, λ of 3; variances add up.
+    The swell has the narrow form of Ochi and Hubble, with λ of 3; variances add up.
 
-    UsageError: the swell is higher, longer or steeper than there are, or shorter than the sea.
+    UsageError: the swell is higher, longer or steeper than any real swell, or shorter than the sea.
     """
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
@@ -236,11 +240,11 @@ def _together(first: Density, second: Density, omega: Floats) -> Floats:
 
 
 def _most_probable(height: float) -> SeaState:
-    """Return swell and sea as they most probably go with a height; Ochi and Hubble 1976.
+    """Return the most probable Ochi-Hubble (1976) swell and sea for a significant height.
 
-    The constants are as secondary texts print them; the paper was not read.
+    The constants are from secondary sources; the paper was not read.
 
-    UsageError: waves higher than there are.
+    UsageError: the height exceeds that of any real sea.
     """
     if height > HIGHEST:
         raise UsageError(f"waves of {height:g} m: no sea is higher than {HIGHEST:g} m")
@@ -253,11 +257,12 @@ def _most_probable(height: float) -> SeaState:
 
 
 def measured_spectrum(path: Path) -> SeaState:
-    """Return the sea of a spectrum in CSV, ``frequency[Hz],density[m^2/Hz]``, or in NetCDF.
+    """Read a spectrum in CSV, ``frequency[Hz],density[m^2/Hz]``, or in NetCDF.
 
-    NetCDF as of NDBC or WAVEWATCH III, of one place; of several times that of the highest sea.
+    NetCDF files follow NDBC or WAVEWATCH III, for a single place; the highest sea of several times
+    is used.
 
-    InputError: it is no spectrum, or its frequencies do not grow.
+    InputError: the file is not a spectrum, or its frequencies do not increase.
     """
     if holds_arrays(path):
         return _sea_of(path, *_spectral_arrays(path))
@@ -267,7 +272,7 @@ def measured_spectrum(path: Path) -> SeaState:
 
 
 def _sea_of(path: Path, frequency: Floats, density: Floats, lines: Sequence[int] = ()) -> SeaState:
-    """Return the sea of densities [m²/Hz] at frequencies [Hz], of these lines of a table."""
+    """Return the sea with densities [m²/Hz] at frequencies [Hz], from these lines of a table."""
     falls = np.diff(frequency, prepend=-1e-12) <= 0.0
     problems = [
         Problem(str(path), lines[int(row)] if lines else 0, column, message)
@@ -339,9 +344,9 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
 def scatter_states(path: Path, kind: str, gamma: float) -> list[SeaState]:
     """Return the seas of a scatter table, each with its share of the time.
 
-    Its columns are ``significant_wave_height[m],peak_period[s],share``; shares may also be counts.
+    The columns are ``significant_wave_height[m],peak_period[s],share``; shares may also be counts.
 
-    InputError: it is no such table; every mistake with its line.
+    InputError: lists all mistakes with their lines.
     """
     rows = _figures(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
     if kind == "ochi-hubble":

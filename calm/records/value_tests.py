@@ -23,19 +23,19 @@ from calm.units import KNOT
 Times = NDArray[np.datetime64]
 
 UNCOVERED, FEW = 0.1, 25.0
-"""Share of the depth, and depth [m], that a profile may leave out at either end, or lie below."""
+"""Share of the depth, and depth [m], that a profile may omit at either end, or lie below."""
 WEAK = 0.03
 """Speed [m/s] that the strongest current of every record exceeds."""
 MANY = 50
 """Smallest sample for which a coincidence is ruled out."""
 SECTOR = 40.0
-"""Directions that all lie between north and so many degrees are in radians, or in tens."""
+"""Directions that all lie between north and this angle [degrees] are in radians, or in tens."""
 UNCHANGED = 0.1
 """Share of a record for which no series keeps its value."""
-_FEWEST = 6  # readings alike of which that is said
+_FEWEST = 6  # least number of equal readings for a doubt
 _STRETCH = 24  # readings of a repeated stretch
-_SLOWEST = np.timedelta64(3, "h")  # step at which tides do not look like two series
-_BEYOND, _VARIED, _RECURS = 1.5, 20, 4  # of a fill value: times all others, others, times it is
+_SLOWEST = np.timedelta64(3, "h")  # longest step at which a tide does not mimic two series
+_BEYOND, _VARIED, _RECURS = 1.5, 20, 4  # fill value: ratio to the others, distinct others, repeats
 _DAY = np.timedelta64(1, "D")
 _FIRST_YEAR = 1950
 _UNITS = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "kn": KNOT}
@@ -48,12 +48,12 @@ class CurrentValues:
 
     Attributes
     ----------
-    depth : (k,) or (n, k) [m]; NaN where not known
+    depth : (k,) or (n, k) [m]; NaN if unknown
     u, v : (n, k) to the east and to the north [m/s]; NaN in gaps
-    times : (n,) rising; None of one profile
-    water_depth : [m]; inf where it is not known
+    times : (n,) rising; None for a single profile
+    water_depth : water depth [m]; inf if unknown
     unit, factor : declared unit of speed and its factor to m/s
-    good : (n, k) share of good pings; None where it is not given
+    good : (n, k) share of good pings; None if missing
     """
 
     depth: Floats
@@ -96,7 +96,7 @@ def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) ->
     ----------
     depth : (k,) or (n, k) of the levels [m]
     known : (n, k) which have a value
-    water_depth : [m]; inf where it is not known
+    water_depth : water depth [m]; inf if unknown
     """
     there, levels = known.any(axis=0), _levels(depth, known)
     allowed = max(UNCOVERED * water_depth, FEW)
@@ -139,8 +139,8 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
     Parameters
     ----------
     top, bottom : its first and its last level [m]
-    water_depth : [m]; inf where it is not known
-    what : it is a profile of
+    water_depth : water depth [m]; inf if unknown
+    what : quantity of the profile
     """
     allowed = max(UNCOVERED * water_depth, FEW)
     gaps = [f"above {say('depth', top)}"] if top > allowed else []
@@ -184,7 +184,7 @@ def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
 
 
 def _recurring(values: Floats, side: str) -> Iterator[str]:
-    """Yield a likely fill value: one that recurs and exceeds all others [m/s]."""
+    """Yield a likely fill value: a recurring value [m/s] far above all others."""
     largest = np.abs(values).max(initial=0.0)
     filled = np.abs(values) == largest
     others = values[~filled]
@@ -203,7 +203,7 @@ def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) ->
     ----------
     values : (n, k, c) components of k series; NaN in gaps
     times : (n,) rising
-    names : (k,) where each is, "" of a single one
+    names : (k,) place of each series, "" for a single series
     """
     yield from _years(times)
     if len(times) > 2:
@@ -215,7 +215,7 @@ def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) ->
 
 
 FAR_APART = np.timedelta64(12, "h")
-"""Between profiles so far apart the tide and its peaks are lost."""
+"""Interval between profiles above which tides and their peaks are lost."""
 
 
 def step_doubts(times: Times) -> Iterator[str]:
@@ -231,7 +231,7 @@ def step_doubts(times: Times) -> Iterator[str]:
 class WaterLimits:
     """Minimum and maximum of a sea-water quantity, its unit, and units that are confused with it.
 
-    Each of `likely` is a unit with the factor and the zero that turn it into the usual one.
+    Each entry of `likely` is a unit, with the factor and the zero for conversion to `unit`.
     """
 
     least: float
@@ -249,16 +249,16 @@ WATER = {
     }),
 }  # fmt: skip
 """The limits of TEOS-10, as in tables of mooring files."""
-_FRACTION = 0.05  # salinity that most of a record is below where it is a mass fraction
+_FRACTION = 0.05  # most salinities lie below this if they are mass fractions
 
 
 def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str, bool]:
-    """Find impossible values; return their mask, a sentence, and whether they are the majority.
+    """Find impossible values; return a mask, a sentence, and whether they are the majority.
 
     Parameters
     ----------
-    name : of `WATER`
-    values : in its unit; NaN in gaps
+    name : key of `WATER`
+    values : values in the unit of the quantity; NaN in gaps
     """
     limits, known = WATER[name], values[np.isfinite(values)]
     wrong = (values < limits.least) | (values > limits.greatest)
@@ -318,7 +318,7 @@ def _years(times: Times) -> Iterator[str]:
 
 
 def gaps_of(times: Times) -> tuple[np.timedelta64, NDArray[np.intp]]:
-    """Return the median step of times (n,), and before which intervals more than 1.5 of it lie."""
+    """Return the median step of times (n,), and the indices before steps of over 1.5 medians."""
     steps = np.diff(times)
     step = np.median(steps)
     return step, np.flatnonzero(steps > 1.5 * step)
@@ -344,7 +344,7 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
     same: NDArray[np.bool_] = np.all(values[1:] == values[:-1], axis=2)
     known: NDArray[np.bool_] = np.all(np.isfinite(values), axis=2)
     fewest = max(_FEWEST, UNCHANGED * len(times))
-    stuck, longest = 0, (0, 0, 0)  # readings, first, series
+    stuck, longest = 0, (0, 0, 0)  # number of readings, first reading, series
     for k in range(same.shape[1]):
         edges = np.flatnonzero(np.diff(np.concatenate([[0], same[:, k].astype(np.int8), [0]])))
         runs = edges[1::2] - edges[::2] + 1
@@ -365,9 +365,7 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
 
 
 def _interleaved(values: Floats) -> Iterator[str]:
-    """Yield the series of which every second reading is like the one before the last, and the last
-    is not.
-    """
+    """Yield series in which every second reading repeats, as if two series were interleaved."""
     if len(values) < MANY:
         return
     next_one, second = (

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Sought:
-    """A quantity: its standard names, and the names that programs and archives use for it."""
+    """A quantity with its standard names, and its usual names in programs and archives."""
 
     standard: tuple[str, ...]
     usual: tuple[str, ...]
@@ -66,15 +66,16 @@ _BAD = re.compile(r"bad|fail|suspect|spike|erroneous|wrong|missing|reject|doubtf
 
 @dataclass(frozen=True)
 class Velocity:
-    """Names of the variables that make a current.
+    """Names of the variables of a current.
 
     Attributes
     ----------
     names : eastward and northward velocity, or speed and direction
-    up : upward velocity, None where there is none
-    turn : what is added to a direction to have it flow toward [degrees]; None for components
-    magnetic, true : whether it is said to be relative to magnetic north, to true north
-    notes : what had to be assumed
+    up : upward velocity, None if missing
+    turn : angle added to a direction to make it the direction of flow [degrees]; None for
+        components
+    magnetic, true : whether the file refers the velocity to magnetic north, to true north
+    notes : remarks on assumptions
     """
 
     names: tuple[str, str]
@@ -85,7 +86,7 @@ class Velocity:
     notes: tuple[str, ...]
 
     def components(self, first: Floats, second: Floats) -> tuple[Floats, Floats]:
-        """Return the flow to the east and to the north by the two variables in SI and degrees."""
+        """Return the flow to the east and north from the two variables, in SI and degrees."""
         if self.turn is None:
             return first, second
         angle = np.radians(second + self.turn)
@@ -93,15 +94,15 @@ class Velocity:
 
     @property
     def all_names(self) -> tuple[str, ...]:
-        """Name the two variables or three."""
+        """Names of the two or three variables."""
         return self.names if self.up is None else (*self.names, self.up)
 
 
 def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
-    """Return the current of a dataset, whose `regular` grid runs along latitudes and longitudes.
+    """Find the current of a dataset; a `regular` grid has axes of latitude and longitude.
 
-    UnreadableError: there is none, there are several, or what is there is not a current to the east
-    and north.
+    UnreadableError: there is no current, there are several, or the current is not to the east and
+    north.
     """
     reason = attributes.other_frame(dataset.attrs) or attributes.moving_platform(dataset)
     if reason is not None:
@@ -144,7 +145,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
 def _direction(
     dataset: xr.Dataset, regular: bool, notes: list[str]
 ) -> tuple[str | None, str | None]:
-    """Return the variable of a direction, and which way it is: None where the file does not say."""
+    """Find the direction variable and its convention: "to", "from", or None if unstated."""
     for sought, way in ((_TOWARD, "to"), (_FROM, "from")):
         name = _find(dataset, sought, regular, notes)
         if name is not None:
@@ -156,7 +157,7 @@ def _direction(
 
 
 def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]) -> str | None:
-    """Return the variable of a standard name, else of a usual one; one to true north first."""
+    """Find a variable by its standard names, else by its usual names, with true north preferred."""
     for standard_name in sought.standard:
         found = [str(name) for name in dataset.cf.standard_names.get(standard_name, [])]
         found = [one for one in found if not any(one.startswith(f"{two}_") for two in found)]
@@ -185,13 +186,13 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
 
 
 def _only_marked(own: str, sought: _Sought) -> bool:
-    """Return whether a standard name is one of those sought but for a word on its north."""
+    """Return whether a standard name equals a sought name except for a word on its north."""
     plain = re.sub(r"_?magnetic_?(north)?", "", own)
     return plain != own and plain in sought.standard
 
 
 def _believed(dataset: xr.Dataset, name: str) -> str:
-    """Return the name of a variable whose own attributes do not speak against it."""
+    """Return the name of a variable, if its own attributes allow its use."""
     layers = layers_of(dataset)
     variable = dataset[name]
     reason = attributes.not_a_value(variable, layers) or attributes.other_frame(variable.attrs)
@@ -207,13 +208,13 @@ def layers_of(dataset: xr.Dataset) -> set[str]:
 
 
 _WHOSE = re.compile(r"(?:sensor|instrument|platform|station|mooring|serial)", re.IGNORECASE)
-"""What is called so and has a text for each reading says whose it is."""
+"""Names of text variables that identify the instrument of each reading."""
 
 
 def refuse_ragged(dataset: xr.Dataset, name: str) -> None:
-    """Refuse what has the readings of several instruments one after the other.
+    """Reject a variable with the readings of several instruments in sequence.
 
-    UnreadableError: with the index that says which reading is whose.
+    UnreadableError: names the index that assigns readings to instruments.
     """
     for index, variable in dataset.variables.items():
         many, counted = 0, variable.attrs.get("instance_dimension")
@@ -235,11 +236,11 @@ _DIRECTIONS = "dir"
 
 
 def with_components(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset with the velocity `vel (dir, ...)` taken apart into its components.
+    """Return the dataset with the velocity `vel (dir, ...)` split into its components.
 
     The components are called ``vel[E]`` and so on, with the standard names of velocities to the
-    east, north and up. A dataset without such a variable is returned as it is. UnreadableError: its
-    directions are those of the beams or of the instrument.
+    east, north and up. A dataset without such a variable is returned unchanged. UnreadableError:
+    its directions are along beams or instrument axes.
     """
     vectors = [name for name in _NAMES if name in dataset.data_vars]
     name = next((name for name in vectors if _DIRECTIONS in dataset[name].dims), None)
@@ -270,7 +271,7 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def flag_variable(dataset: xr.Dataset, name: str) -> xr.DataArray | None:
-    """Return the flags of a variable: its ancillary variable, one called after it, or of all."""
+    """Return the flag variable of a velocity: ancillary, matching in name, or for all variables."""
     beside = str(dataset[name].attrs.get("ancillary_variables", "")).split()
     told = (other for other in dataset.data_vars if _OF_VELOCITY.search(str(other)))
     named = [*beside, *(f"{name}{ending}" for ending in _ENDINGS), *_OF_ALL, *map(str, told)]
@@ -288,7 +289,7 @@ def _tells_flags(variable: xr.DataArray) -> bool:
 
 
 def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
-    """Return the flags as numbers; one without a value is 9, missing; of bits, 1 and 4."""
+    """Return flags as integers: 9 for a missing flag, 4 or 1 for bits with or without a bad one."""
     if "flag_masks" in variable.attrs:
         return np.where(marked_bad(variable), 4, 1).astype(np.int8)
     values = np.asarray(variable.values)
@@ -299,7 +300,7 @@ def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
 
 
 def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
-    """Return which flags say that a value is bad, by their meanings; without, 3, 4 and 9 do."""
+    """Return a mask of bad values, from flag meanings or else from the flags 3, 4 and 9."""
     bad, told = ["3", "4", "9"], str(variable.attrs.get("flag_meanings", "")).lower().split()
     masks = np.atleast_1d(variable.attrs.get("flag_masks", [])).tolist()
     values = np.atleast_1d(variable.attrs.get("flag_values", masks)).tolist()
@@ -320,7 +321,7 @@ def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
 
 
 def _flag(value: Any) -> str:
-    """Return a flag, be it a number or a character, in one spelling."""
+    """Return a flag, numeric or text, in one notation."""
     text = value.decode() if isinstance(value, bytes) else str(value)
     text = text.removeprefix("b'").removesuffix("'").removesuffix(".0")
     return chr(int(text)) if re.fullmatch(r"4[89]|5[0-7]|6[56]|81", text) else text
@@ -331,10 +332,10 @@ _GOOD_NAMES = re.compile(r"(?i)(perg|pg|pgd|percent_?good|prcnt_gd|pct_good)_?[1
 
 
 def good_variables(dataset: xr.Dataset, name: str) -> list[xr.DataArray]:
-    """Return the variables whose sum is the share of good pings of a velocity; none without.
+    """Return the variables that sum to the share of good pings of a velocity.
 
-    Where there is one for each beam, the first and the fourth count: the solutions of three and of
-    four beams, in the earth's coordinates.
+    If there is one per beam, the first and the fourth are used: the solutions of three and of four
+    beams, in earth coordinates.
     """
     dims = set(dataset[name].dims)
     there = [
