@@ -105,7 +105,7 @@ class Forward:
 
     @cached_property
     def still(self) -> Floats:
-        """Return (p,) depths of the points in still water [m]."""
+        """Depths (p,) of the points in still water [m]."""
         nothing = np.zeros((1, 1))
         depths: Floats = points(self.solve(nothing, nothing, nothing))[0]
         return depths

@@ -91,7 +91,7 @@ class Clock:
 
     @property
     def sentence(self) -> str:
-        """Describe the clock error in a sentence."""
+        """Description of the clock error in a sentence."""
         way = "behind" if self.late > 0.0 else "ahead"
         when = np.datetime_as_string(self.checked, "m")
         return f"its clock was {abs(self.late):g} s {way} at {when}; its times are put right"

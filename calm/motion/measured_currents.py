@@ -40,11 +40,13 @@ LONGEST = 0.5
 """Maximum change in a current in one step [m/s]."""
 
 MOST_LEVELS, KNOTS, APART = 8, 12, 2.0
-"""Number of levels up to which all levels and their midpoints are knots, number of knots for more
-levels, and the distance below which levels share a knot [m].
+"""Number of levels up to which each is a knot, number of knots for more levels, and the distance
+below which levels share a knot [m].
 """
 ABOVE, BELOW = 5.0, 20.0
-"""Least extent of the line above and below the outermost levels for a further knot there [m]."""
+"""Height of an additional knot above the top of a line that extends above the levels, and least
+distance from the lowest level to the seabed for a knot half-way [m].
+"""
 
 METER = 0.02, 0.10
 """Error of a current meter: constant part [m/s], and share of the speed.
@@ -302,7 +304,7 @@ class CurrentSmoother:
 
     @cached_property
     def _stretches(self) -> tuple[Floats, NDArray[np.int64], Floats]:
-        """Return the stretch limits, the stretch of each point, and the correlation of the shares.
+        """Limits of the stretches, the stretch of each point, and the correlation of the shares.
 
         The limits are depths in still water, from the seabed up.
         """
@@ -390,7 +392,7 @@ class CurrentSmoother:
 
     @property
     def meter_noise(self) -> Floats:
-        """Return (n, k) error variances of the current components [m²/s²]."""
+        """Error variances (n, k) of the current components [m²/s²]."""
         one = self.measured
         table = np.array([self.scales.flag.get(f, FLAGGED[4]) for f in range(256)])
         speed = np.nan_to_num(np.hypot(one.u, one.v))
@@ -550,7 +552,7 @@ class CurrentSmoother:
 
     @cached_property
     def best(self) -> Forward:
-        """Return the mooring with the estimated factors."""
+        """Mooring with the estimated factors."""
         return self.forward(self.factor)
 
     def way(self, times: slice) -> ReadCurrents:
@@ -560,7 +562,7 @@ class CurrentSmoother:
 
     @property
     def offset(self) -> Floats:
-        """Return (n, s) offset of each sensor at each time [m]."""
+        """Offset (n, s) of each sensor at each time [m]."""
         return self.state[:, self.columns.offset]
 
     @property
@@ -581,7 +583,7 @@ class CurrentSmoother:
 
     @property
     def current_factor(self) -> Floats:
-        """Return (n,) the estimated currents as a share of the measured currents."""
+        """Ratio (n,) of the estimated currents to the measured currents."""
         one = self.measured
         u, v = (
             each @ self.knots.level.T for each in self.currents(self.state[:, self.columns.current])

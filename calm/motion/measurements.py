@@ -194,8 +194,8 @@ def measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Fl
 def by_neighbours(time: Times, depth: Floats) -> tuple[Floats, Floats]:
     """Return (n, s) depths interpolated between the adjacent readings, and their deviation [m].
 
-    The interpolation is linear in time. The deviation is a robust value for the whole record, plus
-    a quarter of the difference between the two readings. It is infinite if either reading is
+    The interpolation is linear in time. The deviation combines a robust value for the whole record
+    with a quarter of the difference between the two readings. It is infinite if either reading is
     missing or distant.
 
     Parameters

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 def is_record(given: Any) -> bool:
-    """Whether a value is a path, a dataset or a table, not an array of numbers."""
+    """Return whether a value is a path, a dataset or a table, not an array of numbers."""
     return isinstance(given, str | Path) or type(given).__name__ in ("Dataset", "DataFrame")
 
 
 @contextmanager
 def as_file(given: Given) -> Iterator[Path]:
-    """Path of a record; a dataset or table is written to a temporary file meanwhile."""
+    """Yield the path of a record, which for a dataset or table is a temporary file."""
     with TemporaryDirectory() as folder:
         yield Path(as_files(given, Path(folder), "record")[0])
 

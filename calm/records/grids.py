@@ -349,7 +349,7 @@ class SeabedGrid:
 
 @lru_cache(maxsize=4)
 def _nodes(grid: SeabedGrid) -> tuple[Floats, Floats, Floats]:
-    """East (n,) and north (m,) of the nodes from the origin, and the depths (m, n) there [m]."""
+    """Return east (n,) and north (m,) coordinates of the nodes, and the depths (m, n) there [m]."""
     latitude, longitude = grid.latitude, grid.longitude
     with cf_files.open_current(Path(grid.path)) as dataset:
         name = next((each for each in (*_UP, *_DOWN) if each in dataset.data_vars), None)

@@ -53,7 +53,7 @@ class LevelDepths:
     notes: tuple[str, ...]
 
     def vary_in(self, time: str | None) -> bool:
-        """Whether the levels move with time."""
+        """Return whether the levels move with time."""
         moving = [self.variable, *([self.instrument[0]] if self.instrument else [])]
         return any(time in one.dims for one in moving)
 
