@@ -255,7 +255,7 @@ def test_moorings_among_tows_are_judged(calm, folder, write_mooring):
         (("m.yaml", "--workers", "0"), "--workers: 0 is not 1 or more"),
         (("m.yaml", "--environment", "strom"), "no environment is called `strom`"),
         (("m.yaml", "--environment", "storm.yaml", "--environment", "storm.yaml"), "twice"),
-        (("m.yaml", "--environment", "storm.yaml", "--environment", "2.yaml"), "called storm"),
+        (("m.yaml", "--environment", "storm.yaml", "--environment", "2.yaml"), "named storm"),
         (("m.yaml", "broken.yaml"), "broken.yaml:4:"),
         (("m.yaml", "--report", "m.yaml"), "is not a folder; a folder is needed"),
         (("m.yaml", "--json", "none/x.json"), "there is no folder"),
@@ -298,7 +298,7 @@ def test_full_writes_the_pages_of_each_mooring_too(calm, write_mooring, folder):
             assert len(pdf) == pages
             assert pdf[0].get_size() == pytest.approx((612.0, 792.0), abs=0.1)
     refused = calm("check", *files, "--full")
-    assert refused.code == 2 and "beside the --report" in refused.err
+    assert refused.code == 2 and "--full needs --report" in refused.err
 
 
 def test_a_report_that_cannot_be_written_loses_nothing_else(

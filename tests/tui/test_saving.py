@@ -598,7 +598,7 @@ def test_the_same_name_typed_in_a_conflict_asks_again(drive, small):
         await driver.type("../work/small")
         await driver.press("enter")
         assert isinstance(driver.app.screen, Question)
-        assert "Another program changed the file" in driver.screen
+        assert "was changed by another program" in driver.screen
         assert small.read_text() == text
 
     drive(story, small)
