@@ -55,7 +55,7 @@ def test_a_net_opens_with_its_legs_figures_picture_and_verdict(drive, folder):
         assert any(each.rule == "backup" for each in driver.view.findings)
         assert "Anchor of stem" in driver.screen
         assert "net of 3 legs" in driver.screen  # its picture from the side
-        for number, words in (("2", "net of 3 legs"), ("3", "at most"), ("4", "weight below")):
+        for number, words in (("2", "net of 3 legs"), ("3", "2000 N"), ("4", "weight below")):
             await driver.press(number)
             assert words in driver.screen
 
