@@ -48,7 +48,7 @@ def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstrum
     Raises
     ------
     InputError
-        A file has mistakes, or the list is of no form that is read.
+        A file has mistakes, or the list has an unknown format.
     UsageError
         The mooring is a tow, or has several legs; the order of the instruments is ambiguous;
         or the file is written in a way that does not allow the change.

@@ -35,7 +35,7 @@ class Common:
     datum : correction added to the depths of the line [m]
     offset : (s,) of the sensors [m]
     covariance : (q, q)
-    worst : share of the knockdown that the line itself may be wrong by, after all else
+    worst : error of the line itself, as a share of the knockdown, after all other corrections
     law : law of inferred currents; None for measured currents
     """
 
@@ -78,7 +78,7 @@ def common_beforehand(
 
     Parameters
     ----------
-    factors : their values
+    factors : initial values of the factors, by name
     datum : standard deviation of the correction to the depths of the line [m]
     sensors : number of sensors
     mean : mean of the correction to the depths of the line [m]
@@ -146,11 +146,11 @@ class LinearLaw:
 
     Attributes
     ----------
-    time, share : (n,) times, and the share of the record that is over by then
+    time, share : (n,) times, and the elapsed share of the record
     known : (n, s) whether a reading exists
     raw, left : (n, s) measured less computed depths, for zero unknowns and at the state [m]
     expected : (n, s, s) covariance of `left`
-    fixed : (n, s, q) slopes with factors, datum and offsets
+    fixed : (n, s, q) slopes for factors, datum and offsets
     fall : (n, s) change in the depth of each sensor per metre of displacement along the line
     """
 
@@ -196,9 +196,9 @@ def moves(first: Integers, fall: Floats, share: Floats) -> Floats:
 
     Parameters
     ----------
-    first : (s,) of `first_time`
+    first : (s,) codes of `first_time`
     fall : (n, s) change in the depth of each sensor per metre of displacement along the line
-    share : (n,) of the record at each time, 0 to 1
+    share : (n,) elapsed share of the record at each time, 0 to 1
     """
     began = (np.arange(len(fall))[:, None] >= first) & (first >= 0)
     result: Floats = np.where(began, fall, 0.0)
@@ -227,7 +227,7 @@ def first_time(law: LinearLaw, mean: Floats, covariance: Floats) -> Integers:
     Parameters
     ----------
     law : linear law of the times
-    mean, covariance : (q,), (q, q) of the unknowns beforehand
+    mean, covariance : (q,), (q, q) prior of the unknowns
     """
     count = len(law.time)
     if not count:

@@ -173,7 +173,7 @@ def estimate_in_memory(
     ----------
     task : task of the estimate
     points : indices of the points of the line
-    workers : threads
+    workers : number of threads
     """
     starts = range(0, len(task.measured.time), BLOCK)
 
@@ -209,8 +209,8 @@ class Task:
 
         Returns
         -------
-        The profiles with the depths that were estimated, and `clamp_depth_sd`, `depth_sd`,
-        `residual`, and of measured currents `current_factor`, `current_doubt`, `plain_depth`.
+        The profiles with the estimated depths, and a dictionary of `clamp_depth_sd`, `depth_sd`,
+        `residual`, and for measured currents `current_factor`, `current_doubt`, `plain_depth`.
         """
         times, smoother = slice(start, stop), self.smoother
         one = self.measured.at(times)

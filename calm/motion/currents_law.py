@@ -32,10 +32,10 @@ class Linear:
 
     Attributes
     ----------
-    logs : (n, g) the state
-    depth : (n, p) there [m]
-    slope : (n, p, g) with the state
-    common : (n, p, f) with the logarithms of the common factors
+    logs : (n, g) logarithms at the state
+    depth : (n, p) depths at the state [m]
+    slope : (n, p, g) derivatives of the depths by the state
+    common : (n, p, f) derivatives of the depths by the logarithms of the common factors
     """
 
     logs: Floats
@@ -60,7 +60,7 @@ class SpeedLaw:
     Attributes
     ----------
     mean, covariance : (k,), (k, k) of the logarithms of the speeds [m/s]
-    kept : fits of the times that were learnt from, the first at the mean; states are relative to it
+    kept : fits of the learning times, the first at the mean; states are relative to the mean
     """
 
     mean: Floats

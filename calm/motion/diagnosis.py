@@ -65,7 +65,7 @@ class _Found:
 
     Attributes
     ----------
-    log : its logarithm
+    log : logarithm of the likelihood
     value, deviation : size of the last fault, and its deviation
     left : (n, s) residuals [m]
     pulls : (n,) gradient of the log-likelihood of each time by the size of the last fault

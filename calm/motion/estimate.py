@@ -110,7 +110,7 @@ def _excuse(
     Parameters
     ----------
     spike : posterior without the sensor
-    expected, deviation : (n,) of the sensor by its neighbours [m]
+    expected, deviation : (n,) depth interpolated from adjacent readings, and its deviation [m]
     """
     point = one.point[sensor]
     there = spike.depth[:, point] + common.offset[sensor]
@@ -133,7 +133,7 @@ class Posterior:
     depth, variance : (n, p) of the points [m], [m²]
     evidence : (n,) logarithm of the density of the pressures
     innovation : (n, s) measured depths less their predictions [m]
-    expected : (n, s, s) its covariance
+    expected : (n, s, s) covariance of the innovation
     """
 
     logs: Floats

@@ -76,12 +76,12 @@ def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], 
     Parameters
     ----------
     given : the file, or a folder of .nc files
-    line : its parts
+    line : points of the line
 
     Raises
     ------
     InputError
-        A file is not NetCDF, or has no times or no way to know its instruments, or groups.
+        A file is not NetCDF, has groups or no times, or does not identify its instruments.
     UsageError
         A file already has depths, or a dimension with their name; no instrument is a part of
         the line.
@@ -166,16 +166,16 @@ def write_depths(
 
     Parameters
     ----------
-    instruments : the file that is copied
+    instruments : file to copy
     result : dataset of `calm motion`
-    gap : between neighbours of a depth, at most
-    output : the copy
-    inputs : names of the files that the depths are from, with their hashes
+    gap : longest gap over which depths are interpolated
+    output : path of the copy
+    inputs : names and hashes of the source files of the depths
 
     Raises
     ------
     OSError
-        There is no room for it.
+        There is no disk space for the copy.
     """
     import xarray as xr
 
@@ -240,7 +240,7 @@ def at_own_times(
     ----------
     point : see `calm.motion.matching`
     time : (n,)
-    gap : between neighbours of a depth, at most
+    gap : longest gap over which depths are interpolated
     """
     known = result["time"].values
     depth, spread = (interpolated(known, one, time, gap) for one in depths_at(result, point))

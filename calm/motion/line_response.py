@@ -43,8 +43,8 @@ class LineResponse:
 
         Parameters
         ----------
-        way : the currents as they are read
-        logs : (n, g) logarithms of the factors on them
+        way : interpretation of the currents
+        logs : (n, g) logarithms of the factors on the currents
         forward : mooring to use; by default that of the block
         """
         factor = np.exp(logs[:, self.group])
@@ -174,7 +174,7 @@ def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
 
     Parameters
     ----------
-    depth, still : (n, p), (p,) of the points, and in still water [m]; of NaN they are 0
+    depth, still : (n, p), (p,) depths of the points, and in still water [m]; NaN gives zero errors
     learnt : whether the law of the currents is learnt
     """
     if not learnt:
@@ -203,8 +203,8 @@ def filled(depth: Floats, value: Floats, known: NDArray[np.bool_]) -> Floats:
     Parameters
     ----------
     depth : (n, k) of the levels [m]
-    value : (n, k) at these
-    known : (n, k) which of the values count
+    value : (n, k) values at these depths
+    known : (n, k) mask of valid values
     """
     result = np.where(known, value, np.nan)
     for i in np.flatnonzero(~known.all(axis=1)):

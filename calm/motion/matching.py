@@ -74,7 +74,7 @@ class Clock:
 
     Attributes
     ----------
-    since, checked : when it was set, and when it was compared
+    since, checked : times at which the clock was set, and compared
     late : lag of the clock at that time [s]
     """
 
@@ -107,7 +107,7 @@ def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:
     Raises
     ------
     UsageError
-        A clock was checked before it was deployed.
+        A clock was checked before the deployment.
     """
     deployed = mooring.file.deployed
     found = {}

@@ -94,7 +94,7 @@ class Knots:
 
     Attributes
     ----------
-    depth : (K,) at rest, rising [m]
+    depth : (K,) depths in still water, rising [m]
     level : (k, K) weights of the knots in the current of a level
     hung : levels that are knots, and the indices of these knots
     """
@@ -123,7 +123,7 @@ def knots_of(place: Floats, top: float, seabed: float) -> Knots:
 
     Parameters
     ----------
-    place : (k,) depths of the levels at rest, in any order [m]
+    place : (k,) depths of the levels in still water, in any order [m]
     top, seabed : depths of the top of the line and of the seabed [m]
     """
     order = np.argsort(place, kind="stable")
@@ -183,7 +183,7 @@ class ErrorScales:
     ----------
     flag : factor on the errors of a meter by its flag
     share : error of the line, as a share of the knockdown of each stretch
-    hours, reach : over which a current is correlated [h, m]
+    hours, reach : correlation time [h] and depth [m] of the current
     """
 
     flag: Mapping[int, float]

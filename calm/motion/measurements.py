@@ -156,9 +156,9 @@ def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64)
     Parameters
     ----------
     time : (m,) rising
-    value : (m,) at these
+    value : (m,) values at these times
     wanted : (n,) other times
-    gap : between known neighbours, at most
+    gap : longest gap over which values are interpolated
     """
     known = np.isfinite(value)
     if not known.any():
@@ -183,7 +183,7 @@ def measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Fl
     ----------
     one : series of the sensor
     wanted : (n,) other times
-    gap : between known neighbours, at most
+    gap : longest gap over which values are interpolated
     """
     result = interpolated(one.time, one.value, wanted, gap)
     at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
@@ -240,7 +240,7 @@ def joined(
     ----------
     points : point of each sensor
     labels : labels of all points
-    still : (p,) their depths in still water [m]
+    still : (p,) depths of all points in still water [m]
     sea_level : times, and height of the sea surface above its mean [m]
 
     Raises
@@ -323,8 +323,8 @@ class CurrentMeasurements:
     depth : (n, k) of the levels [m]; NaN for levels on the line
     label : (k,) part of the line at each level; empty for fixed depths
     u, v : (n, k) [m/s]
-    flag : (n, k); 0 without
-    source : its file
+    flag : (n, k) quality flags; 0 without flags
+    source : name of the file
     notes : remarks on the file
     false : (n,) whether an impossible speed was removed
     """
@@ -362,7 +362,7 @@ def read_currents(
     Raises
     ------
     InputError
-        A file cannot be understood.
+        A file is unreadable.
     UsageError
         A label is given for a file of several levels.
     """

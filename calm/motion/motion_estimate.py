@@ -108,13 +108,13 @@ class RecoveredMooring:
     Attributes
     ----------
     mooring : mooring with a position
-    pressures, currents : files, as their paths or as ``LABEL=PATH``
+    pressures, currents : files, as paths or ``LABEL=PATH``
     match : method of matching: by `label`, or by nominal `height` or `depth`
     fit : factors to estimate in addition to the drag
     hold_out : labels of sensors that are hidden, to judge the result
     cross_validate : whether to hide each used sensor in turn
     correct : members of `CORRECTABLE` to correct, if no other fault is as likely
-    sea_level : the height of the sea surface, as a path
+    sea_level : path of the sea-surface heights
     flags : accepted quality flags of the pressures, separated by commas
     gap : longest gap over which values are interpolated
     declination : added to the directions of the currents [degrees]
@@ -316,7 +316,7 @@ class RecoveredMooring:
         ----------
         result : result of `estimate`
         tell : receives progress messages
-        workers : threads
+        workers : number of threads
         """
         faults = (*self._faults, *self.moved, *diagnosed(self.task))
         study = replace(judged(self.task, self.measured, result, faults), notes=tuple(self.notes))
@@ -352,16 +352,16 @@ def estimate_motion(
     Parameters
     ----------
     mooring : mooring with a position
-    pressures : of the sensors on the line: a file or several, as paths or as ``LABEL=PATH``, an
-        `xarray.Dataset` as such a file holds it, or a `pandas.DataFrame` with an index of times and
-        columns such as ``LABEL[dbar]``
+    pressures : pressures of the sensors on the line: one or several files, as paths or
+        ``LABEL=PATH``, an `xarray.Dataset` with the contents of such a file, or a
+        `pandas.DataFrame` with an index of times and columns such as ``LABEL[dbar]``
     currents : records of currents, in the same forms; if empty, CALM infers the currents from the
         pressures
     match : method of matching sensors: by `label`, or by nominal `height` or `depth`
     fit : factors to estimate for the whole record besides the drag: `buoyancy`, `length`
     hold_out : labels of sensors that are hidden, to judge the result
     cross_validate : hide each used sensor in turn, and judge the result
-    sea_level : the height of the sea surface over time, as a path
+    sea_level : path of the sea-surface heights over time
     flags : accepted quality flags of the pressures
     gap : longest gap over which values are interpolated [s]; two hours by default
     declination : added to the directions of the currents [degrees]

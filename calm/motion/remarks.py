@@ -217,8 +217,8 @@ class Agreement:
 
     Attributes
     ----------
-    count : times that have both
-    bias : mean of computed less measured over them [m]
+    count : number of times with both depths
+    bias : mean of computed less measured depth [m]
     rms : root of the mean square of that difference less its mean over the calm times [m]
     r : correlation of computed and measured
     slope : regression slope of computed on measured depths
@@ -251,8 +251,8 @@ def difference(
     Parameters
     ----------
     computed, measured : (n,) depths [m]
-    calm : (n,) times of the least knockdown
-    among : (n,) times that count
+    calm : (n,) mask of the times with the smallest knockdown
+    among : (n,) mask of the times to compare
     """
     off = np.where(among, computed - measured, np.nan)
     at_rest = off[calm & np.isfinite(off)]
@@ -274,8 +274,8 @@ def agreement(
     Parameters
     ----------
     computed, measured : (n,) depths [m]
-    calm : (n,) times of the least knockdown
-    among : (n,) times that count
+    calm : (n,) mask of the times with the smallest knockdown
+    among : (n,) mask of the times to compare
     """
     both = among & np.isfinite(computed) & np.isfinite(measured)
     count, nan = int(both.sum()), float("nan")
@@ -303,14 +303,14 @@ def coverage(off: Floats, deviation: Floats) -> float:
 def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
     """Return (n,) depths at a point [m], interpolated linearly between the nearest sensors.
 
+    Extrapolation uses the two nearest sensors; a single sensor shifts all points equally.
+
     Parameters
     ----------
-    depth : (n, s) of the sensors; NaN at a time leaves that time without
+    depth : (n, s) depths of the sensors; a NaN gives NaN at that time
     point : (s,) points of the sensors
     still : (p,) depths in still water
-    wanted : the point
-
-    Extrapolation uses the two nearest sensors; a single sensor shifts all points equally.
+    wanted : index of the point
     """
     from scipy.interpolate import make_interp_spline
 

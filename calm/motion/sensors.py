@@ -54,7 +54,7 @@ def read_sensors(
     InputError
         A file cannot be read, or holds no pressures with their unit.
     UsageError
-        A label is given for a file of several sensors; two sensors are called the same.
+        A label is given for a file of several sensors; two sensors have the same label.
     """
     found: list[InstrumentSeries] = []
     for label, path in instrument_series.files_given(given):
@@ -356,13 +356,13 @@ def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, s
     Parameters
     ----------
     labels : (s,) of the sensors
-    depth : (n, s) as measured [m]
+    depth : (n, s) measured depths [m]
     place : (s,) depths of the sensors in still water [m]
 
     Raises
     ------
     UsageError
-        Half of the sensors or more are nowhere near their places on the line, so that a unit or the
+        Half of the sensors or more are far from their places on the line, so that a unit or the
         line is wrong; or two labels are exchanged.
     """
     reasons: dict[str, str] = {}

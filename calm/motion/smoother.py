@@ -26,12 +26,12 @@ class StateSpace:
 
     Attributes
     ----------
-    fade : (n, q) share of each state that is left since the time before; the first row is not used
+    fade : (n, q) decay factor of each state since the previous time; the first row is not used
     gained : (n, q) growth of the steady variances since the previous time, as a share of `steady`
-    steady : (q, q) covariance of states that fade
+    steady : (q, q) covariance of states that decay
     stepped : (n, q) noise variances of persistent states since the previous time
     first : (q, q) covariance at the first time; the mean is 0 throughout
-    seen : (n, m, q) slopes of the readings; rows that hold at every time may come as (1, m, q)
+    seen : (n, m, q) slopes of the readings; constant rows may have the shape (1, m, q)
     read, noise : (n, m) readings, NaN if missing, and their variances
     """
 

@@ -72,13 +72,13 @@ class MotionEstimate:
     ----------
     task : task with the common unknowns of the record
     dataset : the result of `calm motion`
-    factors : each factor of the whole record with the ends of its interval of 95 %
+    factors : each factor of the whole record with its 95 % interval
     sensors, plain : agreement of each used sensor with the estimate, and with the currents alone
     held_out : accuracy of the depths of each hidden sensor
     diagnosis : faults of sensors, line and currents, with sizes and odds
     fits : whether the line is consistent with its pressures in these currents
     remarks : doubts about the data, in sentences
-    false : times at which the current of a level looks false, by its name
+    false : times at which the current of a level is probably false, by level name
     notes : notes on the input, in sentences
     """
 
@@ -269,7 +269,7 @@ def judge_hidden(
     measured : measurements of all sensors
     used : measurements of the used sensors
     label : label of the hidden sensor
-    depth, spread : (n,) estimated there, and its deviation [m]
+    depth, spread : (n,) estimated depth of the sensor, and its deviation [m]
     still : (p,) depths in still water [m]
     """
     column = measured.label.index(label)
@@ -309,7 +309,7 @@ def cross_validated(
     ----------
     mooring, measured, names, hidden, prior : see `prepare`
     tell : receives progress messages
-    workers : threads
+    workers : number of threads
 
     Raises
     ------

@@ -85,8 +85,8 @@ def line_suspects(
 
     Parameters
     ----------
-    moments : at some of the times
-    way, at : the currents there, and the line in them
+    moments : line response at several times
+    way, at : currents at these times, and the line in them
     """
     one, factors = moments.measured, task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
@@ -222,7 +222,7 @@ def torn(measured: MooringMeasurements, distance: Floats) -> tuple[MooringMeasur
 
     Parameters
     ----------
-    distance : (p,) of the points along the line [m]
+    distance : (p,) distances of the points along the line [m]
     """
     depth, place = measured.depth, distance[measured.point]
     away = np.abs(depth - np.nanmedian(depth, axis=0))

@@ -5,7 +5,7 @@ no effect on the depths. The logarithms of the speeds are normal. Their mean and
 learnt from the record by expectation and maximisation (Dempster, Laird and Rubin 1977). Each time
 is fitted by Gauss-Newton under the current law; the law is then updated to the mean and covariance
 of the fits, including their uncertainty. The prior law persists if the pressures do not constrain
-it. The line has also a smooth error along its length, a share of the knockdown; the pressures
+it. The line also has a smooth error along its length, a share of the knockdown; the pressures
 choose the most likely of several shares.
 
 The fits of the learning times are stored. Every other time starts from the stored fit with the
@@ -122,7 +122,7 @@ def shaped_law(
 
     Parameters
     ----------
-    record : the currents, anywhere and at any time
+    record : currents from any place and time
     still : depths of the parts of the line in still water, by label [m]
     """
     knots, (mean, covariance) = measured.level_depth[0], assumed_law(measured)

@@ -60,7 +60,7 @@ def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | N
 
     Parameters
     ----------
-    layers : dimensions and coordinates of levels with bounds, over each of which a mean is a value
+    layers : dimensions and coordinates of levels with bounds; means over these layers are accepted
     """
     methods = str(variable.attrs.get("cell_methods", ""))
     for dims, method, over in _METHOD.findall(methods):

@@ -335,7 +335,7 @@ def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> F
     ----------
     dataset : dataset of the instruments
     dimension : dimension of the instruments; None for a single instrument
-    seabed : depth of the water, for heights above it [m]
+    seabed : water depth, for heights above the seabed [m]
     """
     dims = () if dimension is None else (dimension,)
     for names, sign, start in ((_HEIGHTS, -1.0, seabed), (_DEPTHS, 1.0, 0.0)):

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 AHEAD = 16_000_000
-"""Upper limit on the size of profiles read together because the file compresses them together."""
+"""Maximum size of profiles that are read together because the file compresses them so [bytes]."""
 
 LOOKED_AT = 64_000_000
-"""Size of the sample of a record that is tested for doubtful values, spread over the record."""
+"""Sample size for tests of doubtful values, spread evenly over the record [bytes]."""
 
 
 class CurrentDataset:
@@ -40,9 +40,9 @@ class CurrentDataset:
     ----------
     times : (n,) in the order of the file; None for a profile without a time
     notices : remarks to read before the data are used
-    turned : angle by which a current relative to magnetic north was turned
+    turned : notice of the rotation from magnetic to true north, if any
     rules : rules by which the file was read
-    source : names of the variables, and the place
+    source : names of the variables, and the place of the column
     labels : see `Record`
     """
 

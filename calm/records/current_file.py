@@ -52,7 +52,7 @@ def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[Curre
     Raises
     ------
     InputError
-        With the mistakes of the file.
+        The file has mistakes.
     TimeChoiceError
         The time is not in the file, or is missing although the file has several.
     """

@@ -178,7 +178,7 @@ class CopiedTable:
     Attributes
     ----------
     headings : column headings; None if the first line holds numbers
-    rows : cells without the blanks around them, as many in each as there are columns
+    rows : stripped cells, as many in each row as there are columns
     """
 
     headings: tuple[str, ...] | None
@@ -197,7 +197,7 @@ def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = 
     Raises
     ------
     InputError
-        It cannot be read, is empty, or has no header.
+        The file is unreadable or empty, or has no header.
     """
     if lines is None:
         text = decoded(path, COMMENT.sub(rb"\1", read_content(path, largest=LARGEST_CSV)))
@@ -222,7 +222,7 @@ def table_lines(
     Raises
     ------
     InputError
-        There is no line, or no header.
+        There are no lines, or no header.
     """
     lines = _content(lines)
     sample = list(islice(lines, _SAMPLE))

@@ -41,7 +41,7 @@ def as_files(given: Any, folder: Path, name: str) -> list[str]:
     Raises
     ------
     TypeError
-        A record is neither a path nor of xarray or pandas.
+        A record is not a path, nor an object of xarray or pandas.
     """
     if isinstance(given, str | Path) or not isinstance(given, Sequence):
         given = [given]

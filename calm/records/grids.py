@@ -27,7 +27,7 @@ REACH = 8
 """Columns on each side of the nearest one that are searched for water."""
 
 FAR = 5.0
-"""Distance from the mooring above which the place of a single-point record is reported [km]."""
+"""Distance above which a record's drift, or its distance from the mooring, is reported [km]."""
 
 _EARTH = 6371.0
 _LATITUDES = ("lat", "latitude", "LATITUDE", "nav_lat", "Latitude", "LAT")
@@ -65,14 +65,14 @@ def choose_column(
 
     Parameters
     ----------
-    velocity : the two variables that must have a value in it
+    velocity : names of the two velocity variables, which must have values in the column
     time : dimension of the times
 
     Raises
     ------
     UnreadableError
-        There are several and no place is given, the place is outside the grid, or no column near
-        it has water.
+        The file has several columns and no place is given, the place is outside the grid, or no
+        column nearby has water.
     """
     import xarray as xr
 

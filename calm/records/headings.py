@@ -57,7 +57,7 @@ def column_unit(
 
     Parameters
     ----------
-    column : its heading, for the message
+    column : heading of the column, for messages
     unit : unit in the heading, may be empty
     dimensions : allowed dimensions, keys of `calm.units.DIMENSIONS`
     usual : unit to suggest; by default that in SI
@@ -65,7 +65,7 @@ def column_unit(
     Raises
     ------
     QuantityError
-        The unit is unknown, or of something else; its text is the whole message.
+        The unit is missing, unknown, or of another dimension; the text is a complete message.
     """
     name = heading(column, dimensions)[0]
     if not unit and dimensions[0] in HEMISPHERES:
@@ -180,7 +180,7 @@ def read_named_columns(
     Parameters
     ----------
     table : table of a file
-    known : dimensions of the columns by their names, blanks in which may be underscores
+    known : dimension of each known column by name; spaces in names are read as underscores
     problems : list to which mistakes are added
     other_names : alternative names of columns
     """
@@ -217,7 +217,7 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     Raises
     ------
     InputError
-        With every mistake.
+        The table has mistakes; all are listed.
     """
     table = delimited.read_table(path, f"time,{example}")
     header = table.header

@@ -75,7 +75,7 @@ class InstrumentSeries(Identity):
     ----------
     time : (n,) to the nanosecond, rising
     value : (n,) in the unit of the quantity; NaN if missing or rejected by its flag
-    dropped : readings that were left out for their flag
+    dropped : number of readings rejected by their flags
     below : depth of a profiler's bin below the instrument [m]
     note : remarks on doubts and assumptions
     card : summary card of the file
@@ -423,9 +423,9 @@ class Readings:
     time : (n,) rising
     axis, along : dimensions of the times and of the instruments; None for a single instrument
     values : (n, k) of each variable, in file units
-    dropped : (n, k) which are left out for the flag of any
+    dropped : (n, k) mask of readings rejected by a flag of any variable
     clock : name and unit of the times
-    flags : readings that are left out, by the variable of flags
+    flags : number of rejected readings by flag variable
     """
 
     time: NDArray[np.datetime64]
@@ -456,7 +456,7 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
     Raises
     ------
     UnreadableError
-        They have no times, or are not of times and instruments alone.
+        The variables have no times, or dimensions other than times and instruments.
     """
     first = dataset[names[0]]
     clock = cf_files.find_times(dataset, names[0])
@@ -517,7 +517,7 @@ def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str
     Parameters
     ----------
     along : dimension of the instruments; None for a file of one instrument
-    seabed : depth of the water, for heights above it [m]
+    seabed : water depth, for heights above the seabed [m]
     source : name of the file
     """
     if along is None:

@@ -41,8 +41,9 @@ class LevelDepths:
     ----------
     variable : level variable; it has no dimension that the velocity lacks
     factor : factor to metres with sign, negative if values increase upwards
-    start : depth of their zero [m]
-    instrument : depth of the instrument they are counted from, and its factor to metres
+    start : depth of the zero of `values` [m]
+    instrument : depth variable of the instrument from which levels are counted, and its factor to
+        metres
     notes : remarks on assumptions
     """
 

@@ -106,7 +106,7 @@ def strength_doubts(depth: Floats, speed: Floats, water_depth: float) -> Iterato
     ----------
     depth : (n,) of the levels [m]
     speed : (n,) maximum at each depth [m/s]
-    water_depth : [m]; inf if unknown
+    water_depth : water depth [m]; inf if unknown
     """
     if not _SHELF < water_depth < inf:
         return

@@ -30,10 +30,10 @@ class QuantityTable:
 
     Attributes
     ----------
-    columns : names with their unit, ``"depth m"`` or ``"depth[m]"``; without, each value has its
-        own
+    columns : names with their units, ``"depth m"`` or ``"depth[m]"``; without a unit, each value
+        has its own
     rows : numbers, or quantities with a unit, as text
-    report : makes a mistake of its place and a message
+    report : function that builds a mistake from a place and a message
     problems : list to which mistakes are added
     """
 
@@ -248,7 +248,7 @@ def read_current(table: QuantityTable, terms: Terms = _AS_THEY_STAND) -> Current
     Parameters
     ----------
     table : with `depth`, with `u` and `v`, or `speed` and `toward` or `from`, and optionally `w`. A
-        unit such as ``"deg magnetic"`` says that a column is relative to magnetic north.
+        unit such as ``"deg magnetic"`` marks a column as relative to magnetic north.
     terms : options: the declination for columns relative to magnetic north, and the maximum speed
     """
     found = read_currents(table, terms)

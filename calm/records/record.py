@@ -52,7 +52,7 @@ class Record(ABC):
     ----------
     time : (n,) to the nanosecond, rising
     notes : rules by which the record was read, and doubts about it
-    source : its file, its variables and its place, by name
+    source : file, variables and place, by name
     cards : summary card of each file
     labels : parts of a line at which the levels are placed (without depths), else empty
     """
@@ -131,14 +131,14 @@ def choose_profiles(
     Parameters
     ----------
     times : (n,) in the order of the file
-    period : first and last time wanted; None for all
+    period : first and last time to read; None for all
     every : read one profile in this number
     path : path of the record, for messages
 
     Raises
     ------
     InputError
-        The record has no times, or a time twice.
+        The record has no times, or repeats a time.
     UsageError
         No profile is in the period, or `every` is not positive.
     """

@@ -170,7 +170,8 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float) ->
     Raises
     ------
     UsageError
-        Waves higher, longer or steeper than there are; a period that follows from the height.
+        The waves are higher, longer or steeper than any real sea, or a period is given although
+        it follows from the height.
     """
     if kind == "ochi-hubble":
         if period is not None:

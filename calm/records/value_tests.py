@@ -95,7 +95,7 @@ def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) ->
     Parameters
     ----------
     depth : (k,) or (n, k) of the levels [m]
-    known : (n, k) which have a value
+    known : (n, k) mask of values present
     water_depth : water depth [m]; inf if unknown
     """
     there, levels = known.any(axis=0), _levels(depth, known)
@@ -138,7 +138,7 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
 
     Parameters
     ----------
-    top, bottom : its first and its last level [m]
+    top, bottom : first and last level of the profile [m]
     water_depth : water depth [m]; inf if unknown
     what : quantity of the profile
     """
