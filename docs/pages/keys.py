@@ -72,6 +72,7 @@ _SECTIONS = {
     "ReleaseKeys": "`releases:`, an item",
     "Deployed": "`deployed:`",
     "DeployedItem": "`deployed: items:`, an item",
+    "ClockCheck": "`deployed: items: clock:`, the clock of an instrument",
 }
 
 
