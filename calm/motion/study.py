@@ -74,7 +74,7 @@ class MotionEstimate:
     dataset : the result of `calm motion`
     factors : each factor of the whole record with its 95 % interval
     sensors, plain : agreement of each used sensor with the estimate, and with the currents alone
-    held_out : accuracy of the depths of each hidden sensor
+    held_out : errors of the estimated depths of each hidden sensor
     diagnosis : faults of sensors, line and currents, with sizes and odds
     fits : whether the line is consistent with its pressures in these currents
     remarks : doubts about the data, in sentences
