@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 from calm.checks.assessment import Assessment
 from calm.checks.comparison import Comparison
@@ -11,6 +12,7 @@ from calm.report.check_matrix import SummaryRow, mooring_page, summary_page, sum
 from calm.report.check_pages import basis_page, checks_page, handling_page
 from calm.report.drawing_page import drawing_pages
 from calm.report.explanation import comparison_part
+from calm.report.likelihood import likelihood_tables
 from calm.report.line_page import line_page
 from calm.report.load_cases import load_cases
 from calm.report.open_items import open_items
@@ -45,7 +47,8 @@ def mooring_section(
     signed = signed_mooring(assessment)
     pages = (
         page_one(signed, paper), drawing_pages(signed, paper), line_page(signed),
-        checks_page(signed), handling_page(signed), basis_page(signed, paper),
+        chain(checks_page(signed), _likelihood(assessment)), handling_page(signed),
+        basis_page(signed, paper),
     )  # fmt: skip
     parts = [*_pages(pages)]
     if against is not None:
@@ -55,10 +58,14 @@ def mooring_section(
     )
 
 
+def _likelihood(assessment: Assessment) -> Iterator[Block]:
+    return likelihood_tables([(assessment.name, [*assessment.all_findings()])])
+
+
 def short_section(assessment: Assessment) -> CheckedSection:
     """One page of a mooring, behind the summary of many."""
     signed = signed_mooring(assessment)
-    parts = tuple(_pages([mooring_page(signed)]))
+    parts = tuple(_pages([chain(mooring_page(signed), _likelihood(assessment))]))
     return CheckedSection(assessment.name, parts, signed.running(), row=summary_row(assessment))
 
 

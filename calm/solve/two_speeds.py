@@ -32,7 +32,7 @@ AS_MANY = 8
 class CompiledPart(Enum):
     """A part of the solver that is compiled by itself. Its value is the law compiled last."""
 
-    LINE = "find_now"
+    LINE = "call_search"
     NEARBY = "audited"
     LEGS = "do_task"
 

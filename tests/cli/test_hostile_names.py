@@ -147,6 +147,6 @@ def test_where_there_is_ascii_only_signs_are_written_out(folder, monkeypatch, tm
     sys.stdout.flush()
     printed = screen.getvalue().decode("ascii")
     assert "?" not in printed
-    assert " deg from the vertical" in printed and "Cn x 1.5" in printed
+    assert " deg from the vertical" in printed and "cables x 1.5" in printed
     units = next(line.split() for line in printed.splitlines() if " deg " in line)
     assert units == ["m", "m", "m", "m", "m", "deg", "N"]

@@ -75,12 +75,13 @@ def test_an_id_of_the_file_is_not_defined_again(drive, small):
             next(field for field in form.query(Field) if field.key == key).input.value = text
         await driver.pilot.pause()
         assert "logger is defined in this file already" in driver.screen
-        assert "exists in the catalogue" not in driver.screen
+        assert "The component is valid" not in driver.screen
         await driver.press("ctrl+s")
         assert driver.app.screen is form
         next(field for field in form.query(Field) if field.key == "id").input.value = "sbe37"
         await driver.pilot.pause()
         assert "sbe37 exists in the catalogue" in driver.screen
+        assert "The component is valid" in driver.screen
         await driver.press("escape")
         assert driver.text == before
 

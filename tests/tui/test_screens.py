@@ -241,7 +241,7 @@ def test_a_component_of_ones_own(drive, small):
         assert "needs `buoyancy`" in driver.screen
         await fill(driver, "buoyancy", "-40 N")
         await driver.pilot.pause()
-        assert "It can be used" in driver.screen
+        assert "The component is valid" in driver.screen
         await driver.press("ctrl+s")
         await driver.settle()
         assert driver.session.draft.value(("components", "my-meter")) == {
@@ -361,12 +361,13 @@ def test_what_was_deployed_at_a_row(drive, small):
         for text in ("R7", "58.2 m", "cut on deck"):
             await driver.type(text)
             await driver.press("enter")
+        await driver.press("ctrl+s")  # nothing about its clock
         await driver.settle()
         rope = {"label": "rope", "serial": "R7", "length": "58.2 m", "remark": "cut on deck"}
         assert driver.session.draft.value(("deployed", "items")) == [rope]
         await driver.press("down", "down", "at", *["enter"] * 5)
         await driver.type("frayed")
-        await driver.press("enter")
+        await driver.press("ctrl+s")
         await driver.settle()
         deep = {"label": "deep logger", "remark": "frayed"}
         assert driver.session.draft.value(("deployed", "items")) == [rope, deep]
@@ -382,7 +383,7 @@ def test_what_was_deployed_at_a_row(drive, small):
         codes = {"serial": "AR 7", "codes": {"arm": "0A1B", "release": "0A55"}}
         assert driver.session.draft.value(("releases",)) == [codes]
         assert driver.session.draft.problems == ()
-        await driver.press("up", "at", *["enter"] * 5, "ctrl+u", "enter")
+        await driver.press("up", "at", *["enter"] * 5, "ctrl+u", "ctrl+s")
         await driver.settle()
         labels = [one["label"] for one in driver.session.draft.value(("deployed", "items"))]
         assert labels == ["rope", "releaser"]
@@ -421,7 +422,7 @@ def test_a_tow_is_edited_the_same_way(drive, folder):
 def test_a_tow_is_built_from_nothing(drive, folder):
     async def story(driver):
         await driver.press("T")
-        assert "has no anchor" in " ".join(driver.screen.replace("│", " ").split())
+        assert "without an anchor" in " ".join(driver.screen.replace("│", " ").split())
         for text in ("4 knot", "90", "3"):
             await driver.type(text)
             await driver.press("enter")

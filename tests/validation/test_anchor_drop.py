@@ -323,8 +323,8 @@ def test_a_line_that_rests_astray_is_cut_finer(loaded, monkeypatch):
     astray = drop_plan(mooring, fineness=FEW)
     assert astray.depths == ()
     assert [moment.name for moment in astray.moments][-1] == "touchdown"
-    assert any("the depths of instruments are not shown" in said for said in astray.warnings)
-    assert any("takes 30 s only: inertia" in said for said in astray.warnings)
+    assert any("The depths of instruments are not shown" in said for said in astray.warnings)
+    assert any("The fall takes only 30 s. Inertia" in said for said in astray.warnings)
 
 
 SUBMERGED = """

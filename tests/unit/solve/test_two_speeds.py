@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -41,7 +42,7 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[Child]:
 
 @pytest.mark.parametrize(("lines", "compiled"), [(WARM - 1, False), (WARM, True)])
 def test_cached_code_is_loaded_for_many_lines(started, monkeypatch, lines, compiled) -> None:
-    monkeypatch.setattr(two_speeds, "is_cached", lambda law: law == "find_now")
+    monkeypatch.setattr(two_speeds, "is_cached", lambda law: law == CompiledPart.LINE.value)
     expect_many(lines)
     assert runs_compiled(LEFT_OPEN) is compiled
     assert not runs_compiled(LEFT_OPEN, solver=CompiledPart.LEGS)
@@ -119,3 +120,9 @@ def test_the_child_leaves_in_the_cache_what_the_solver_loads(monkeypatch, tmp_pa
         assert two_speeds.is_cached(solver.value)
     finally:
         two_speeds.cache_folder.cache_clear()
+
+
+def test_every_part_is_named_by_a_function_of_the_solver() -> None:
+    folder = Path(two_speeds.__file__).parent
+    sources = "".join(path.read_text("utf-8") for path in folder.glob("*.py"))
+    assert all(f"\ndef {part.value}(" in sources for part in CompiledPart)
