@@ -53,14 +53,23 @@ def visit(tmp_path, monkeypatch):
         sent = Sent()
 
         async def told():
-            page = WebPage(sent, tmp_path / "moorings", 130, 40)
-            building = asyncio.ensure_future(page.run())
+            page, over = WebPage(sent, tmp_path / "moorings", 130, 40), False
+
+            async def built():
+                while not over:
+                    await page.build()
+
+            building = asyncio.ensure_future(built())
             try:
                 await until(lambda: page.app is not None and page.app.is_running)
                 await until(lambda: page.app.is_idle)
                 await story(page, sent)
             finally:
-                building.cancel()
+                over = True  # Textual may swallow a cancellation, and another builder would begin
+                while not building.done():
+                    if page.app is not None:
+                        page.app.exit(0)
+                    await asyncio.sleep(0.02)
 
         asyncio.run(told())
         return sent
