@@ -72,7 +72,7 @@ def main(counts: list[int], times: int) -> None:
                 lambda result=result, parts=parts: cuts_of(result, parts, Order.ANCHOR_LAST),
                 lambda line=line: deck_of([line], Order.ANCHOR_FIRST),
                 lambda line=line: drop_plan(line),
-                lambda deck=deck: printed(deck_report(deck, Paper("a4")), Paper("a4"), least=7.5),
+                lambda deck=deck: printed(deck_report(deck, Paper("a4")), Paper("a4")),
                 lambda line=line, more=more: comparison_of(("a", "b"), line, more),
             ]
             figures = "".join(f"{fastest(work, times):10.3f}" for work in works)
