@@ -404,8 +404,10 @@ def governing(findings: Iterable[Finding]) -> Finding:
     If utilisations are equal, the most severe of these findings is returned.
     """
     found = [*findings]
-    used = [one for one in found if one.utilisation is not None]
-    return min(used or found, key=lambda one: (-(one.utilisation or 0.0), one.rank))
+    used = [(use, one) for one in found if (use := one.utilisation) is not None]
+    if not used:
+        return min(found, key=lambda one: one.rank)
+    return min(used, key=lambda pair: (-pair[0], pair[1].rank))[1]
 
 
 def governing_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:

@@ -92,15 +92,12 @@ def judge(
     drawn : how the sections of the report are drawn; None without a report
     draws : samples and seed of the probabilities; None without them
     """
-    from calm.checks.situations import SOLVES
     from calm.report.provenance import moment
-    from calm.solve import expect_many
 
     day = (moment() or datetime.now()).date()
     stands = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
-    expect_many(SOLVES * len(stands))
+    load_ahead(len(stands), drawn is not None)
     if len(designs) > progress.FEW:
-        load_ahead(len(stands), drawn is not None)
         whole = [(number, design, day, drawn, draws) for number, design in enumerate(designs, 1)]
         return progress.mapped(_solve_and_conclude, whole, workers, "moorings judged")
     solved = iter(progress.mapped(_stands, stands, workers, "environments solved"))

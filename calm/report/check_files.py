@@ -42,10 +42,11 @@ def listed_findings(
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}
+    leads = map(governing, grouped(found, _listed_as))
     kept = leading | {
-        id(governing(group))
-        for group in grouped(found, _listed_as)
-        if group[0].state is not State.PASS or (governing(group).utilisation or 0.0) >= MUCH_USED
+        id(lead)
+        for lead in leads
+        if lead.state is not State.PASS or (lead.utilisation or 0.0) >= MUCH_USED
     }
     for one in found:
         if every or id(one) in kept:

@@ -16,8 +16,6 @@ from calm.checks.finding import (
     Conclusion,
     Finding,
     State,
-    by_rule,
-    governing,
     governing_of_each_rule,
 )
 from calm.checks.situations import FOULED, STILL, STILL_LOW, STRUMMING
@@ -171,7 +169,7 @@ def _title(finding: Finding) -> str:
 
 def _rows(every: Sequence[Finding]) -> tuple[list[Finding], list[Finding]]:
     """Select the findings to show in rows, and return the governing ones of other rules."""
-    failed = [governing(each) for each in by_rule(_of_state(every, State.FAIL)).values()]
+    failed = governing_of_each_rule(_of_state(every, State.FAIL))
     leads = _without_repeats(governing_of_each_rule(every))
     used = [one for one in leads if one.utilisation is not None and one not in failed]
     used.sort(key=lambda one: -(one.utilisation or 0.0))

@@ -5,11 +5,9 @@ from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import groupby
-from math import hypot
 from operator import attrgetter
 from typing import TypeVar
 
-from calm.case.leg_result import LegResult
 from calm.checks.assess import RULES
 from calm.checks.criterion import said
 from calm.checks.finding import AS_GIVEN, Finding, State, worst_of
@@ -142,22 +140,6 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
         note="A limit that departs from its default is the design's own; no source is given "
         "for it.",
     )
-
-
-def _counted(count: int, word: str) -> str:
-    return f"{count} {word}{'s' * (count != 1)}"
-
-
-_RESULTS: dict[str, Callable[[LegResult], float | None]] = {
-    "depth": lambda result: result.top.depth,
-    "knockdown": lambda result: result.top.knockdown,
-    "offset": lambda result: hypot(result.top.x, result.top.y),
-    "tilt": lambda result: float(result.components.tilt.max()),
-    "tension": lambda result: float(result.components.tension.max()),
-    "vertical": lambda result: result.anchor_load.vertical,
-    "horizontal": lambda result: result.anchor_load.horizontal,
-    "required_weight": lambda result: result.anchor_load.required_weight,
-}
 
 
 def inventory_table(items: Sequence[InventoryItem]) -> Table:

@@ -54,7 +54,6 @@ MARKS = {
 }  # fmt: skip
 """Signs of the states in print."""
 _HALF = 0.4999  # of the capacity: what is used more is shown on page one
-_LONGEST = 30  # letters of a name in a table of page one
 
 MOST_REVISIONS = 3
 

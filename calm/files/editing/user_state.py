@@ -68,7 +68,7 @@ class Remembered:
         self.favourites, self.recent = ids
 
     def take(self, id: str) -> None:
-        """Record that a component was chosen; if it cannot be saved, only for this session."""
+        """Record that a component was chosen; unsaved, it lasts until the builder ends."""
         self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
         with suppress(OSError):
             self._keep()
@@ -79,7 +79,7 @@ class Remembered:
         Raises
         ------
         OSError
-            The mark could not be saved, and applies to this session only.
+            The mark could not be saved, and lasts until the builder ends.
         """
         is_new = id not in self.favourites
         self.favourites = [each for each in self.favourites if each != id]

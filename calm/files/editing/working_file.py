@@ -36,7 +36,7 @@ class NotWritten(CalmError):
 class WorkingFile:
     """A mooring file that is being edited, and the copy of its unsaved text.
 
-    The copy belongs to this session. Copies of other sessions are read, and removed only after
+    The copy belongs to this builder. Copies of other builders are read, and removed only after
     their work was adopted by `adopt` or discarded.
 
     Parameters
@@ -130,7 +130,7 @@ class WorkingFile:
     def keep(self) -> Path | None:
         """Update the copy to `unsaved`, and return its path; may be called from any thread.
 
-        The copy of this session is removed if the text is saved. NotWritten: the copy can be
+        The copy of this builder is removed if the text is saved. NotWritten: the copy can be
         written neither next to the file nor in the state folder.
         """
         with self._lock:
