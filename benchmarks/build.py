@@ -66,7 +66,7 @@ PRACTISED = (
     ("depth and current", _WATER),
     ("top float", "aore-41<Enter>"),
     ("a shot and the glass below it", "d-8-5<Enter>320<Enter>shot<Enter>cluster-4<Enter><Esc>"),
-    ("twelve of both", "<Shift+Up>R11<Enter>"),
+    ("twelve of both", "<Shift+Up>+11<Enter>"),
     ("release, chain, anchor", _ENDS),
     ("lengths of the shots", f"<Home><Down>#l{_entered(_LENGTHS)}"),
     ("an instrument", "<Home><Down>isbe37<Enter>10<Enter><Enter><Esc>"),
@@ -288,7 +288,7 @@ def edits(text: str, repetitions: int) -> Iterable[tuple[str, list[float], list[
     kinds: dict[str, Callable[[int], str]] = {
         "length": lambda i: text.replace("length: 395 m", f"length: {395 + i / 10:.1f} m"),
         "current": lambda i: text.replace("[300, 0.45, 68]", f"[300, {0.45 + i / 1000:.3f}, 68]"),
-        "label": lambda i: text.replace("label: wire 1}", f"label: wire 1 {i}}}"),
+        "label": lambda i: text.replace("label: wire 1,", f"label: wire 1 {i},"),
     }
     for kind, edited in kinds.items():
         view = judge(text)
