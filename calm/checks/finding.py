@@ -108,7 +108,7 @@ class MissingFigure:
 
     Attributes
     ----------
-    component_id : as in `use`
+    component_id, kind : as in `use`; kind of the component
     quantity : key of the component
     needed_by : names of the rules that require the value
     pieces, places : labels and places of the affected pieces and clamps
@@ -116,6 +116,7 @@ class MissingFigure:
     """
 
     component_id: str
+    kind: str
     quantity: str
     needed_by: tuple[str, ...]
     pieces: tuple[str, ...]
