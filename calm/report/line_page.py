@@ -41,8 +41,8 @@ def line_page(signed: SignedMooring) -> Iterator[Block]:
     ]  # fmt: skip
     title = f"Tension and capacity, {unit}"
     aside = (
-        "by item; black: standing, grey: launch; tick: capacity, dotted: in the launch; "
-        "▲ beyond the scale; ? not known"
+        "by item; black: moored, grey: launch; tick: capacity, dotted: capacity in the launch; "
+        "▲ beyond the scale; ? unknown"
     )
     yield Figure(title, load_chart(title, points, (508.0, 130.0)), aside=aside)
     if hardware:
@@ -88,7 +88,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         number("No.", lambda row: run_of([str(one.number) for one in row[1]])),
         words("Item", lambda row: together([one.row.label for one in row[1]])),
         number(f"Largest tension {unit}", of(case)),
-        number(f"Least {unit}", of(
+        number(f"Mini-\nmum {unit}", of(
             lambda one: None if one.row.role in passes else load_text(one.least))),
         number("Largest tilt °", of(
             lambda one: None if one.row.role == "anchor" else QUANTITIES["tilt"].format(one.tilt))),
@@ -99,9 +99,10 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         number(f"Capa-\ncity {unit}", of(lambda one: capacity_text(one.launch))),
         number("Use %", of(lambda one: _use(one.launch))),
         number(f"Rise {unit}", of(lambda one: _force(one.rise_tension))),
-        note="Capacity: the lesser of the working load and the breaking load over its safety "
-        "factor; in the launch by the factors there. The case stands behind the tension. "
-        "≈ estimated, ? no published load, ○ accepted. Of equal pieces the one that is used most.",
+        note="Capacity is the smaller of the working load and the breaking load over its safety "
+        "factor, with the factors of the launch there. The code of the case follows the tension. "
+        "≈ estimated, ? no published load, ○ accepted. Equal pieces share a row, with the values "
+        "of the most loaded piece.",
         aside="envelope of all load cases",
         ruled=False,
     )  # fmt: skip
@@ -147,12 +148,12 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
         words("Type", lambda row: row[0].row.part.component.name or row[0].row.use, 1.2),
         number("Pieces", lambda row: len(row[1])),
         words("Governing piece", lambda row: f"{row[0].number} {row[0].row.label}"),
-        number(f"Standing {unit}", lambda row: load_text(row[0].tension)),
+        number(f"Moored {unit}", lambda row: load_text(row[0].tension)),
         number(f"Capacity {unit}", lambda row: capacity_text(row[0].standing)),
         number("Use %", lambda row: _use(row[0].standing)),
         number(f"Launch {unit}", lambda row: _force(worst_launch(row).launch_tension)),
         number("Use %", lambda row: _use(worst_launch(row).launch)),
-        aside="a row a type; the piece that governs",
+        aside="one row per type, for the governing piece",
         ruled=False,
     )
 
@@ -200,6 +201,6 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
         number("Sliding use %", sliding),
         note=f"Required: {factor:g} (V + H / {first.anchor_load.friction:.3g}). Uplift: V against "
         f"weight / {factor:g}. Sliding: H against {first.anchor_load.friction:.3g} "
-        f"(weight / {factor:g} − V). The soil is not judged.",
+        f"(weight / {factor:g} − V). Soil strength is not checked.",
         ruled=False,
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Figures that components do not give and rules need, as a block of YAML to complete."""
+"""Missing values that rules need, as a block of YAML to complete."""
 
 import json
 import re
@@ -10,9 +10,9 @@ from calm.checks.missing import alternatives
 from calm.report.check_tables import grouped, named
 
 _HEAD = """\
-# Figures that calm check needs and the components do not give. Write what you know after the
-# colons. Put the keys of a component that the mooring file defines into that definition, and the
-# other entries under `components:` of the file. A key without a value stays unknown.
+# Values that calm check needs and the components lack. Write the known values after the colons. Put
+# the keys of a component that the mooring file defines into that definition, and the other entries
+# under `components:` of the file. A key without a value stays unknown.
 """
 _WIDTH = 100
 
@@ -27,9 +27,9 @@ def missing_block(findings: Iterable[Finding]) -> str:
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]
     if not figures and any(one.rule == "equilibrium" for one in found):
-        return "# Without an equilibrium nothing is judged, and no missing figure is known.\n"
+        return "# The mooring has no equilibrium, so its missing values are unknown.\n"
     if not figures:
-        return "# No figure of a component is missing.\n"
+        return "# No component lacks a value.\n"
     lines = ["components:"]
     for of_component in grouped(figures, lambda one: one.component_id):
         labels = named(label for one in of_component for label in one.pieces)

@@ -51,7 +51,7 @@ def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, la
     assert "sbe56-uwa:  # sbe56-uwa 1 and 2\n" in done.out
     assert "    depth_rating:  # needed by depth-rating\n" in done.out
     assert "working_load:  # or breaking_load; needed by strength, launch-strength\n" in done.out
-    assert "is estimated: 10 N at least, 9000 N likely (its chain)\n" in done.out
+    assert "is estimated: at least 10 N, probably 9.00 kN (its chain)\n" in done.out
 
 
 def test_a_completed_block_in_the_file_settles_what_it_gives(calm, lacking, folder):
@@ -101,4 +101,4 @@ def test_without_equilibrium_no_figure_is_known_to_be_missing(calm, lacking, fol
     assert "buoyancy" in done.err  # why there is none
     assert "block.yaml written" in done.err
     block = (folder / "block.yaml").read_text(encoding="utf-8")
-    assert block.startswith("# Without an equilibrium nothing is judged")
+    assert block.startswith("# The mooring has no equilibrium")
