@@ -7,7 +7,8 @@ nominal depth.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES_MEASURED, MeasuredQuantity
-from calm.records import attributes, cf_files, velocity
+from calm.records import attributes, cf_files, instrument_text, velocity
 from calm.records.card import ReadCard, VariableSummary, joined_cards, said_of, texts_in
 from calm.records.cf_files import UnreadableError, factor_of, first_present, known_values
 from calm.records.level_depths import find_levels
@@ -193,7 +194,7 @@ def _of_file(
     path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
 ) -> dict[str, list[InstrumentSeries]]:
     found: dict[str, list[InstrumentSeries]] = {name: [] for name in names}
-    with cf_files.opened(path) as dataset:
+    with _opened(path) as dataset:
         for part in instruments_apart(velocity.with_components(dataset)):
             file = _SeriesFile(part, path.name, flags, seabed)
             for name in names:
@@ -203,6 +204,16 @@ def _of_file(
     cards = [one.card for series in found.values() for one in series if one.card is not None]
     whole = joined_cards(cards)
     return {name: [replace(one, card=whole) for one in each] for name, each in found.items()}
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[xr.Dataset]:
+    if cf_files.holds_arrays(path):
+        with cf_files.opened(path) as dataset:
+            yield dataset
+    else:
+        with cf_files.reading(path):
+            yield instrument_text.read_plain_table(path)
 
 
 def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:

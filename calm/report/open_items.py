@@ -189,7 +189,9 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
 def _told(group: Sequence[Finding], worst: Finding) -> str:
     """Describe an open item: value, limit, and the remedy or the reason for acceptance."""
     found, limit = figure_text(worst), figure_text(worst, "limit")
-    where = f" ({worst.case})" if worst.case else ""
+    several = len({one.component for one in group}) > 1
+    where = ", ".join(filter(None, (worst.component if several else "", worst.case)))
+    where = f" ({where})" if where else ""
     bound = "minimum" if worst.sense == ">=" else "limit"
     figures = f"{found}{where}; the {bound} is {limit}." if limit else ""
     if worst.accept is not None:

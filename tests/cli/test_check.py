@@ -420,9 +420,7 @@ def test_limits_are_told_as_used_with_default_and_source(calm, write_mooring):
     )
     assert (used["maximum_knockdown"]["value"], used["maximum_knockdown"]["default"]) == (9.0, None)
     cited = {(f["rule"], f["component"]): f["source"] for f in document["findings"]}
-    assert cited["strength", "rope"] == (
-        "The design's own `safety_factor.steel`, 1.2 instead of 3"
-    )
+    assert cited["strength", "rope"] == ("The design's own `safety_factor.steel`, 1.2 instead of 3")
     assert "UFC" not in cited["strength", "rope"]
 
 

@@ -10,7 +10,8 @@ def test_explanation_follows_the_table(calm, write_mooring):
     table, explanation = done.out.split("\n\nCauses of the knockdown ")
     assert "horizontal" in table
     assert "excursion" in explanation.splitlines()[0]
-    for row in ("top float ", "rope ", "all ", "present design ", "buoyancy +10 % ", "current −10 % "):
+    present = "present design "
+    for row in ("top float ", "rope ", "all ", present, "buoyancy +10 % ", "current −10 % "):
         assert f"\n{row}" in explanation
 
 
