@@ -41,10 +41,12 @@ _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
 
 
 GRAPPLED = 100.0
-"""Depth of water down to which a line is dived or grappled for if its release fails [m]."""
+"""Water depth up to which a single release is accepted [m]; a default of CALM.
+
+In shallow water, a line whose release fails can be dived or grappled for."""
 
 LEAST_BELOW_RELEASE = 1.0
-"""Recommended minimum height of a release above its anchor [m]."""
+"""Minimum height of a release above its anchor [m]; a default of CALM."""
 
 
 @rule("release-present", once=True)

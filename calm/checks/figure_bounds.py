@@ -25,8 +25,8 @@ GREATEST_STRENGTH = 4e9
 ROPE_EFFICIENCY = 0.6
 """Maximum breaking stress of a rope over its nominal section, as a share of its yarn strength.
 
-About 0.7 of the section is fibre, and a rope keeps 0.85 of the yarn strength (McKenna, Hearle and
-O'Hear 2004, Handbook of Fibre Rope Technology). Ropes in the catalogue have 0.12 to 0.44."""
+A default of CALM: only part of the section is fibre, and a rope has less than the strength of its
+yarns. Ropes in the catalogue have 0.12 to 0.44."""
 
 WEAKEST_ROPE = 0.05
 """Minimum breaking stress of a rope, as a share of its yarn strength."""
@@ -45,7 +45,8 @@ STRONGEST_CHAIN = 1300e6
 GRADE_STRESS = 10e6
 """Nominal breaking stress in the bars of a chain per unit of its grade [Pa].
 
-Grade 30 has 300 MPa, grade 80 has 800 MPa (EN 818, ISO 1834)."""
+The grade is a tenth of the nominal stress at the minimum breaking force [N/mm²]: NACM, Welded Steel
+Chain Specifications (2010), annex A, for grades such as 30; EN 818-1 for grades such as 8."""
 
 GRADE_ROUNDING = 0.85, 1.25
 """Bounds of the breaking stress over the nominal stress of the grade.
@@ -70,7 +71,7 @@ class Bounds:
 _CRISIS = "smooth flow beyond the drag crisis: sphere 0.06 (Katz, Automotive Aerodynamics, figure "
 _CRISIS += "6.19), cylinder 0.2 (Roshko 1961, Journal of Fluid Mechanics 10, 345-356)"
 _STRUMMING = "1.2 of a cylinder, 2.5 times that as it vibrates (Griffin 1985, ASME OMAE)"
-_CHAIN = "2.4 to 2.6 on the diameter (DNV-OS-E301, table 2-1), half and twice that"
+_CHAIN = "2.4 to 2.6 on the diameter (OrcaFlex manual, Chain), about half and twice that"
 
 DRAG_BOUNDS = {
     ("sphere", "cx"): Bounds(0.06, 2.0, _CRISIS),

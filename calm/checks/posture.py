@@ -195,11 +195,14 @@ def top_depth(leg: Leg) -> Iterator[Criterion]:
 
 
 _SHELF = 200.0
-"""Water depth up to which fish bite is ignored [m]; fish bite occurs in the deep sea."""
+"""Water depth up to which fish bite is ignored [m]; a default of CALM.
+
+Severe fish bite is known from moorings far from the continental shores (Berteaux and others 1987).
+"""
 
 
 _POLAR = 60.0
-"""Latitude above which fish bite is ignored [°]; fish bite occurs in warm seas."""
+"""Latitude from which fish bite is ignored [°]; a default of CALM, without a published limit."""
 
 
 @rule("fish-bite")

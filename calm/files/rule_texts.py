@@ -137,8 +137,8 @@ RULES = {
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
         "the equator",
         "`fishbite_depth`, 1000 m: a warning",
-        "Berteaux, Prindle & May, OCEANS '87: far from the shores fish bite from the surface to "
-        "1000 m and more",
+        "Berteaux, Prindle & May, OCEANS '87: fish bite from the surface to 1000 m and more, far "
+        "from the shores; the limits of water depth and latitude are defaults of CALM",
         "ropes are bitten over months, not during one profile"),
     "knockdown": RuleText("Knockdown", "knockdown",
         "knockdown of the top",
@@ -168,7 +168,8 @@ RULES = {
         "minimum tension of the wires and ropes above the release that are off the seabed, if the "
         "line is longer than 50 m above its release",
         "`minimum_tension`: 500 N wire, 300 N rope; `slack: allowed` on a piece exempts it",
-        "Practice of mooring groups, 50 to 100 kgf above the release; no figure is published"),
+        "Practice of mooring groups, 50 to 100 kgf above the release; no value is published, so "
+        "the limits are defaults of CALM"),
     "wave-strength": RuleText("Strength in waves", "load",
         "maximum tension of every piece in `waves:`: mean and most probable maximum of 3 h",
         "the smaller of its working load and its breaking load over `waves_safety_factor`, 1.67, "
@@ -274,7 +275,7 @@ RULES = {
         "more; not judged for a float that alone brings up a line, at most 50 m above the release; "
         "a warning for a surface mooring without floats below its buoy",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
-        "floats",
+        "floats; the margin and the 50 m are defaults of CALM",
         _ONCE),
     "launch-strength": RuleText("Strength in the launch", "load",
         "tension of every piece as the line falls behind its anchor",
@@ -295,7 +296,7 @@ RULES = {
         "above 3 m/s floats breach and the line may loop",
         _ONCE),
     "tangling": RuleText("Tangling", "",
-        "whether a part overtakes the parts ahead during the fall or the rise",
+        "whether a part overtakes the parts ahead during the fall or the rise, in loops of 2 m or more",
         "a warning",
         "A default of CALM: no part overtakes the parts ahead",
         _ONCE),
