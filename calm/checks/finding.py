@@ -336,7 +336,7 @@ class Finding(Verdict):
     `source` is the source of the rule and its limit. `situation` names the change to the design, or
     is `AS_GIVEN`. `accept` is the entry that accepts the finding, `unaccepted` its state without
     that entry; both are None otherwise. `probability` is the probability of exceeding the limit, if
-    it was computed.
+    it was computed. `estimates` are the estimates that the finding relies on.
     """
 
     mooring: str
@@ -346,6 +346,7 @@ class Finding(Verdict):
     accept: Accept | None = None
     unaccepted: State | None = None
     probability: float | None = None
+    estimates: tuple[EstimatedFigure, ...] = ()
 
     @property
     def utilisation(self) -> float | None:

@@ -136,9 +136,9 @@ def _buoyancy(force: float) -> str:
 
 
 _DRAWING_NOTE = (
-    "Planned: the planned depth of a piece, or else its depth in still water. Depths: of the upper "
-    "end. Length: as cut, or the place of a clamp on its piece. Largest tension: of all standing "
-    "cases. Net buoyancy: in sea water, downward negative."
+    "Depths are at the upper end; without a planned depth, that column has the depth in still "
+    "water. Lengths are as cut; clamps have their position on the piece. The largest tension is "
+    "over all moored cases. Net buoyancy is positive upwards."
 )
 
 

@@ -1,4 +1,4 @@
-"""Figures that components do not give and rules need, as a block of YAML to complete."""
+"""Missing values that rules need, as a block of YAML to complete."""
 
 import json
 import re
@@ -55,9 +55,9 @@ def missing_block(findings: Iterable[Finding], places: Places) -> str:
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]
     if not figures and any(one.rule == "equilibrium" for one in found):
-        return "# Without an equilibrium nothing is judged, and no missing figure is known.\n"
+        return "# The mooring has no equilibrium, so its missing values are unknown.\n"
     if not figures:
-        return "# No figure of a component is missing.\n"
+        return "# No component lacks a value.\n"
     ids = grouped(figures, lambda one: one.component_id)
     lines = [
         f"#\n# {text}" for text in _how_to_use([group[0].component_id for group in ids], places)
