@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from functools import partial
+from functools import cached_property, partial
 from math import ceil, inf, isfinite
 from typing import Any, Literal
 
@@ -348,7 +348,7 @@ class Finding(Verdict):
     probability: float | None = None
     estimates: tuple[EstimatedFigure, ...] = ()
 
-    @property
+    @cached_property
     def utilisation(self) -> float | None:
         """Demand over capacity; None if the rule has no such ratio."""
         return super().utilisation if RULE_TEXTS[self.rule].has_ratio else None

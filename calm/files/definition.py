@@ -344,7 +344,9 @@ class Definition(Model):
     @property
     def estimates(self) -> dict[str, EstimatedFigure]:
         """Return the estimates of figures that are not given, by figure."""
-        every = {one.quantity: one for one in self.estimate or ()}
+        if self.estimate is None:
+            return {}
+        every = {one.quantity: one for one in self.estimate}
         return {name: one for name, one in every.items() if getattr(self, name) is None}
 
     @model_validator(mode="after")
