@@ -189,8 +189,8 @@ def fields_of(
     from calm.quantities import QUANTITIES_MEASURED
 
     matched = {name: points_of(each, where.places) for name, each in series.items() if each}
-    told = [line for _, said in matched.values() for line in said]
-    for line in dict.fromkeys(told):
+    notes = [line for _, lines in matched.values() for line in lines]
+    for line in dict.fromkeys(notes):
         narrate(line)
     used = [series[name][i] for name, (points, _) in matched.items() for i in points]
     time = common_times(where, used, step)

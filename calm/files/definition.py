@@ -226,15 +226,15 @@ class EstimatedFigure(Model):
         """Return the lower bound for a line in waves, or for a line at rest."""
         return self.low_in_waves if in_waves and self.low_in_waves is not None else self.low
 
-    def in_words(self, said: Callable[[float], str]) -> str:
+    def in_words(self, format_value: Callable[[float], str]) -> str:
         """Return the bounds, the best estimate, the source and its quality as text, each figure
         formatted by `said`.
         """
         waves = self.low_in_waves
         figures = (
-            f"{said(self.low)} at least",
-            f"{said(waves)} in waves" if waves is not None else "",
-            f"{said(self.value)} likely" if self.value is not None else "",
+            f"{format_value(self.low)} at least",
+            f"{format_value(waves)} in waves" if waves is not None else "",
+            f"{format_value(self.value)} likely" if self.value is not None else "",
         )
         quality = f", quality {self.quality}" if self.quality is not None else ""
         return f"{', '.join(filter(None, figures))} ({self.source}{quality})"
