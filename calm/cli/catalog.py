@@ -70,8 +70,8 @@ def _search(catalogue: Catalogue, text: str, kind: str | None) -> dict[str, Defi
     spelt = index.spelt(text)
     if spelt != text:
         narrate(f"no component matches `{text}`; searched for `{spelt}`")
-    first, asked = [*remembered.favourites, *remembered.recent], spelt.split()
-    fewer = (" ".join(asked[:i] + asked[i + 1 :]) for i in reversed(range(len(asked))))
+    first, words = [*remembered.favourites, *remembered.recent], spelt.split()
+    fewer = (" ".join(words[:i] + words[i + 1 :]) for i in reversed(range(len(words))))
     found = index.search(spelt, kinds, first=first)
     if not found:
         narrate(f"no component matches `{spelt}`; define one with `calm catalog add`")
