@@ -214,7 +214,7 @@ def _draw_labels(
     pen.line(at, levels[0], at, levels[-1])
     left = at + 20.0
     for one, y in zip(labels, levels, strict=True):
-        sign = one.part.floats or one.part.sign
+        sign = one.part.sign
         if sign.symbol not in LINES:
             figure = figure_of(sign)
             scale = min(CLAMP_SCALE, (pitch - 1.0) / figure.height)
@@ -327,7 +327,7 @@ def seabed_row(height: float) -> str:
 
 def row_height(part: ShownPart) -> float:
     """Return the smallest height of a row that contains the symbol of a part."""
-    if part.sign.symbol in LINES and part.floats is None:
+    if part.sign.symbol in LINES:
         return 19.0
-    scale = CLAMP_SCALE if part.clamped or part.floats else SYMBOL_SCALE
-    return max(13.0, scale * figure_of(part.floats or part.sign).height + 2.0)
+    scale = CLAMP_SCALE if part.clamped else SYMBOL_SCALE
+    return max(13.0, scale * figure_of(part.sign).height + 2.0)

@@ -6,6 +6,7 @@ from math import ceil
 
 import numpy as np
 
+from calm.case.result_tables import item_numbers
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.criterion import said
@@ -32,7 +33,6 @@ from calm.report.blocks import (
     words,
 )
 from calm.report.check_tables import grouped
-from calm.report.drawing_page import item_numbers
 from calm.report.load_cases import LOAD, length_text, load_text
 from calm.report.open_items import (
     advice,
@@ -268,7 +268,7 @@ def _breaks(assessment: Assessment) -> Table:
 def _inventory(signed: SignedMooring) -> Table:
     """Tabulate number, length, mass and weight of each component, with item numbers."""
     items = signed.assessment.inventory
-    numbers = item_numbers(signed) if signed.standing else {}
+    numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
     unit = LOAD.display_unit
 
     def length(group: Sequence[InventoryItem]) -> str | None:
@@ -290,10 +290,7 @@ def _inventory(signed: SignedMooring) -> Table:
         if group is items:
             missing = total_of(items).missing_masses
             return Cell(detail=f"{missing} give no mass" if missing else "")
-        known = list(dict.fromkeys(
-            numbers[one.label] if one.clamped_on is None else f"on {numbers[one.clamped_on]}"
-            for one in group if one.label in numbers
-        ))  # fmt: skip
+        known = list(dict.fromkeys(numbers[one.label] for one in group if one.label in numbers))
         text = ", ".join(known[:8]) + (f" and {len(known) - 8} more" if len(known) > 8 else "")
         return Cell(detail=text)
 

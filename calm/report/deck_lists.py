@@ -195,7 +195,7 @@ def _stages(deck: Deck) -> blocks.Table:
         f"In the order over the side{', leg by leg' * deck.result.several}",
         [one for one in deck.lifts.deployment if one.label not in joints],
         *([words("leg", lambda one: deck.leg(one.index))] if deck.result.several else []),
-        number("no.", "index"),
+        number("no.", lambda one: deck.numbers[one.label]),
         words("at the rail", "label", 2.0),
         quantity("lift_mass", "mass", "lift in\nair"),
         quantity("wet_weight", "weight", "lift in\nwater"),
