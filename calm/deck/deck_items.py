@@ -2,11 +2,10 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import groupby
-from types import MappingProxyType
 
 from calm.case.design import AnyResult, Result
 from calm.case.result_tables import ClampRow, ComponentRow, rows_by_place, rows_down
@@ -36,8 +35,8 @@ class DeckItem:
     tension : maximum tension in a piece [N]; None for a clamp
     serial : serial number as designed
     deployed_serial, remark : as deployed; the serial number defaults to that of the design
-    apart : key of a piece with a row of its own, or shared with those of the same key, because it
-        governs a check or has an open finding; see `standing_out`; else ""
+    apart : whether connecting hardware has a row of its own, because it governs a check or has an
+        open finding
     """
 
     part: Piece | Clamp
@@ -54,7 +53,7 @@ class DeckItem:
     serial: str | None
     deployed_serial: str | None
     remark: str | None
-    apart: str = ""
+    apart: bool = False
 
     @property
     def label(self) -> str:
@@ -121,7 +120,7 @@ class DeckItem:
         instruments, releases, anchors and cut pieces never do.
         """
         alone = not self.is_rigid or self.role in ("instrument", "release", "anchor")
-        return (self.label,) if alone or self._is_told_of else (self.name, self.on, self.apart)
+        return (self.label,) if alone or self._is_told_of else (self.name, self.on)
 
 
 @dataclass(frozen=True)
@@ -173,7 +172,7 @@ class DeckRow:
             return ()
         first, floats = self.first, [(one.name, one.places) for one in self.floats]
         stem = first.label.rstrip("0123456789")
-        return stem, first.name, first.apart, round(first.cut_length or 0.0, 3), tuple(floats)
+        return stem, first.name, round(first.cut_length or 0.0, 3), tuple(floats)
 
     @property
     def lengths(self) -> str:
@@ -244,34 +243,27 @@ def name_of_run(items: Sequence[DeckItem]) -> str:
     return ", ".join(f"{count} × {name}" for name, count in counts.items())
 
 
-def standing_out(findings: Iterable[Finding]) -> dict[str, str]:
-    """Keys of the pieces and clamps that govern a check or have an open finding, by label.
-
-    A piece that governs a utilisation above `SHOWN_USE` has a key of its own; others share one with
-    pieces that have the same open findings.
+def standing_out(findings: Iterable[Finding]) -> frozenset[str]:
+    """Labels of the pieces that govern a check with more than `SHOWN_USE`, or have an open
+    finding.
     """
     every = [*findings]
-    opened: dict[str, set[str]] = {}
+    found = {one.component for one in governing_of_each_rule(every)
+             if (one.utilisation or 0.0) > SHOWN_USE}  # fmt: skip
     for one in every:
         if one.state not in (State.PASS, State.NOT_JUDGED):
-            labels = [one.component] if one.missing is None else one.missing.pieces
-            for label in labels:
-                opened.setdefault(label or "", set()).add(f"{one.rule}: {one.state}")
-    keys = {label: ", ".join(sorted(told)) for label, told in opened.items()}
-    leads = (one for one in governing_of_each_rule(every) if (one.utilisation or 0.0) > SHOWN_USE)
-    return keys | {one.component: one.component for one in leads if one.component is not None}
+            found.update([one.component] if one.missing is None else one.missing.pieces)
+    return frozenset(label for label in found if label is not None)
 
 
 SHOWN_USE = 0.4999
 """Utilisation above which the governing finding of a rule is shown in a row of its own."""
 
 
-def deck_items_of(
-    result: AnyResult, apart: Mapping[str, str] = MappingProxyType({})
-) -> tuple[DeckItem, ...]:
+def deck_items_of(result: AnyResult, apart: Collection[str] = ()) -> tuple[DeckItem, ...]:
     """Down the line to the anchor, or each leg, the clamps of a piece after it, down that piece.
 
-    `apart` has the keys of `standing_out`.
+    Connecting hardware with a label in `apart` has a row of its own.
     """
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}
@@ -283,7 +275,7 @@ def deck_items_of(
         found.append(_deck_item(row, row, items, bottom))
         found += (_deck_item(row, clamp, items, bottom) for clamp in clamps)
     return tuple(
-        replace(one, apart=apart[one.label]) if one.on is None and one.label in apart else one
+        replace(one, apart=True) if one.is_connector and one.label in apart else one
         for one in found
     )
 

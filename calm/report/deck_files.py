@@ -7,6 +7,7 @@ from io import BytesIO
 from operator import attrgetter
 from typing import Any
 
+from calm.checks.finding import environment_text
 from calm.deck import Deck
 from calm.drawing.line_drawing import line_drawing
 from calm.drop import DropPlan
@@ -96,7 +97,8 @@ _COLUMNS = {
     """,
     "instruments": """
         number= label=item.label use=item.part.use name=item.name serial=item.serial
-        clamped_on=item.on depth[m]=item.depth still_depth[m]=still planned_depth[m]=item.planned_depth
+        clamped_on=item.on depth[m]=item.depth still_depth[m]=still
+        planned_depth[m]=item.planned_depth
         least_depth[m]=shallowest.depth least_in=shallowest.environment
         greatest_depth[m]=deepest.depth greatest_in=deepest.environment
         greatest_tilt[deg]=greatest_tilt
@@ -176,7 +178,7 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     parts[-1] = replace(parts[-1], blocks=(*parts[-1].blocks, PageBreak()))
     report = provenance.report_of(
         deck.file.name,
-        f"{deck.order}, environment: {deck.environment}",
+        f"{deck.order}, {environment_text(deck.environment)}",
         *parts,
         deck_logs.recovery_part(deck),
     )

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import Any
 
+from calm.checks.finding import OWN, environment_text
 from calm.deck import Deck
 from calm.deck.deck_items import DeckInstrument, DeckItem, label_of_run, name_of_run, rows_on_paper
 from calm.deck.hardware import LENGTH_ERROR, Cut, Mark, all_shipped
@@ -45,8 +46,8 @@ def cutting_part(deck: Deck) -> ReportPart:
         "Lengths are without load unless one is given; marks are measured from the upper end, "
         f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: by how much "
         f"{'that of its leg is ' if deck.result.several else ''}if this "
-        f"piece alone is {_SHARE} longer, in the environment {deck.environment}. Over side, onto "
-        "drum: the order; the piece that goes over last is spooled first."
+        f"piece alone is {_SHARE} longer, in the {environment_text(deck.environment)}. Over "
+        "side, onto drum: the order; the piece that goes over last is spooled first."
     )
     table = table_of(
         "Wires and ropes",
@@ -226,11 +227,12 @@ def instruments_part(deck: Deck) -> ReportPart:
 
         def cell(one: DeckInstrument) -> Cell:
             found = getattr(one, name)
-            return Cell(depth.format(found.depth), found.environment)
+            own = found.environment == OWN
+            return Cell(depth.format(found.depth), "default" if own else found.environment)
 
         return number(heading, cell, depth.display_unit)
 
-    note = f"Depths are in the environment {deck.environment}."
+    note = f"Depths are in the {environment_text(deck.environment)}."
     if several:
         note += (
             f" Least and greatest depth, and tilt, are over {len(deck.environments)} "
@@ -239,6 +241,7 @@ def instruments_part(deck: Deck) -> ReportPart:
     table = table_of(
         "Instruments and releases",
         rows,
+        number("no.", lambda one: deck.numbers[one.item.label]),
         words("instrument", named, 2.0),
         words("serial number", "item.serial", 0.8),
         quantity("depth", "item.depth", "depth"),

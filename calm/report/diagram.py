@@ -8,6 +8,7 @@ from itertools import accumulate, count
 from string import ascii_uppercase
 
 from calm.case.leg_result import LegResult
+from calm.checks.finding import environment_text
 from calm.deck import Deck
 from calm.drawing import schematic
 from calm.drawing.schematic import FONT, HEAD, LEADING, PlacedPart, placed
@@ -318,7 +319,8 @@ _Fields = tuple[tuple[str, tuple[str, ...]], ...]
 
 def _fields(deck: Deck, paper: Paper) -> list[_Fields]:
     """The title block of a mooring, row by row, without the number of its page."""
-    known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": deck.environment}
+    environment = environment_text(deck.environment).removeprefix("environment ")
+    known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": environment}
     columns = _COLUMNS[paper]
     room = (paper.size[0] - 2 * _MARGIN) / columns - 2 * _PAD
     fields = [(name, tuple(wrapped(one_line(known.get(name, "")), room, FONT))) for name in _FIELDS]

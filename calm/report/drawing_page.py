@@ -19,7 +19,7 @@ _SHEET = {"a4": 688.0, "letter": 648.0}
 _WORDS, _DEPTHS = 314.0, 38.0  # width of the words of a row with the depths, and of a depth
 _LINE_HEIGHT = 9.6
 _SET, _WRAPPED = 0.77, 0.83
-"""Ratios of the width of a printed text to the bound of `text_width`, on one and on several lines."""
+"""Width of a printed text over the bound of `text_width`, on one line and on several."""
 _SEA_ROW = 16.0
 
 
@@ -134,8 +134,12 @@ def _end_row(picture: str, name: str, depth: str, cases: int, planned: bool) -> 
     return (Cell(picture=picture), Cell(), Cell(detail=name), Cell(), Cell(), *depths, Cell())
 
 
-def _row(part: ShownPart, width: float, *, first: bool, last: bool) -> tuple[float, tuple[Cell, ...]]:
-    """Return the height and cells of a row with words of a width; junctions are in small letters."""
+def _row(
+    part: ShownPart, width: float, *, first: bool, last: bool
+) -> tuple[float, tuple[Cell, ...]]:
+    """Return the height and cells of a row; `width` is that of its words. Junctions are set in
+    small letters.
+    """
     (row,) = part.rows
     height = max(row_height(part), _LINE_HEIGHT * _lines(row, part, width) + 3.0)
     picture = Cell(picture=beside_row(part, height, first=first, last=last))
@@ -172,5 +176,3 @@ def _broken(
             end = fits[-1] if fits else end
         yield begin, end
         begin = end
-
-

@@ -61,6 +61,7 @@ TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
 """Height of a page between its head and its foot [pt]."""
 _FIXED, _ROW = 250.0, 12.6
 _LINE = 100  # letters of the verdict
+_TITLE_LINE, _TITLE_LETTERS = 12.0, 52  # height of a line of the description, and its letters
 _FIGURE_WIDTH, _WIDTH = 281.0, 510.0
 
 
@@ -86,8 +87,8 @@ class SignedMooring:
         return [one for one in self.cases if one.results]
 
     @cached_property
-    def apart(self) -> dict[str, str]:
-        """Keys of the pieces that have a row of their own, see `standing_out`."""
+    def apart(self) -> frozenset[str]:
+        """Labels of connecting hardware with a row of its own."""
         return standing_out(self.assessment.every_finding())
 
     @property
@@ -131,7 +132,7 @@ def title_block(signed: SignedMooring) -> TitleBlock:
     return TitleBlock(
         "Design check of a mooring",
         signed.assessment.name,
-        " · ".join(filter(None, below)),
+        tuple(filter(None, (file.description, " · ".join(filter(None, below))))),
         (
             ("Document", field("id")), ("Rev.", field("revision")),
             ("Date", field("date") or provenance.date() or ""), ("Page", ""),
@@ -272,7 +273,8 @@ def governing_table(signed: SignedMooring) -> Table:
     note = "✓ passes  ≈ on an estimate  ▲ warning  ○ accepted  ? not known  ✗ fails.  "
     note += "Cases: L launch, R rise, B break."
     if rest:
-        note = f"All other checks: {percent_text(rest[0].utilisation)} % or less (page 4). {note}"
+        most = percent_text(rest[0].utilisation)
+        note = f"All other checks: {most} % or less (checks in full). {note}"
     return table_of(
         "Governing checks",
         kept,
@@ -323,7 +325,10 @@ def page_one(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
     rows = len(cases.rows) + len(checks.rows) + len(signs.revisions) + bool(cases.note)
     rows += len(verdict_sentence(signed.assessment)) // _LINE
     height = TEXT_HEIGHT[paper] - _FIXED - _ROW * rows
-    items = OpenItems("Open items", tuple(signed.items) or (), _no_items(signed), "more, page 4")
+    height -= _TITLE_LINE * len(signed.assessment.file.description or "") // _TITLE_LETTERS
+    items = OpenItems(
+        "Open items", tuple(signed.items) or (), _no_items(signed), "more: checks in full"
+    )
     yield title_block(signed)
     yield verdict_box(signed)
     yield cases
