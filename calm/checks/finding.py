@@ -19,8 +19,16 @@ AS_GIVEN = "as given"
 OWN = "own"
 """Name of the environment that a mooring file gives itself."""
 
+DEFAULT_ENVIRONMENT = "default environment"
+"""The same environment in print."""
+
 ON_THE_WAY = "launch, recovery, breaks"
 """Label used instead of an environment for rules that are evaluated once per mooring."""
+
+
+def environment_text(name: str) -> str:
+    """Describe an environment in print, such as `environment storm`."""
+    return DEFAULT_ENVIRONMENT if name == OWN else f"environment {name}"
 
 
 class State(StrEnum):

@@ -5,13 +5,13 @@ from math import inf
 from typing import Any, Literal
 
 from calm.case.leg_result import LegResult
+from calm.case.result_tables import run_of
 from calm.checks.finding import Finding, State
 from calm.drawing.check_figures import PieceBar, load_chart
 from calm.drawing.line_picture import alike, together
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Block, Cell, Figure, Table, number, table_of, words
 from calm.report.check_tables import grouped
-from calm.report.drawing_page import run_of
 from calm.report.load_cases import (
     LOAD,
     LoadCase,
