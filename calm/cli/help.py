@@ -51,6 +51,11 @@ _VALUES = {
 _VALUE_OF = {f"--{name}": value for value, names in _VALUES.items() for name in names.split()}
 
 
+def metavar(option: str) -> str | None:
+    """Return the name of the value of an option; None if the option shows its type."""
+    return _VALUE_OF.get(option)
+
+
 class HelpAtWidth:
     """Formatter of `--help`: as wide as the terminal, with a name for the value of each option."""
 

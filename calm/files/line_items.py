@@ -311,7 +311,7 @@ class LineReader:
             offer = f"; did you mean {near}?" if near else " (`calm catalog list` shows all)"
             if some := self._catalogue.of_a_sort(use):
                 offer = (
-                    f"; {use.rstrip('s')}s are {', '.join(some)} … (`calm catalog search {use}`)"
+                    f"; {use.rstrip('s')}s are {', '.join(some)} … (`calm catalog list {use}`)"
                 )
             item.refuse(("use",), f"`use: {shown(use)}`: no such component{offer}")
             return None
