@@ -15,7 +15,7 @@ _VALUES = {
     "FILE|-": "json",
     "FILE": "plot catalog currents pressures sea-level onto against update scatter elements",
     "DIR": "report",
-    "NAME": "environment",
+    "NAME": "environment sheet",
     "LABEL,...": "hold-out",
     "LAT,LON": "at near",
     "LENGTH": "diameter streamed length distance",
