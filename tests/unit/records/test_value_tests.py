@@ -48,6 +48,47 @@ def test_two_instruments_in_turn():
     assert said.startswith("1 of 3 series look like two in turn: readings next to each other dif")
 
 
+def test_levels_whose_components_are_exchanged_or_of_the_other_sign():
+    u, v = tide(12.4206), tide(12.0, 0.2) + 0.02 * np.sin(HOURS[:, np.newaxis] / 7.7)
+    for own_u, own_v in ((v, u), (-u, -v), (u, -v), (-v, u)):
+        one, other = u.copy(), v.copy()
+        one[:, 1], other[:, 1] = own_u[:, 1], own_v[:, 1]
+        (said,) = doubts(one, other)
+        assert said.startswith("currents at 60 m have other directions than those above and below")
+        assert doubts(one[:, :2], other[:, :2], depth=DEPTH[:2], water_depth=60.0) == []
+
+
+def test_an_undercurrent_is_no_doubt():
+    u, v = tide(12.4206), tide(12.0, 0.2)
+    u[:, 1], v[:, 1] = -1.6 * u[:, 0], -1.6 * v[:, 0]
+    assert doubts(u, v) == []
+
+
+def test_components_that_are_missing_equal_or_zero():
+    rng = np.random.default_rng(5)
+    u, v = tide(12.4206), tide(12.0, 0.2)
+    u += 0.03 * rng.standard_normal(u.shape)
+    v += 0.03 * rng.standard_normal(v.shape)
+    gone = u.copy()
+    gone[3:9, 0] = np.nan
+    assert doubts(gone, v) == ["6 of 2160 currents have one component without the other"]
+    assert "all 2160 currents have equal components to the east and to the north" in doubts(u, u)
+    filled, other = u.copy(), v.copy()
+    filled[100:110] = other[100:110] = 0.0
+    (said,) = doubts(filled, other)
+    assert said.startswith("30 of 2160 currents are exactly 0, and hardly any are nearly 0")
+    rounded = np.round(0.03 * rng.standard_normal((2, COUNT, 3)), 2)  # weak, to a cm/s
+    assert (np.hypot(*rounded) == 0.0).sum() > 30
+    assert not [one for one in doubts(*rounded) if "exactly 0" in one]
+
+
+def test_levels_without_a_depth_and_a_clock_that_was_not_set():
+    depth = np.array([20.0, np.nan, 120.0])
+    assert doubts(depth=depth) == ["720 of 2160 currents have no depth, and are left out"]
+    (said,) = doubts(times=TIMES - TIMES[0] + np.datetime64("1970-01-01", "ns"))
+    assert said == "720 of 720 times are in January 1970: was the clock not set?"
+
+
 def test_a_stretch_that_stands_twice():
     u, v = tide(12.4206), tide(11.7, 0.2)
     u[400:460], v[400:460] = u[100:160], v[100:160]
