@@ -89,6 +89,7 @@ def current_doubts(found: CurrentValues) -> Iterator[str]:
         order = np.argsort(levels[there], kind="stable")
         at = np.flatnonzero(there)[order]
         yield from _turned_levels(levels[at], found.u[:, at] + 1j * found.v[:, at])
+        yield from _equal_levels(found.u[:, at], found.v[:, at])
         names = _level_names(found.depth)
         yield from series_doubts(np.stack([found.u, found.v], axis=2), found.times, names)
 
@@ -223,6 +224,18 @@ def _component_doubts(u: Floats, v: Floats) -> Iterator[str]:
         )
 
 
+def _equal_levels(u: Floats, v: Floats) -> Iterator[str]:
+    """Yield that adjacent levels of currents (n, k) are the same at all times."""
+    if len(u) < MANY or u.shape[1] < 2:
+        return
+    same = ((u[:, 1:] == u[:, :-1]) & (v[:, 1:] == v[:, :-1])).all(axis=0)
+    if same.any():
+        yield (
+            f"{same.sum()} of {u.shape[1]} levels have the same currents at all times as the level "
+            "above: a mean over depth, or a level repeated?"
+        )
+
+
 _ALIKE, _UNLIKE = 0.8, 0.5
 
 
@@ -271,7 +284,10 @@ def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) ->
     names : (k,) place of each series, "" for a single series
     """
     yield from _years(times)
-    if len(times) > 2:
+    again = int((times[1:] == times[:-1]).sum())
+    if 2 * again >= len(times) > 1:
+        yield f"{again} of {len(times)} times repeat the one before: several instruments in one?"
+    elif len(times) > 2:
         yield from _gaps(times)
     yield from _unchanged(values, times, names)
     if len(times) > 2 and np.median(np.diff(times)) <= _SLOWEST:
@@ -337,6 +353,8 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
         if limits.least <= factor * middle + zero <= limits.greatest
     ]  # fmt: skip
     meant = f": is it in {likely[0]}?" if likely else ""
+    if not fraction and 2 * wrong.sum() <= known.size and np.unique(doubted).size == 1:
+        meant = ": a fill value?"
     count, span = int((known < _FRACTION).sum()), f"below {_FRACTION:g}"
     if not fraction:
         allowed = f"{limits.least:g} to {limits.greatest:g} {limits.unit}".rstrip()

@@ -82,6 +82,21 @@ def test_components_that_are_missing_equal_or_zero():
     assert not [one for one in doubts(*rounded) if "exactly 0" in one]
 
 
+def test_levels_that_repeat_and_times_that_repeat():
+    u, v = tide(12.4206), tide(12.0, 0.2)
+    u[:, 2], v[:, 2] = u[:, 1], v[:, 1]
+    (said,) = doubts(u, v)
+    assert said.startswith("1 of 3 levels have the same currents at all times as the level above")
+    several = np.repeat(TIMES[: COUNT // 2], 2)
+    notes = [*series_doubts(np.random.default_rng(2).random((COUNT, 1, 1)), several)]
+    assert notes == ["360 of 720 times repeat the one before: several instruments in one?"]
+
+
+def test_a_few_impossible_values_of_one_size_are_fill_values():
+    values = np.where(np.arange(90) % 9 == 0, -999.0, 8.0 + np.arange(90) / 90.0)
+    assert impossible_values("temperature", values)[1].endswith("median -999: a fill value?")
+
+
 def test_levels_without_a_depth_and_a_clock_that_was_not_set():
     depth = np.array([20.0, np.nan, 120.0])
     assert doubts(depth=depth) == ["720 of 2160 currents have no depth, and are left out"]
