@@ -122,7 +122,7 @@ def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
 
 
 def card_of_instruments(cards: Sequence[ReadCard]) -> ReadCard:
-    """Merge the cards of the instruments of a file; a median is that of the instruments' medians."""
+    """Merge the cards of a file's instruments; a median is that of the instruments' medians."""
     variables = {}
     for role in {role: None for card in cards for role in card.variables}:
         each = [card.variables[role] for card in cards if role in card.variables]
