@@ -108,7 +108,7 @@ class MissingFigure:
 
     Attributes
     ----------
-    component_id : as in `use`
+    component_id, kind : as in `use`; kind of the component
     quantity : key of the component
     needed_by : names of the rules that require the value
     pieces, places : labels and places of the affected pieces and clamps
@@ -116,6 +116,7 @@ class MissingFigure:
     """
 
     component_id: str
+    kind: str
     quantity: str
     needed_by: tuple[str, ...]
     pieces: tuple[str, ...]
@@ -408,6 +409,21 @@ def governing(findings: Iterable[Finding]) -> Finding:
     if not used:
         return min(found, key=lambda one: one.rank)
     return min(used, key=lambda pair: (-pair[0], pair[1].rank))[1]
+
+
+def told_of_rule(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Findings that represent a rule: the governing one, and the worst if its state is graver.
+
+    Each has its own value, limit and component. The governing finding stands for other estimates
+    and accepted findings unless it passes.
+    """
+    found = [*findings]
+    lead, worst = governing(found), worst_of(found)
+    if lead.utilisation is None:
+        return (worst,)
+    passes, minor = lead.state is State.PASS, worst.state.severity < State.WARN.severity
+    graver = worst.state.severity > lead.state.severity and (passes or not minor)
+    return (lead, worst) if graver else (lead,)
 
 
 def governing_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:

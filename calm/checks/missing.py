@@ -69,14 +69,15 @@ def gathered(
         assert one.lacks is not None
         found.setdefault((parts[one.lacks.label].use, one.lacks.quantity), []).append(one)
     for (use, quantity), group in found.items():
-        component = parts[group[0].lacks.label].component if group[0].lacks else None
+        component = next(parts[one.lacks.label].component for one in group if one.lacks)
         figure = MissingFigure(
             use,
+            component.kind,
             quantity,
             tuple(dict.fromkeys(one.rule for one in group)),
             tuple(dict.fromkeys(one.component for one in group if one.component)),
             tuple(dict.fromkeys(one.place for one in group if one.place)),
-            None if component is None else component.estimates.get(quantity),
+            component.estimates.get(quantity),
         )
         found[use, quantity] = [replace(one, missing=figure) for one in group]
     return found

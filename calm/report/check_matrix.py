@@ -5,7 +5,15 @@ from dataclasses import dataclass
 
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
-from calm.checks.finding import Conclusion, Finding, State, by_rule, governing, worst_of
+from calm.checks.finding import (
+    Conclusion,
+    Finding,
+    State,
+    by_rule,
+    governing,
+    told_of_rule,
+    worst_of,
+)
 from calm.report.blocks import Block, Cell, Field, Prose, Span, number, table_of, words
 from calm.report.open_items import (
     advice,
@@ -194,32 +202,31 @@ def _failure(row: SummaryRow, codes: Mapping[str, str]) -> str:
 
 
 def mooring_page(signed: SignedMooring) -> Iterator[Block]:
-    """Yield the one-page report of a mooring: verdict, load cases, and one row per rule."""
+    """Yield the one-page report of a mooring: verdict, load cases, and every rule."""
     findings = [*signed.assessment.every_finding()]
     yield title_block(signed)
     yield verdict_box(signed)
     yield cases_table(signed)
     groups = by_rule(findings)
-    leads = governing_rows(findings)
-    others = [worst_of(groups[name]) for name in groups if name not in {one.rule for one in leads}]
+    told = {name: told_of_rule(found) for name, found in groups.items()}
+    leads = [one.rule for one in governing_rows(findings)]
+    order = [*leads, *(name for name in groups if name not in leads)]
     yield table_of(
         "Checks",
-        [*leads, *others],
-        words("", lambda one: Cell(state=worst_of(groups[one.rule]).state), 0.0),
+        [one for name in order for one in told[name]],
+        words("", lambda one: Cell(state=one.state), 0.0),
         words("Rule", lambda one: RULES[one.rule].title, 1.0),
         number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
         number("Found", lambda one: figure_text(one, one.value)),
         words("Limit", lambda one: limit_text(one) or "–", 0.0),
         words("Where, case", lambda one: short(where_text(one), 36), 1.1),
-        number("Over 100\nof judged", lambda one: _over(groups[one.rule])),
-        words(
-            "What to do",
-            lambda one: Cell(detail=short(advice(worst_of(groups[one.rule])), 90)),
-            1.5,
-        ),
-        aside="a row a rule; over 100 % and judged, in all environments",
+        number("Over 100\nof judged", lambda one: _over(groups[one.rule])
+               if one is told[one.rule][0] else None),
+        words("What to do", lambda one: Cell(detail=short(advice(one), 90)), 1.5),
+        aside="the finding with the greatest use of each rule, and below it one that is graver; "
+        "over 100 % and judged, in all environments",
         ruled=False,
-    )
+    )  # fmt: skip
     yield sign_off(signed)
 
 

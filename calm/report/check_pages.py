@@ -9,7 +9,7 @@ import numpy as np
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.criterion import said
-from calm.checks.finding import Finding, State, by_rule, governing, worst_of
+from calm.checks.finding import Finding, State, by_rule, governing, told_of_rule
 from calm.checks.inventory import InventoryItem, total_of
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss
@@ -56,44 +56,46 @@ def checks_page(signed: SignedMooring) -> Iterator[Block]:
 def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
     """Tabulate the governing finding of each rule, by decreasing utilisation."""
     tags = item_tags(signed)
-    rows = []
-    for name, found in by_rule(findings).items():
-        lead = governing(found)
-        if lead.utilisation is None:
-            lead = worst_of(found)
-        worst = worst_of(found)
-        if worst.state.severity < State.WARN.severity and lead.state is not State.PASS:
-            worst = lead
-        rows.append((name, lead, worst, len({one.component for one in found})))
-    rows.sort(key=lambda row: (-(row[1].utilisation if row[1].utilisation is not None else -1.0),
-                               -row[2].state.severity))  # fmt: skip
+    rules = [(told_of_rule(found), found) for found in by_rule(findings).values()]
+    rules.sort(key=lambda rule: _used_most(rule[0][0]))
+    rows = [
+        (one, len({each.component for each in found}) if one is told[0] else 0)
+        for told, found in rules
+        for one in told
+    ]
     counts = {state: sum(one.state is state for one in findings) for state in State}
-    told = ", ".join(
+    counted = ", ".join(
         f"{count} {state.value.replace('-', ' ')}" for state, count in counts.items() if count
     )
 
-    def basis(row: tuple[str, Finding, Finding, int]) -> Cell:
-        _, lead, worst, _ = row
-        source, todo = plain(lead.source).rstrip("."), advice(worst)
-        tag = tags.get((worst.rule, worst.component))
+    def basis(row: tuple[Finding, int]) -> Cell:
+        one, _ = row
+        source, todo = plain(one.source).rstrip("."), advice(one)
+        tag = tags.get((one.rule, one.component))
         return Cell(detail=f"{source}.", then=f"{todo} ({tag})" if todo and tag else todo)
 
     return table_of(
         "Checks in full",
         rows,
-        words("", lambda row: Cell(state=row[2].state), 0.0),
+        words("", lambda row: Cell(state=row[0].state), 0.0),
         words("Rule", lambda row: Cell(
-            RULES[row[0]].title, f"({row[3]})" if row[3] > 1 else "", goes_on=True), 1.2),
-        number("Use %", lambda row: Cell(percent_text(row[1].utilisation), strong=True)),
-        number("Found", lambda row: figure_text(row[1], row[1].value)),
-        words("Limit", lambda row: limit_text(row[1]) or "–", 0.0),
-        words("Where, case", lambda row: where_text(row[1]), 0.9),
+            RULES[row[0].rule].title, f"({row[1]})" if row[1] > 1 else "", goes_on=True), 1.2),
+        number("Use %", lambda row: Cell(percent_text(row[0].utilisation), strong=True)),
+        number("Found", lambda row: figure_text(row[0], row[0].value)),
+        words("Limit", lambda row: limit_text(row[0]) or "–", 0.0),
+        words("Where, case", lambda row: where_text(row[0]), 0.9),
         words("Basis of the limit; what to do", basis, 2.2),
-        note=f"These {len(rows)} rows stand for {len(findings)} findings: {told}. All of them are "
-        "in the files beside this report.",
-        aside="a row a rule: the piece and the case with the greatest use; in brackets the pieces "
-        "judged",
+        note=f"These {len(rows)} rows stand for {len(findings)} findings: {counted}. All of them "
+        "are in the files beside this report.",
+        aside="the finding with the greatest use of each rule, and below it one that is graver; in "
+        "brackets the pieces judged",
     )  # fmt: skip
+
+
+def _used_most(finding: Finding) -> tuple[float, int]:
+    """Sort key of findings: largest utilisation first, those without one last."""
+    used = finding.utilisation
+    return 1.0 if used is None else -used, -finding.state.severity
 
 
 _A_DIFFERENCE = 0.1
@@ -152,18 +154,21 @@ def _launch(assessment: Assessment) -> Table:
     drag = "" if launch.anchor_drag_known else ", its drag not known"
     tension = launch.greatest_tension
     label = assessment.file.pieces[int(np.nanargmax(tension))].label
-    return _pairs(
-        "Launch, anchor last",
-        [
-            ("Anchor at touchdown" + drag, say("speed", launch.fall_speed),
-             _limit(assessment, "launch-speed")),
-            ("with twice and half the drag",
-             f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
-            ("Pull of the falling anchor", LOAD.say(launch.anchor_tension), ""),
-            (f"Largest tension, {label}", LOAD.say(float(np.nanmax(tension))),
-             _limit(assessment, "launch-strength")),
-        ],
-    )  # fmt: skip
+    strong = [one for one in assessment.findings if one.rule == "launch-strength"]
+    loaded = [one for one in strong if one.component == label]
+    most = governing(strong) if strong else None
+    rows = [
+        ("Anchor at touchdown" + drag, say("speed", launch.fall_speed),
+         _limit(assessment, "launch-speed")),
+        ("with twice and half the drag",
+         f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
+        ("Pull of the falling anchor", LOAD.say(launch.anchor_tension), ""),
+        (f"Largest tension, {label}", LOAD.say(float(np.nanmax(tension))), _limit_of(loaded)),
+    ]  # fmt: skip
+    if most is not None and most.utilisation is not None and most.component != label:
+        used = figure_text(most, most.value), _limit_of([most])
+        rows.append((f"Largest use, {most.component}", *used))
+    return _pairs("Launch, anchor last", rows)
 
 
 def _recovery(assessment: Assessment) -> Table:
@@ -191,8 +196,12 @@ def _recovery(assessment: Assessment) -> Table:
 
 
 def _limit(assessment: Assessment, rule: str) -> str:
-    """Limit of a rule, and its utilisation if available."""
-    found = [one for one in assessment.findings if one.rule == rule]
+    """Limit of a rule that judges a single value, and its utilisation if available."""
+    return _limit_of([one for one in assessment.findings if one.rule == rule])
+
+
+def _limit_of(found: Sequence[Finding]) -> str:
+    """Limit of the governing one of some findings, and its utilisation if available."""
     if not found:
         return ""
     lead = governing(found)

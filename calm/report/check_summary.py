@@ -233,9 +233,11 @@ def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> bloc
         if len(kept) == most or (most is None and room < 0 and kept):
             break
         kept.append(item)
-    left = len(items) - len(kept)
-    note = f"   and {left} more: in the report (--report) and in --json" if left else ""
-    return blocks.OpenItems("Open items", tuple(kept), note)
+    left = items[len(kept) :]
+    notes = [f"and {len(left)} more: in the report (--report) and in --json"] if left else []
+    unknown = [one.head.removesuffix(".") for one in left if one.state is State.UNKNOWN]
+    notes += wrap(f"Also unknown: {'; '.join(unknown)}.", _WIDTH - 3) if unknown else []
+    return blocks.OpenItems("Open items", tuple(kept), "\n".join(f"   {one}" for one in notes))
 
 
 def _height(block: blocks.Block) -> int:

@@ -58,8 +58,11 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
 
 
 def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
-    """Group findings of one rule that differ only in component and values."""
-    return grouped(findings, lambda one: (one.rule, one.state, _wording(one)))
+    """Group findings of one rule that differ only in component and values.
+
+    Each missing value of a component is a group of its own.
+    """
+    return grouped(findings, lambda one: (one.rule, one.state, one.missing or _wording(one)))
 
 
 def _wording(finding: Finding) -> str:

@@ -194,7 +194,9 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
 def _told(group: Sequence[Finding], worst: Finding) -> str:
     """Describe an open item: value, limit, and the remedy or the reason for acceptance."""
     found, limit = figure_text(worst, worst.value), limit_text(worst)
-    where = f" ({worst.case})" if worst.case else ""
+    several = len({one.component for one in group}) > 1
+    where = ", ".join(filter(None, (worst.component if several else "", worst.case)))
+    where = f" ({where})" if where else ""
     figures = f"{found}{where}, {limit} allowed." if limit else ""
     if worst.sense == ">=":
         figures = f"{found}{where}, {limit} required."
