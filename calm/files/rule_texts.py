@@ -296,7 +296,7 @@ RULES = {
         "above 3 m/s floats breach and the line may loop",
         _ONCE),
     "tangling": RuleText("Tangling", "",
-        "whether a part overtakes the parts ahead during the fall or the rise, in loops of 2 m or more",
+        "whether a part overtakes the parts ahead in the fall or the rise, in loops of 2 m or more",
         "a warning",
         "A default of CALM: no part overtakes the parts ahead",
         _ONCE),

@@ -9,7 +9,7 @@ import numpy as np
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.criterion import limit_value_text
-from calm.checks.finding import Finding, State, by_rule, governing, told_of_rule
+from calm.checks.finding import Finding, State, by_rule, governing, grouped_by, told_of_rule
 from calm.checks.inventory import InventoryItem, total_of
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss
@@ -31,7 +31,6 @@ from calm.report.blocks import (
     table_of,
     words,
 )
-from calm.report.check_tables import grouped
 from calm.report.drawing_page import item_numbers
 from calm.report.load_cases import LOAD, length_text, load_text
 from calm.report.open_items import (
@@ -214,15 +213,16 @@ _MOST_BREAKS = 10
 def _breaks(assessment: Assessment) -> Table:
     """Tabulate the net buoyancy after the most critical break of each section, and after a loss."""
     parts = {piece.index: piece for piece in assessment.file.pieces}
-    groups: dict[str, list[Break]] = {}
-    part = "the top"
-    for one in assessment.backup:
+    section = {None: "the top"}
+
+    def section_of(one: Break) -> str:
         piece = parts.get(one.break_after)
         if piece is None or piece.component.role in ("line", "float", "release"):
-            part = one.label
-        groups.setdefault(part, []).append(one)
+            section[None] = one.label
+        return section[None]
+
     rows: list[tuple[str, Break | Loss]] = []
-    for name, breaks in groups.items():
+    for name, breaks in grouped_by(assessment.backup, section_of).items():
         judged = [one for one in breaks if one.judged]
         if judged:
             worst = min(judged, key=lambda one: one.margin - one.required)
@@ -301,7 +301,7 @@ def _inventory(signed: SignedMooring) -> Table:
 
     return table_of(
         "Inventory",
-        grouped(items, lambda one: one.use),
+        grouped_by(items, lambda one: one.use).values(),
         number("Pieces", len),
         words("Component", name, 1.6),
         words(

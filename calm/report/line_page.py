@@ -5,12 +5,11 @@ from math import inf
 from typing import Any, Literal
 
 from calm.case.leg_result import LegResult
-from calm.checks.finding import Finding, State
+from calm.checks.finding import Finding, State, grouped_by
 from calm.drawing.check_figures import PieceBar, load_chart
 from calm.drawing.line_picture import alike, together
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Block, Cell, Figure, Table, number, table_of, words
-from calm.report.check_tables import grouped
 from calm.report.drawing_page import run_of
 from calm.report.load_cases import (
     LOAD,
@@ -153,7 +152,7 @@ def _use(finding: Finding | None) -> Cell | None:
 
 def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
     """A row of each type, with the pieces that are used most in equilibrium and in the launch."""
-    groups = grouped(loads, lambda one: one.row.use)
+    groups = grouped_by(loads, lambda one: one.row.use).values()
     rows = [(_most_used(group), _most_used(group, "launch"), len(group)) for group in groups]
     unit = LOAD.display_unit
     launched = any(row[1].launch_tension for row in rows)
@@ -189,7 +188,7 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
     ]
     if not rows:
         return
-    anchors = grouped(rows, lambda row: row[1].file.pieces[-1].label)
+    anchors = grouped_by(rows, lambda row: row[1].file.pieces[-1].label).values()
     if len(anchors) > 1 or len(rows) > 12:
         rows = [max(group, key=lambda row: row[1].anchor_load.required_weight) for group in anchors]
     checks, angle = signed.assessment.file.checks, QUANTITIES["angle"].format

@@ -17,12 +17,13 @@ from calm.checks.finding import (
     State,
     conclusion_of,
     governing,
+    grouped_by,
     percent_used,
     worst_of,
 )
 from calm.quantities import QUANTITIES
 from calm.report.blocks import OpenItem, Span
-from calm.report.check_tables import grouped, joined, named_components
+from calm.report.check_tables import joined, named_components
 
 OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED)
 """States that count as open, in the order of the list."""
@@ -102,7 +103,7 @@ def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[
     for state in OPEN:
         those = [one for one in every if one.state is state]
         if state in (State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED):
-            groups = grouped(those, cause)
+            groups = [*grouped_by(those, cause).values()]
         else:
             groups = joined(those)
         found += sorted(groups, key=lambda group: governing(group).rank)
