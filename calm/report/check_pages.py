@@ -161,7 +161,7 @@ def _launch(assessment: Assessment) -> Table:
          _limit(assessment, "launch-speed")),
         ("with twice and half the drag",
          f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
-        ("Tension at the anchor during descent", LOAD.say(launch.anchor_tension), ""),
+        ("Anchor tension in descent", LOAD.say(launch.anchor_tension), ""),
         (f"Largest tension, {label}", LOAD.say(float(np.nanmax(tension))), _limit_of(loaded)),
     ]  # fmt: skip
     if most is not None and most.utilisation is not None and most.component != label:

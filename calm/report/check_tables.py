@@ -61,7 +61,7 @@ def _wording(finding: Finding) -> str:
     text = f"{finding.message} {finding.remedy or ''}"
     if finding.component is not None:
         text = text.replace(finding.component, "")
-    return re.sub(r"\d[\d.]*", "#", text)
+    return re.sub(r"-?\d[\d.]*(?: k?N\b)?", "#", text)
 
 
 def named(labels: Iterable[str], most: int = 3) -> str:

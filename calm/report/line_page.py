@@ -89,10 +89,10 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         groups,
         number("No.", lambda group: run_of([str(one.number) for one in group])),
         words("Item", lambda group: together([one.row.label for one in group])),
-        number(f"Largest tension {unit}", standing(case)),
+        number(f"Tension\n{unit}", standing(case)),
         number(f"Mini-\nmum {unit}", lambda group: None if group[0].row.role in passes
                else load_text(min(one.least for one in group))),
-        number("Largest tilt °", lambda group: None if group[0].row.role == "anchor"
+        number("Tilt\n°", lambda group: None if group[0].row.role == "anchor"
                else QUANTITIES["tilt"].format(max(one.tilt for one in group))),
         number(f"Capa-\ncity {unit}", standing(lambda one: capacity_text(one.standing))),
         words("Use", standing(lambda one: _bar(one.standing)), 0.45),
@@ -107,7 +107,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         "≈ estimated, ○ accepted. The code of the case follows the tension. Equal pieces share a "
         "row, with the tension, capacity and use of the most used one, and the minimum, tilt and "
         "rise of all.",
-        aside="envelope of all load cases",
+        aside="envelope of all load cases: largest tension and tilt, minimum tension",
         ruled=False,
     )  # fmt: skip
 

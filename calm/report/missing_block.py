@@ -95,7 +95,8 @@ def _key(same: Sequence[MissingFigure]) -> list[str]:
     meaning = (field.description or "").partition(", e.g.")[0]
     instead = "".join(f", or `{key}`" for key in alternatives(first.quantity)[1:])
     rules = dict.fromkeys(RULES[rule].title.lower() for one in same for rule in one.needed_by)
-    lines = [f"    {first.quantity}:  # e.g. {field.examples[0]}: {meaning}{instead}"]
+    example = next(iter(field.examples or ()), "")
+    lines = [f"    {first.quantity}:  # e.g. {example}: {meaning}{instead}"]
     notes = [f"needed for {', '.join(rules)}"]
     notes += dict.fromkeys(str(one.class_estimate) for one in same if one.class_estimate)
     for text in notes:

@@ -43,6 +43,11 @@ def plain(text: str) -> str:
     return re.sub(r"(?<=\d) (?=(?:m/s|mm|m|kN|N|kg|s|min|kn|kgf|lbf|ft)\b|%)", "\u00a0", text)
 
 
+def without_asides(text: str) -> str:
+    """Remove sources and other long passages in brackets."""
+    return re.sub(r" \((?:[^()]|\([^()]*\)){30,}\)", "", text)
+
+
 def short(text: str, most: int) -> str:
     """Shorten a text to at most `most` characters."""
     return text if len(text) <= most else f"{text[: most - 1].rstrip()}…"
@@ -178,7 +183,8 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
     if worst.missing is not None:
         return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} missing"
     if worst.state is State.ESTIMATED:
-        return f"{_capital(short(named_components(_once(group)), 90))}: passes by an estimate"
+        passes = "passes" if len(labels) == 1 else "pass"
+        return f"{_capital(short(named_components(_once(group)), 90))}: {passes} by an estimate"
     use = "" if worst.utilisation is None else f": {percent_text(worst.utilisation)}\u00a0%"
     if worst.state is State.NOT_JUDGED:
         use = " is not judged"
@@ -272,7 +278,7 @@ def verdict_sentence(assessment: Assessment) -> str:
         for one in map(governing, groups)
         if (one.utilisation or 0.0) > 1.0 and one.rule not in failing
     ]
-    beyond = f" Over 100 % without failing: {', '.join(dict.fromkeys(over))}." if over else ""
+    beyond = f" Over 100\u00a0% without failure: {', '.join(dict.fromkeys(over))}." if over else ""
     return f"{_capital(', '.join(filter(None, said)))}.{beyond}"
 
 
