@@ -532,12 +532,12 @@ class Clamps(ColumnTable[ClampRow]):
 
 def documents(table: Components | Clamps, file: MooringFile) -> list[dict[str, Any]]:
     """Rows as JSON objects; None stands for unknown values."""
-    own, beside = table.columns(Output.JSON), shown_in(OF_ROWS, Output.JSON)
+    own, of_the_file = table.columns(Output.JSON), shown_in(OF_ROWS, Output.JSON)
     rows = []
     for row in table:
-        told = {one.name: _known(getattr(row, one.name)) for one in own}
-        more = {one.name: one.value(row, file) for one in beside}
-        rows.append(told | {name: value for name, value in more.items() if value is not None})
+        values = {one.name: _known(getattr(row, one.name)) for one in own}
+        more = {one.name: one.value(row, file) for one in of_the_file}
+        rows.append(values | {name: value for name, value in more.items() if value is not None})
     return rows
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from functools import partial
+from functools import cached_property, partial
 from math import ceil, inf, isfinite
 from typing import Any, Literal
 
@@ -116,7 +116,7 @@ class MissingFigure:
 
     Attributes
     ----------
-    component_id : as in `use`
+    component_id, kind : as in `use`; kind of the component
     quantity : key of the component
     needed_by : names of the rules that require the value
     pieces, places : labels and places of the affected pieces and clamps
@@ -124,6 +124,7 @@ class MissingFigure:
     """
 
     component_id: str
+    kind: str
     quantity: str
     needed_by: tuple[str, ...]
     pieces: tuple[str, ...]
@@ -343,7 +344,7 @@ class Finding(Verdict):
     `source` is the source of the rule and its limit. `situation` names the change to the design, or
     is `AS_GIVEN`. `accept` is the entry that accepts the finding, `unaccepted` its state without
     that entry; both are None otherwise. `probability` is the probability of exceeding the limit, if
-    it was computed.
+    it was computed. `estimates` are the estimates that the finding relies on.
     """
 
     mooring: str
@@ -353,8 +354,9 @@ class Finding(Verdict):
     accept: Accept | None = None
     unaccepted: State | None = None
     probability: float | None = None
+    estimates: tuple[EstimatedFigure, ...] = ()
 
-    @property
+    @cached_property
     def utilisation(self) -> float | None:
         """Demand over capacity; None if the rule has no such ratio."""
         return super().utilisation if RULE_TEXTS[self.rule].has_ratio else None

@@ -267,7 +267,7 @@ def _standing(mooring: Design, notes: list[str]) -> Result:
         except NoEquilibrium:
             raise failure from None
         notes.append(
-            "The line is longer than the water is deep and slack in still water: the sheets "
+            "The line is longer than the water depth and slack in still water, so the sheets "
             f"show it in a current of {FAINT:g} m/s to the east; the anchor drop is computed "
             "in still water"
         )

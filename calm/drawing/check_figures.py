@@ -225,9 +225,9 @@ def _draw_labels(
         room = width - left - _FIGURES
         bold = one.at is not None
         tag = f" {one.tag}" if one.tag else ""
-        told = shortened(one.text, room / _REAL - text_width(tag, FONT, bold=bold), FONT, bold=bold)
+        text = shortened(one.text, room / _REAL - text_width(tag, FONT, bold=bold), FONT, bold=bold)
         style = {} if bold else {"font_style": "italic"}
-        page.draw("g", **style).letters(left, y, told + tag, size=FONT, bold=bold)
+        page.draw("g", **style).letters(left, y, text + tag, size=FONT, bold=bold)
         page.letters(width, y, one.depth, size=FONT, anchor="end")
 
 
@@ -269,13 +269,13 @@ def load_chart(title: str, loads: Sequence[PieceBar], size: tuple[float, float])
         page.letters(left - 4.0, y(level), number(level), size=FONT, colour=INK, anchor="end")
     named = -1e9
     for place, one in enumerate(loads):
-        capacity, falls, stands = one.capacity, one.launch, one.tension
+        capacity, falls, tension = one.capacity, one.launch, one.tension
         most = None if one.launch_capacity == capacity else one.launch_capacity
         x = left + 3.0 + place * step
         middle = x + 0.37 * step
         if falls:
             page.box(middle, (y(falls) + bottom) / 2, 0.74 * step, bottom - y(falls), fill=PALE)
-        page.box(middle, (y(stands) + bottom) / 2, 0.4 * step, bottom - y(stands), fill=INK)
+        page.box(middle, (y(tension) + bottom) / 2, 0.4 * step, bottom - y(tension), fill=INK)
         for load, dashes in ((capacity, "none"), (most, "1.2 1.2")):
             if load is not None and load <= highest:
                 page.line(x - 0.06 * step, y(load), x + 0.82 * step, y(load), stroke=INK,

@@ -36,10 +36,10 @@ def deployment_part(deck: Deck) -> ReportPart:
     """Build the deployment log: preparations, order over the side, and anchor position."""
     last = deck.order is Order.ANCHOR_LAST
     said = (
-        ("Anchor last: the top" if last else "Anchor first: the lower end")
+        ("Anchor-last deployment: the top" if last else "Anchor-first deployment: the lower end")
         + f"{' of each leg' if deck.result.several else ''} goes over the side first. "
         + (_LEGS if deck.result.several else "")
-        + "Lengths are as cut; clamps are placed from the upper end of their piece, unstretched."
+        + "Lengths are as cut; positions of clamps are from the upper end of the unloaded piece."
     )
     unit = QUANTITIES["depth"].display_unit
     soundings = table_of(
@@ -67,25 +67,28 @@ def recovery_part(deck: Deck) -> ReportPart:
     rise = deck.rise
     said = []
     if deck.result.several:
-        said.append("The rise of a net is not solved: the lists go down each leg.")
+        said.append(
+            "The ascent of a net is not computed; the pieces of each leg are listed from top to "
+            "bottom."
+        )
     elif rise is None:
-        said.append("The rise is not known: the list goes down the line.")
+        said.append("The ascent has no solution; pieces are listed from top to bottom.")
     elif rise.time_to_surface is None:
-        said.append("Once released, the line does not rise by itself: the list goes down the line.")
+        said.append("After release the line does not rise; pieces are listed from top to bottom.")
     elif rise.time_to_surface == 0.0:
         said.append(
-            "Its float is at the surface; what comes up from below is listed with its time."
+            "The float is at the surface; pieces that rise from below are listed with their times."
         )
     else:
         first = rise.time_to_surface / 60.0
         said.append(
-            f"Once released, the line rises at {say('speed', rise.rise_speed)}; the first "
-            f"float is expected after {first:.0f} min."
+            f"After release the line rises at {say('speed', rise.rise_speed)}; the first float "
+            f"surfaces after {first:.0f} min."
         )
         if rise.tangles:
-            said.append("It may double back in the rise: the order may differ.")
+            said.append("The line may double back during the ascent and change the order.")
         if rise.in_still_water:
-            said.append("The rise is computed in still water.")
+            said.append("The ascent is computed in still water.")
     named = zip(("deployed", "position", "water depth"), _deployed(deck), strict=True)
     known = tuple((name, text) for name, text in named if text)
     events = table_of(
@@ -109,8 +112,8 @@ def recovery_part(deck: Deck) -> ReportPart:
 
 
 _LEGS = (
-    "The legs stand in the order of the file, anchor first from the last to the first; which goes "
-    "when is not planned. "
+    "The legs are listed in file order, or in reverse for anchor-first deployment; CALM does not "
+    "plan their sequence. "
 )
 _EVENTS = (
     "On station", "First float seen, bearing", "All floats counted", "Hooked", "All on board",
@@ -218,7 +221,7 @@ def _over_the_side(deck: Deck) -> list[Table]:
     fields = (
         number("no.", lambda row: _numbers(row, deck)),
         words("piece", _piece, 3.8),
-        words("length,\nor place", length, 1.3, unit=unit),
+        words("length,\nor position", length, 1.3, unit=unit),
         *([quantity("depth", "first.depth"), number("planned", plan, deep)] if planned else []),
         words("serial\nnumber", "first.serial", 0.7),
         blank("over", "UTC", 0.6),
@@ -251,7 +254,7 @@ def _positions(deck: Deck) -> Table:
         ("Target", "", target, QUANTITIES["depth"].say(file.environment.depth)),
         ("Fall-back target", "", "", ""),
         ("First piece over", start, "", ""),
-        ("Anchor let go", let_go, "", ""),
+        ("Anchor release", let_go, "", ""),
         ("Anchor, ranged", "", *_deployed(deck)[1:]),
     )
     return table_of(
@@ -277,17 +280,17 @@ def _surfacing(deck: Deck) -> list[Table]:
         number("no.", lambda row: _numbers(row, deck)),
         words("piece", _piece, 4.6),
         words("serial\nnumber", "first.deployed_serial", 0.95),
-        words("up after,\nor hangs", expected, 0.0),
+        words("surfaces\nor hangs", expected, 0.0),
         blank("seen", "UTC", 0.65),
         blank("on deck", "UTC", 0.65),
         words("whole,\nruns,\nfouled", lambda _: "☐ ☐ ☐", 0.0),
         words("remarks", "first.remark"),
     )
     note = (
-        "Up after: time since the release, or the depth at which a piece hangs once the "
-        "line is up. By itself: buoyant enough to surface alone; the rest comes up with "
-        "it. The order is that of surfacing, not of hauling. Shackles, links and swivels "
-        "come with the pieces they join."
+        "Surfaces or hangs: time from release to surfacing, or the depth at which the piece hangs "
+        "from the surfaced line. By itself: the piece is buoyant enough to surface alone; other "
+        "pieces are lifted with it. Pieces are listed in order of surfacing, not of hauling. "
+        "Shackles, links and swivels surface with the pieces they connect."
     )
     tables = [
         table_of(title, rows_on_paper(items), *fields, by_hand=True)

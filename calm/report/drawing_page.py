@@ -123,9 +123,9 @@ def _buoyancy(force: float) -> str:
 
 
 _DRAWING_NOTE = (
-    "Depths: of the upper end; planned: as the mooring file gives them; still: in still water. "
-    "Length: as cut, or the place of a clamp on its piece. Largest tension: of all standing cases. "
-    "Net buoyancy: in sea water, downward negative."
+    "Depths are at the upper end; planned: as the mooring file gives them; still: in still water. "
+    "Lengths are as cut; clamps have their position on the piece. The largest tension is "
+    "over all moored cases. Net buoyancy is positive upwards."
 )
 
 

@@ -42,8 +42,8 @@ def line_page(signed: SignedMooring) -> Iterator[Block]:
     ]  # fmt: skip
     title = f"Tension and capacity, {unit}"
     aside = (
-        "by item; black: standing, grey: launch; tick: capacity, dotted: in the launch; "
-        "▲ beyond the scale; ? not known"
+        "by item; black: moored, grey: launch; tick: capacity, dotted: capacity in the launch; "
+        "▲ beyond the scale; ? unknown"
     )
     yield Figure(title, load_chart(title, points, (508.0, 130.0)), aside=aside)
     if hardware:
@@ -91,7 +91,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         number("No.", lambda group: run_of([str(one.number) for one in group])),
         words("Item", lambda group: together([one.row.label for one in group])),
         number(f"Largest tension {unit}", standing(case)),
-        number(f"Least {unit}", lambda group: None if group[0].row.role in passes
+        number(f"Mini-\nmum {unit}", lambda group: None if group[0].row.role in passes
                else load_text(min(one.least for one in group))),
         number("Largest tilt °", lambda group: None if group[0].row.role == "anchor"
                else QUANTITIES["tilt"].format(max(one.tilt for one in group))),
@@ -103,11 +103,11 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         number("Use %", falling(lambda one: _use(one.launch))),
         number(f"Rise {unit}", lambda group: _force(
             max((one.rise_tension or 0.0 for one in group), default=None))),
-        note="Capacity: the lesser of the working load and the breaking load over its safety "
-        "factor; in the launch by the factors there. – no load is judged, ? no published load, "
-        "≈ estimated, ○ accepted. The case stands behind the tension. Of equal pieces: tension, "
-        "capacity and use of the one that is used most, in the launch of the one that is used most "
-        "there; least, tilt and rise of all.",
+        note="Capacity is the smaller of the working load and the breaking load over its safety "
+        "factor, with the factors of the launch there. – no load is judged, ? no published load, "
+        "≈ estimated, ○ accepted. The code of the case follows the tension. Equal pieces share a "
+        "row, with the tension, capacity and use of the most used one, and the minimum, tilt and "
+        "rise of all.",
         aside="envelope of all load cases",
         ruled=False,
     )  # fmt: skip
@@ -172,12 +172,12 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
         rows,
         words("Type", lambda row: row[0].row.part.component.name or row[0].row.use, 1.2),
         number("Pieces", 2),
-        words("Most used standing", lambda row: named(row[0])),
+        words("Most used, moored", lambda row: named(row[0])),
         number(f"Largest\ntension {unit}", lambda row: load_text(row[0].tension)),
         number(f"Capa-\ncity {unit}", lambda row: capacity_text(row[0].standing)),
         number("Use %", lambda row: _use(row[0].standing)),
         *(launch if launched else ()),
-        aside="a row a type; the pieces that govern",
+        aside="one row per type, for the governing pieces",
         ruled=False,
     )
 
@@ -225,6 +225,6 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
         number("Sliding use %", sliding),
         note=f"Required: {factor:g} (V + H / {first.anchor_load.friction:.3g}). Uplift: V against "
         f"weight / {factor:g}. Sliding: H against {first.anchor_load.friction:.3g} "
-        f"(weight / {factor:g} − V). The soil is not judged.",
+        f"(weight / {factor:g} − V). Soil strength is not checked.",
         ruled=False,
     )  # fmt: skip

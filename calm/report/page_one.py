@@ -214,10 +214,10 @@ def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
     cases, note = [*cases], ""
     if len(cases) > MOST_CASES:
         cases = worst_of_each_environment(cases)
-        note = "Of each environment the case with the greatest knockdown."
+        note = "The table has the case with the largest knockdown of each environment."
     if len(cases) > MOST_CASES:
         kept = sorted(cases, key=lambda one: -one.knockdown)[:MOST_CASES]
-        note += f" {len(cases) - MOST_CASES} less severe ones are left out."
+        note += f" {len(cases) - MOST_CASES} less severe cases are omitted."
         cases = [one for one in cases if one in kept]
     return cases, note
 
@@ -242,7 +242,7 @@ def cases_table(signed: SignedMooring) -> Table:
         *(figure.field(lead[0]) for figure, lead in shown),
         note=note,
         ruled=False,
-        aside="governing figures in bold, and where they are",
+        aside="governing values in bold, their components in the last row",
     )
     where = (Cell(detail=short(lead[1], 15)) for _, lead in shown)
     row = Cell(), Cell(detail="where"), *where
@@ -270,7 +270,7 @@ def governing_table(signed: SignedMooring) -> Table:
     )
     kept = rows[: max(over, min(MOST_CHECKS, half))] or rows[:3]
     rest = rows[len(kept) :]
-    note = "✓ passes  ≈ on an estimate  ▲ warning  ○ accepted  ? not known  ✗ fails.  "
+    note = "✓ passes  ≈ by an estimate  ▲ warning  ○ accepted  ? unknown  ✗ fails.  "
     note += "Cases: L launch, R rise, B break."
     if rest:
         most = percent_text(rest[0].utilisation)
@@ -282,7 +282,7 @@ def governing_table(signed: SignedMooring) -> Table:
         note=note,
         ruled=False,
         aside="use = demand / capacity, or required / available, rounded up; "
-        "the line in the bars is 100 %; hatched: beyond it",
+        "the bars have a line at 100 % and are hatched above it",
     )
 
 
@@ -293,7 +293,7 @@ def check_fields(longest: int) -> tuple[blocks.Field, ...]:
         words("Check", lambda one: RULES[one.rule].title, 1.15),
         words("", lambda one: Cell(bar=min(one.utilisation, 9.99), state=one.state), 1.5),
         number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
-        number("Found", lambda one: figure_text(one, one.value)),
+        number("Found", lambda one: figure_text(one)),
         words("Limit", limit_text, 0.0),
         words("Where, case", lambda one: short(where_text(one), longest + 8), 1.3),
     )
@@ -315,8 +315,8 @@ def sign_off(signed: SignedMooring) -> SignOff:
         history.append(own)
     roles = (("Drawn", field("author")), ("Checked", field("checked")),
              ("Approved", field("approved")))  # fmt: skip
-    said = "Signatures. The last page says what no check judges: waves, snap loads, fatigue."
-    return SignOff(tuple(history[: -MOST_REVISIONS - 1 : -1]), roles, said)
+    note = "Signatures. The last page lists what no check covers: waves, snap loads, fatigue."
+    return SignOff(tuple(history[: -MOST_REVISIONS - 1 : -1]), roles, note)
 
 
 def page_one(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
@@ -356,7 +356,7 @@ def _picture(signed: SignedMooring, height: float) -> Figure:
     told += ["thin: other cases"] * any(one.code[-1] not in "s0" for one in others)
     water = first.results[0].water
     towards = f" Current towards {bearing_text(bearing_of(water.u[0], water.v[0]))} at the surface."
-    aside = f"to scale, 1 : {_round(scale * 72.0 / 0.0254)}, beside it the line, not to scale"
+    aside = f"left to scale, 1 : {_round(scale * 72.0 / 0.0254)}; right not to scale"
     note = f"{', '.join(told)}.{towards} Depths in m."
     return Figure("The mooring", svg, aside=aside, note=note)
 

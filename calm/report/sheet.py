@@ -35,8 +35,8 @@ from calm.report.blocks import (
 )
 from calm.solve import Status
 
-_NOTE = "at the upper end of a part. Tension: the largest in it."
-_MARKS = {State.WARN: "~ near a limit.", State.FAIL: "! beyond a limit."}
+_NOTE = "are at the upper end of a part, tension is its maximum."
+_MARKS = {State.WARN: "~ close to a limit.", State.FAIL: "! limit exceeded."}
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 
 
@@ -85,13 +85,13 @@ def quality_of(result: LegResult) -> Prose:
     good, end = result.accuracy, "anchor" if result.leg.anchored else "lower end"
     if result.towed:
         end = "tow point"
-    pull = "" if good.anchor is None else f", at the {end} {good.anchor:.2g} N"
+    load = "" if good.anchor is None else f", {good.anchor:.2g} N in the load at the {end}"
     return Prose(
         (
-            f"Good to {good.depth:.2g} m and {good.tension:.2g} N{pull}.",
-            f"{result.status.capitalize()} in {result.iterations} marches of {result.segments} "
-            f"segments; {end} missed by {abs(result.miss):.1g} m, forces closed to "
-            f"{result.closure:.1g}.",
+            f"Numerical error: {good.depth:.2g} m in depth, {good.tension:.2g} N in tension{load}.",
+            f"{result.status.capitalize()} after {result.iterations} integrations over "
+            f"{result.segments} segments; error in position at the {end} {abs(result.miss):.1g} m, "
+            f"relative imbalance of forces {result.closure:.1g}.",
         )
     )
 
@@ -104,9 +104,9 @@ def accuracy_text(results: Sequence[LegResult]) -> str:
         for one in results
     )
     return (
-        f"The numerical error of the solution is below {math.ceil(10.0 * depth) / 10.0:.1f} m and "
-        f"{max(math.ceil(10.0 * share) / 10.0, 0.1):.1f} % of a tension. The inputs are not known "
-        "so well: the current to about a tenth, the drag of a cable to about a fifth."
+        f"The numerical error of the solution is below {math.ceil(10.0 * depth) / 10.0:.1f} m in "
+        f"depth and {max(math.ceil(10.0 * share) / 10.0, 0.1):.1f} % of the tension. Inputs are "
+        "less certain: the current to about 10 %, the drag of a cable to about 20 %."
     )
 
 
@@ -116,12 +116,12 @@ def _travel(profiler: ProfilerTravel) -> str:
         f"{say('depth', place.depth)} ({say('tension', place.tension)}, {say('tilt', place.tilt)})"
         for place in (profiler.upper, profiler.lower, profiler.worst)
     )
-    said = f"{profiler.label} travels from {upper} to {lower}; its wire leans most at {worst}"
+    text = f"{profiler.label} travels from {upper} to {lower}; largest wire angle at {worst}"
     if profiler.time is not None:
-        said += f"; a profile takes {duration(profiler.time)}"
+        text += f"; a profile takes {duration(profiler.time)}"
     if profiler.profiles is not None:
-        said += f", its batteries last for {profiler.profiles}"
-    return said
+        text += f", and the batteries last for {profiler.profiles} profiles"
+    return text
 
 
 def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
@@ -130,8 +130,8 @@ def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
     off = f"{say('offset', math.hypot(top.x, top.y))} off the anchor" * result.leg.anchored
     if result.type == "surface":
         told = [", ".join(filter(None, ("at the surface", off)))]
-        told.append(f"{top.used_buoyancy:.1%} of its buoyancy used, {say('reserve', top.reserve)} "
-                    "in reserve")  # fmt: skip
+        told.append(f"{100 * top.used_buoyancy:.1f} % of its buoyancy in use, reserve buoyancy "
+                    f"{say('reserve', top.reserve)}")  # fmt: skip
     else:
         deep, down = say("depth", top.depth), say("knockdown", top.knockdown)
         told = [", ".join(filter(None, (f"{deep} deep", f"knockdown {down}", off)))]
@@ -171,9 +171,9 @@ def _anchor_text(result: LegResult) -> str:
     return (
         f"{say('required_weight', anchor.weight)} in water, "
         f"{say('required_weight', anchor.required_weight)} required{share}{beyond}\n"
-        f"pulled {say('vertical', anchor.vertical)} up and "
-        f"{say('horizontal', anchor.horizontal)} sideways, {say('angle', anchor.angle)} from the "
-        "vertical"
+        f"load {say('vertical', anchor.vertical)} vertical, "
+        f"{say('horizontal', anchor.horizontal)} horizontal, {say('angle', anchor.angle)} from "
+        "the vertical"
     )
 
 
@@ -188,10 +188,10 @@ def _tow_summary(result: LegResult) -> Iterator[tuple[str, str]]:
     vertical = f"{say('vertical', abs(point.vertical))} {'down' if point.vertical >= 0.0 else 'up'}"
     yield (
         "Tow point",
-        f"pulled by {at_ship}: {vertical}, {say('horizontal', point.horizontal)} back",
+        f"load {at_ship} ({vertical}, {say('horizontal', point.horizontal)} astern)",
     )
     told = f"{_level(result, body.depth)}, layback {say('layback', body.layback)}"
-    yield "Body", "\n".join((f"{told}; pulled by {at_body}", *_strumming(result)))
+    yield "Body", "\n".join((f"{told}; tension {at_body}", *_strumming(result)))
 
 
 def _strumming(result: LegResult) -> tuple[str, ...]:
@@ -271,7 +271,7 @@ def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -
     columns += (blocks.quantity_column(one.quantity) for one in figures if one.quantity)
     marked = {cell.state for row in rows for cell in row if cell.mark}
     legend = " ".join(text for state, text in _MARKS.items() if state in marked)
-    note = "\n".join(filter(None, (f"{of_an_end}: {_NOTE}", legend)))
+    note = "\n".join(filter(None, (f"{of_an_end} {_NOTE}", legend)))
     table = Table(title, tuple(columns), tuple(rows), note, dense=True)
     return table.without_empty_columns()
 
@@ -367,8 +367,8 @@ def _ends(result: Result) -> Iterator[Table | Prose]:
             head = words("", "name") if title == "Nodes" else words("leg")
             yield blocks.table_of(title, rows, head, *_fields(rows))
     afloat = [
-        f"{leg.name}: float at the surface, {leg.top.used_buoyancy:.1%} of its buoyancy used, "
-        f"{say('reserve', leg.top.reserve)} in reserve"
+        f"{leg.name}: float at the surface, {100 * leg.top.used_buoyancy:.1f} % of its buoyancy in "
+        f"use, reserve buoyancy {say('reserve', leg.top.reserve)}"
         for leg in result.legs
         if leg.type == "surface"
     ]
@@ -390,8 +390,9 @@ def _convergence(result: Result) -> str:
     accuracy = result.accuracy
     left = max((node.imbalance for node in result.nodes), default=0.0)
     return (
-        f"{result.status.capitalize()} in {result.iterations} marches of its legs, "
-        f"{result.segments} segments, good to {accuracy.depth:.2g} m and {accuracy.tension:.2g} N; "
-        f"ends missed by {result.miss:.1g} m, nodes in balance to {left:.1g} N, forces closed to "
+        f"{result.status.capitalize()} after {result.iterations} integrations of the legs over "
+        f"{result.segments} segments. Numerical error: {accuracy.depth:.2g} m in depth, "
+        f"{accuracy.tension:.2g} N in tension; {result.miss:.1g} m in the position of the ends, "
+        f"{left:.1g} N in the balance of the nodes; relative imbalance of forces "
         f"{result.closure:.1g}."
     )

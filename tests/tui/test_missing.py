@@ -117,14 +117,14 @@ def test_the_form_shows_the_class_estimate_of_a_figure():
     text = UNKNOWN.replace("role: release,", f"role: release, {estimate},")
     (found,) = (one for one in missing_figures(judge(text), Draft(text)) if one.use == "releaser")
     assert found.estimates == {"working_load": "estimated: 1 N at least, 20000 N likely"}
-    takes = {each.key: each.takes for each in figures_sheet([found])._asked}
+    takes = {each.key: each.takes for each in figures_sheet([found])._form_fields}
     assert takes["releaser.working_load"] == "estimated: 1 N at least, 20000 N likely"
 
 
 def test_the_form_asks_for_what_the_block_asks_for():
     """Both name the figure that is missing and those that would do in its place."""
     view = judge_fully(judge(UNKNOWN))
-    block = yaml.safe_load(missing_block(view.findings))["components"]
+    block = yaml.safe_load(missing_block(view.findings, {}))["components"]
     asked = {each.use: each for each in missing_figures(view, Draft(UNKNOWN))}
     assert asked.keys() == block.keys()
     for use, keys in block.items():

@@ -113,7 +113,7 @@ def _piece(
     elif len(row.items) > 1:
         lengths = "" if first.is_rigid else row.lengths, ""
     else:
-        lengths = _said("length", first.cut_length), _said("length", first.stretched)
+        lengths = _number_text("length", first.cut_length), _number_text("length", first.stretched)
     row_beside = TextRow(
         label,
         " · ".join(filter(None, words)),
@@ -155,15 +155,15 @@ def _figures(
     buoyancy = -sum(known) if len(known) == len(own) else None
     return (
         *lengths,
-        _said("depth", items[0].depth),
-        *(["" if plan is None else _said("planned_depth", plan)] if planned else []),
-        _said("depth", items[0].height),
-        "" if tension is None else _said("tension", tension),
-        "?" if buoyancy is None else _said("wet_weight", buoyancy),
+        _number_text("depth", items[0].depth),
+        *(["" if plan is None else _number_text("planned_depth", plan)] if planned else []),
+        _number_text("depth", items[0].height),
+        "" if tension is None else _number_text("tension", tension),
+        "?" if buoyancy is None else _number_text("wet_weight", buoyancy),
     )
 
 
-def _said(name: str, value: float | None) -> str:
+def _number_text(name: str, value: float | None) -> str:
     return QUANTITIES[name].format(value)
 
 
@@ -179,8 +179,8 @@ def _junction(parts: Sequence[DeckItem], own: Mapping[int, str], cells: Cells) -
     )
     signs = [_sign(one) for one in parts]
     lengths = (
-        _said("length", sum(one.cut_length or 0.0 for one in parts)),
-        _said("length", sum(one.stretched or 0.0 for one in parts)),
+        _number_text("length", sum(one.cut_length or 0.0 for one in parts)),
+        _number_text("length", sum(one.stretched or 0.0 for one in parts)),
     )
     sign = next((sign for sign in signs if sign.symbol is Symbol.SWIVEL), signs[0])
     labels = tuple(one.label for one in parts)

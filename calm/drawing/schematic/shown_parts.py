@@ -185,16 +185,16 @@ def _row(of: Piece | Clamp, cells: tuple[str, ...]) -> TextRow:
 
 def _subtitle(file: MooringFile) -> str:
     """Depth and position of a mooring, or speed of a tow."""
-    said = []
+    facts = []
     if file.tow is not None:
-        said.append(f"towed at {say('speed', file.tow.speed)} towards {file.tow.toward:.0f}°")
+        facts.append(f"towed at {say('speed', file.tow.speed)} towards {file.tow.toward:.0f}°")
     if file.environment.depth is not None:
-        said.append(f"{say('depth', file.environment.depth)} of water")
+        facts.append(f"{say('depth', file.environment.depth)} of water")
     if file.position is not None:
         latitude, longitude = file.position.latitude, file.position.longitude
-        said.append(f"{abs(latitude):.4f}° {'N' if latitude >= 0.0 else 'S'}")
-        said.append(f"{abs(longitude):.4f}° {'E' if longitude >= 0.0 else 'W'}")
-    return " · ".join(said)
+        facts.append(f"{abs(latitude):.4f}° {'N' if latitude >= 0.0 else 'S'}")
+        facts.append(f"{abs(longitude):.4f}° {'E' if longitude >= 0.0 else 'W'}")
+    return " · ".join(facts)
 
 
 _NOT_TO_SCALE = "Not to scale. Depth and height are at the upper end,"
