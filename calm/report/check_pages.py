@@ -313,7 +313,7 @@ def _inventory(signed: SignedMooring) -> Table:
     return table_of(
         "Inventory",
         grouped_by(items, lambda one: one.use).values(),
-        number("Pieces", len),
+        number("Pieces", lambda group: sum(one.items for one in group)),
         words("Component", name, 1.6),
         words(
             "Catalogue", lambda group: None if group is items else Cell(detail=group[0].use), 0.9
