@@ -126,6 +126,7 @@ def grid(
     write_grid(
         layout, fields, wanted, called, output, lambda each: progress(each, "blocks of times")
     )
+    narrate(f"{output} written")
     if report is not None:
         write_pages(report, "grid", grid_report(output, fields, called, wanted, cards))
     outputs.write_answer(lambda: grid_document(fields, cards), grid_part(fields))
