@@ -85,8 +85,8 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
 
     def to(value: float) -> MooringFile:
         # remove other keys from which the net buoyancy could follow, as in an override on the line
-        gone = "weight" if cable else "volume"
-        lifted = component.model_copy(update={"buoyancy": value, gone: None})
+        replaced = "weight" if cable else "volume"
+        lifted = component.model_copy(update={"buoyancy": value, replaced: None})
 
         def changed(clamp: Clamp) -> Clamp:
             return replace(clamp, component=lifted) if clamp.place in places else clamp

@@ -241,8 +241,8 @@ class Leg:
         """
         lift, length = standing_lift(self.line, self.water), np.cumsum(self.line.length)
         height = self.water.depth - self.line.anchor_height
-        hung = float(np.interp(height, length, np.cumsum(lift)))
-        floats_at_rest = length[-1] > height and hung > 0.0
+        net_lift = float(np.interp(height, length, np.cumsum(lift)))
+        floats_at_rest = length[-1] > height and net_lift > 0.0
         if float(lift.sum()) <= 0.0 and not floats_at_rest:
             return too_heavy(lift)
         pulls = "pulls the line's top under water and " if floats_at_rest else ""

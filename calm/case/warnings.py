@@ -328,8 +328,14 @@ def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
 def _wind_ignored(result: _Measured, solution: Solution) -> Iterator[str]:
     wind = result.file.environment.wind
     floating = solution.line.floating
-    felt = floating is not None and (floating.hull is not None or floating.wind_area is not None)
-    if wind is not None and solution.surface and not (solution.riding is not None and felt):
+    has_wind_load = floating is not None and (
+        floating.hull is not None or floating.wind_area is not None
+    )
+    if (
+        wind is not None
+        and solution.surface
+        and not (solution.riding is not None and has_wind_load)
+    ):
         yield "Wind on the float is neglected: its area above the water is unknown."
 
 

@@ -104,7 +104,7 @@ def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
     from calm.report.open_items import assessment_verdict
 
     narrate(f"{path}: {assessment_verdict(deck.assessment).text}: calm check {path}")
-    notes = _signs_that_are_lacking(deck)
+    notes = _missing_characters(deck)
     for note in (*deck.notes, *notes):
         narrate(f"{path}: {note}")
     write_report(folder, _contents(deck, paper, notes))
@@ -153,7 +153,7 @@ def _plan(deck: Deck) -> dict[str, Any]:
     return deck.plan.to_dict()
 
 
-def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
+def _missing_characters(deck: Deck) -> tuple[str, ...]:
     """Describe characters of the file that the font of the sheets lacks, with their places."""
     from calm.drawing.typesetting import lacking
 

@@ -216,10 +216,10 @@ class Outputs:
         from calm.report.folder import check_destination
         from calm.report.provenance import moment
 
-        asked = [] if self.json is None else [self.json]
+        paths = [] if self.json is None else [self.json]
         for path in self.written:
-            asked += self.apiece(path) if path.suffix.lower() in APIECE else [path]
-        for path in asked:
+            paths += self.apiece(path) if path.suffix.lower() in APIECE else [path]
+        for path in paths:
             if str(path).startswith("-") and path != STDOUT:
                 raise UsageError(
                     f"{path} was given where a path is needed; write ./{path} for a file"
@@ -232,14 +232,14 @@ class Outputs:
         if any(path.suffix.lower() in APIECE for path in self.written):
             moment()
         mooring_files = set(map(os.path.realpath, self.files))
-        for real, count in Counter(map(os.path.realpath, asked)).items():
+        for real, count in Counter(map(os.path.realpath, paths)).items():
             if count > 1:
                 raise UsageError(f"two outputs would go to {os.path.relpath(real)}")
             if real in mooring_files:
                 raise UsageError(
                     f"{os.path.relpath(real)} is a mooring file and was not overwritten"
                 )
-        for path in asked:
+        for path in paths:
             if path != STDOUT:
                 check_destination(path)
 

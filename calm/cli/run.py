@@ -99,8 +99,8 @@ def run(
         "--explain": explain, "--schematic": schematic, "--uncertainty": uncertainty,
         "--verbose": verbose,
     }  # fmt: skip
-    if chosen is not None and (asked := [option for option, value in single.items() if value]):
-        raise UsageError(f"{', '.join(asked)} cannot be combined with --speeds")
+    if chosen is not None and (excluded := [option for option, value in single.items() if value]):
+        raise UsageError(f"{', '.join(excluded)} cannot be combined with --speeds")
     from calm.case import load
     from calm.files.legs import NET_SURE
 
@@ -128,6 +128,8 @@ def run(
 
 def _refuse(options: Mapping[str, object], what: str, designs: Sequence[Design]) -> None:
     """Reject the first of the options if there are designs that it does not apply to."""
-    asked = [option for option, value in options.items() if value]
-    if asked and designs:
-        raise UsageError(f"{asked[0]} is for {what}: {', '.join(one.file.path for one in designs)}")
+    chosen = [option for option, value in options.items() if value]
+    if chosen and designs:
+        raise UsageError(
+            f"{chosen[0]} is for {what}: {', '.join(one.file.path for one in designs)}"
+        )

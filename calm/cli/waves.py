@@ -84,21 +84,21 @@ def waves(
 
     if report is not None:
         folder.check_folder(report)
-    asked, way, length = _asked(
+    of_options, direction, length = _sea_states(
         {"hs": hs, "tp": tp, "swell": swell, "swell_tp": swell_tp},
         spectrum, gamma, toward, scatter, duration,
     )  # fmt: skip
     mooring = load(file, environment, catalog or [])
     leg = mooring.moored
-    given, seas = mooring.file.environment.waves, asked or mooring.file.environment.seas
+    given, seas = mooring.file.environment.waves, of_options or mooring.file.environment.seas
     if not seas:
         missing = "--hs: missing" if spectrum in OF_HEIGHT else "--hs, --tp: missing"
         raise UsageError(f"{missing}; or give a --scatter table, or `waves:` in {file}")
-    if way is None:
-        way = 90.0 if given is None else given.toward
+    if direction is None:
+        direction = 90.0 if given is None else given.toward
     options.show_units(units, [mooring.file])
     try:
-        analysis = analyse(leg, seas, way, length, lambda each: progress(each, "seas"))
+        analysis = analyse(leg, seas, direction, length, lambda each: progress(each, "seas"))
     except NoEquilibrium as failure:
         answer = {"name": mooring.file.name, **failure.to_dict()}
         outputs.write_answer(lambda: answer, None)
@@ -117,7 +117,7 @@ def waves(
     return ExitCode.NO_EQUILIBRIUM
 
 
-def _asked(
+def _sea_states(
     waves: dict[str, str | None],
     spectrum: str,
     gamma: float,
@@ -152,10 +152,9 @@ def _asked(
     named, path = spectrum in sea_states.SPECTRA, Path(spectrum)
     if not named and not path.is_file():
         near = nearest(spectrum, sea_states.SPECTRA)
-        meant = f"; did you mean `{near}`?" if near else ""
-        complaints.append(
-            f"--spectrum: `{spectrum}` is neither {', '.join(sea_states.SPECTRA)} nor a file{meant}"
-        )
+        suggestion = f"; did you mean `{near}`?" if near else ""
+        names = ", ".join(sea_states.SPECTRA)
+        complaints.append(f"--spectrum: `{spectrum}` is neither {names} nor a file{suggestion}")
     chosen = [options.option(name) for name, each in waves.items() if each is not None]
     swells = [name for name in ("--swell", "--swell-tp") if name in chosen]
     if len(swells) == 1:

@@ -209,10 +209,10 @@ def plane_of_legs(legs: Sequence[LegResult]) -> Floats:
     if len(legs) > 1:
         depth = max(leg.water.depth for leg in legs)
         x, y = (np.concatenate([getattr(leg.shape, name) for leg in legs]) for name in "xy")
-        width, ways = np.linalg.eigh(np.cov(x, y))
-        wide = ways[:, 1] if width[1] > 1e-12 * depth**2 else (1.0, 0.0)
-        way = np.array(wide)
-        return way if (way[0] + 1e-9 * way[1]) >= 0.0 else -way
+        width, axes = np.linalg.eigh(np.cov(x, y))
+        wide = axes[:, 1] if width[1] > 1e-12 * depth**2 else (1.0, 0.0)
+        axis = np.array(wide)
+        return axis if (axis[0] + 1e-9 * axis[1]) >= 0.0 else -axis
     if (tow := legs[0].file.tow) is not None:
         heading = np.radians(tow.toward)
         return -np.array([np.sin(heading), np.cos(heading)])

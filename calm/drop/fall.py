@@ -120,8 +120,8 @@ def fall(
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor)
     bottom = line.anchor_height - water.depth
-    way = water.depth / fineness.steps
-    states, step = [start], 0.005 * way
+    sinking = water.depth / fineness.steps
+    states, step = [start], 0.005 * sinking
     while states[-1].node[-1, 2] > bottom:
         if len(states) > _MOST * fineness.steps or step >= LONG:
             raise Status.ANCHOR_LIFTS.because(
@@ -129,9 +129,9 @@ def fall(
                 "the seabed."
             )
         # released at once, without inertia, the anchor would pass the line next to it
-        borne = RELEASED_SHARE ** (len(states) - 1)
-        lighter = replace(anchor, weight=(1.0 - borne) * anchor.weight)
-        falling = mover if borne < 1e-3 else replace(mover, anchor=lighter)
+        carried = RELEASED_SHARE ** (len(states) - 1)
+        lighter = replace(anchor, weight=(1.0 - carried) * anchor.weight)
+        falling = mover if carried < 1e-3 else replace(mover, anchor=lighter)
         state = _stepped(falling, states[-1], step, water.depth)
         step = state.time - states[-1].time
         if state.node[-1, 2] <= bottom:
@@ -139,7 +139,7 @@ def fall(
             # the anchor
             state = _stepped(replace(mover, bedded=False), states[-1], step, water.depth)
         speed = float(np.linalg.norm(state.velocity[-1]))
-        step = min(_GROWTH * (state.time - states[-1].time), way / max(speed, 1e-300), LONG)
+        step = min(_GROWTH * (state.time - states[-1].time), sinking / max(speed, 1e-300), LONG)
         states.append(state)
     return Motion(mover, (*states[:-1], _passing(states[-2], states[-1], bottom)))
 
@@ -184,9 +184,9 @@ def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState
 def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> ChainState:
     """Make a step, or a shorter one if necessary; NoEquilibrium: ``not-converged``."""
     shortest = _SHORTEST * depth
-    ways = (False, True) if state.velocity.any() else (True,)
+    extrapolations = (False, True) if state.velocity.any() else (True,)
     while step > shortest:
-        for gently in ways:
+        for gently in extrapolations:
             with suppress(NoStep):
                 return mover.stepped(state, step, gently)
         step *= 0.4

@@ -190,6 +190,7 @@ class LimitKey:
     default : default [SI, degrees]; None if there is none
     source : source of the default
     backed : whether the design gives the source of its own value
+    share : whether the value is a share, which is shown in percent
     """
 
     name: str
@@ -198,6 +199,7 @@ class LimitKey:
     default: float | None
     source: str
     backed: bool = True
+    share: bool = False
 
     @property
     def departs(self) -> bool:
@@ -218,7 +220,10 @@ def limit_keys(checks: definition.Model, prefix: str = "") -> Iterator[LimitKey]
         elif limit is not None and quantity is not None:
             default = limit.default if field.default is None else field.default
             used = default if value is None else value
-            yield LimitKey(prefix + name, quantity.dimension, used, default, limit.source)
+            share = quantity == _SHARE
+            yield LimitKey(
+                prefix + name, quantity.dimension, used, default, limit.source, share=share
+            )
 
 
 def _day(text: str) -> str:
@@ -230,7 +235,7 @@ def _day(text: str) -> str:
     raise ValueError(f"`{shown(text)}` is not a day of the calendar; write it as 2027-06-30")
 
 
-def _said(text: str) -> str:
+def _reason(text: str) -> str:
     if not text.strip():
         raise ValueError("`reason` is blank")
     if not any(sign.isalnum() for sign in text):
@@ -245,7 +250,7 @@ Day = Annotated[
 ]
 """A date such as 2027-06-30. Dates sort correctly as texts."""
 
-Reason = Annotated[definition.Text, AfterValidator(_said)]
+Reason = Annotated[definition.Text, AfterValidator(_reason)]
 
 
 class AcceptKeys(definition.Model):
@@ -324,7 +329,7 @@ def _accept(
     if keys.component is not None and labels is not None:
         covered = tuple(matching(keys.component, labels))
         if not covered:
-            top.refuse((*here, "component"), _nothing_called(keys.component, labels))
+            top.refuse((*here, "component"), _no_such_label(keys.component, labels))
     line = top.problem(here, "").line
     return Accept.model_construct(**dict(keys), labels=covered, line=line)
 
@@ -341,7 +346,7 @@ def matching(component: str, labels: Iterable[str]) -> list[str]:
     return [label for label in labels if fnmatchcase(label, component)]
 
 
-def _nothing_called(component: str, labels: Sequence[str]) -> str:
+def _no_such_label(component: str, labels: Sequence[str]) -> str:
     text = shown(component)
     message = f"no piece or clamp is called `{text}`"
     if any(label.startswith(f"{component} ") for label in labels):

@@ -309,16 +309,20 @@ class Outline(definition.Definition):
         given = self.model_dump(exclude_none=True)
         also = [key for key in self.searched or () if key not in (*given, *self.lacks)]
         keys, judged = (", ".join(f"`{key}`" for key in each) for each in (self.lacks, also))
-        said = f"no source gives {keys} of `{id}`: measure or ask the maker, and give it here"
-        said += f", with {judged} for the design check" if judged else ""
-        return f"{said} (the rest is from: {self.source})" if self.source else said
+        message = f"no source gives {keys} of `{id}`: measure or ask the maker, and give it here"
+        message += f", with {judged} for the design check" if judged else ""
+        return f"{message} (the rest is from: {self.source})" if self.source else message
 
 
 def lacking(fields: Mapping[str, Any]) -> list[str]:
     """Return the keys listed under `searched` that are necessary and missing."""
-    sought = fields.get("searched")
-    known = sought if isinstance(sought, list | tuple) else ()
-    return [key for key, ways in _ESSENTIAL.items() if key in known and not fields.keys() & ways]
+    searched = fields.get("searched")
+    known = searched if isinstance(searched, list | tuple) else ()
+    return [
+        key
+        for key, alternatives in _ESSENTIAL.items()
+        if key in known and not fields.keys() & alternatives
+    ]
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:

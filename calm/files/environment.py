@@ -331,7 +331,7 @@ def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
     levels, u, v = (np.array(each) for each in (current.depth, current.u, current.v))
     water_depth = math.inf if depth is None else depth
     found = (*current.doubts, *profile_doubts(levels, u, v, water_depth))
-    return [f"{said[0].upper()}{said[1:]}" + "." * (said[-1] != "?") for said in found]
+    return [f"{doubt[0].upper()}{doubt[1:]}" + "." * (doubt[-1] != "?") for doubt in found]
 
 
 def _wind_doubts(wind: water.Wind | None) -> list[str]:

@@ -51,7 +51,7 @@ class OutputUnits(definition.Model):
     def _by_dimension(cls, data: object) -> object:
         texts = data.replace(",", " ").split() if isinstance(data, str) else data
         listed = [*texts] if isinstance(texts, list | tuple | dict) else []
-        meant = [unit_meant(str(text)) for text in listed if text not in cls.model_fields]
+        meant = [nearest_unit(str(text)) for text in listed if text not in cls.model_fields]
         if found := [f"{each[0]}: {each[1]}" for each in meant if each]:
             raise ValueError(f"write `units: {{{', '.join(found)}}}`")
         return data
@@ -62,7 +62,7 @@ class OutputUnits(definition.Model):
         return self.model_dump(exclude_none=True)
 
 
-def unit_meant(text: str) -> tuple[str, str] | None:
+def nearest_unit(text: str) -> tuple[str, str] | None:
     """Return the dimension and the unit of display that a text such as `knots` means, or None."""
     for dimension, units in SHOWN_UNITS.items():
         with suppress(QuantityError):

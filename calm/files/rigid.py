@@ -82,7 +82,7 @@ def _read_rao(rao: object) -> tuple[tuple[float, ...], ...]:
                 "a row has two figures, or four with the pitch: `[1, 0 deg, 6 deg, 90 deg]`"
             )
         try:
-            figures = (way.read(figure) for way, figure in zip(_RESPONSE, row, strict=False))
+            figures = (reader.read(figure) for reader, figure in zip(_RESPONSE, row, strict=False))
             rows.append((at, *figures))
         except QuantityError as error:
             raise ValueError(f"`{key}`: {error}") from None

@@ -59,8 +59,8 @@ class SpreadOf:
         deviation = self.one.read(value)
         if self.one is _SHARE and deviation > MOST_DEVIATION:
             bare = isinstance(value, int | float) or "%" not in str(value)
-            meant = f"{value} %" if bare and deviation <= 100.0 * MOST_DEVIATION else None
-            raise QuantityError(_TOO_WIDE, meant)
+            suggestion = f"{value} %" if bare and deviation <= 100.0 * MOST_DEVIATION else None
+            raise QuantityError(_TOO_WIDE, suggestion)
         return deviation
 
     def _end(self, value: object) -> float:

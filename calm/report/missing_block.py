@@ -1,4 +1,4 @@
-"""Figures that components do not give and rules need, as a block of YAML to complete."""
+"""Missing values that rules need, as a block of YAML to complete."""
 
 import json
 import re
@@ -55,9 +55,9 @@ def missing_block(findings: Iterable[Finding], places: Places) -> str:
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]
     if not figures and any(one.rule == "equilibrium" for one in found):
-        return "# Without an equilibrium nothing is judged, and no missing figure is known.\n"
+        return "# The mooring has no equilibrium, so its missing values are unknown.\n"
     if not figures:
-        return "# No figure of a component is missing.\n"
+        return "# No component lacks a value.\n"
     ids = grouped(figures, lambda one: one.component_id)
     lines = [
         f"#\n# {text}" for text in _how_to_use([group[0].component_id for group in ids], places)
@@ -95,6 +95,7 @@ def _key(same: Sequence[MissingFigure]) -> list[str]:
     """Lines of a key that one or several moorings lack."""
     first = same[0]
     field = KINDS[first.kind].model_fields[first.quantity]
+    assert field.examples is not None  # every quantity describes itself by an example
     meaning = (field.description or "").partition(", e.g.")[0]
     instead = "".join(f", or `{key}`" for key in alternatives(first.quantity)[1:])
     rules = dict.fromkeys(RULES[rule].title.lower() for one in same for rule in one.needed_by)

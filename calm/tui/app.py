@@ -157,7 +157,7 @@ class BuildApp(App[int]):
         """Start timers; solve the line and read the catalogue after the first frame."""
         self.app_resume_signal.subscribe(self, lambda _: self.action_repaint())
         self.call_after_refresh(self._begin)
-        self.set_interval(_LOOKED_AT_DISK, self.saving.look_at_disk)
+        self.set_interval(_LOOKED_AT_DISK, self.saving.check_external_change)
 
     def _begin(self) -> None:
         """Read the catalogue, solve the line and report, once the line is on the screen."""

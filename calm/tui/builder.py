@@ -19,8 +19,8 @@ from calm.tui.key_table import bindings, hints
 from calm.tui.mooring_sheet import (
     PENDING,
     figures_sheet,
-    hung_at,
     missing_figures,
+    part_of_row,
     settings,
     sheet_of,
     with_figures,
@@ -109,7 +109,7 @@ class BuilderScreen(ComparingScreen):
 
         def take(texts: dict[str, str]) -> None:
             source = texts.pop("source", "")
-            figures = {asked: text for asked, text in texts.items() if text}
+            figures = {key: text for key, text in texts.items() if text}
             if figures:
                 count = f"{len(figures)} value{'s' * (len(figures) != 1)} filled in"
                 self.line.attempt(
@@ -236,8 +236,8 @@ class BuilderScreen(ComparingScreen):
     def action_sheet(self, name: str) -> None:
         """Edit a group of keys of the whole file on a sheet."""
         session, view = self.session, self.workspace.view if self.workspace.is_fresh else None
-        hung = hung_at(None if view is None else view.file, self.line.table.spot)
-        sheet, label, changed = sheet_of(name, session.draft, hung)
+        part = part_of_row(None if view is None else view.file, self.line.table.spot)
+        sheet, label, changed = sheet_of(name, session.draft, part)
 
         def take(texts: dict[str, str]) -> None:
             self.line.attempt(lambda: session.do(changed(session.draft, texts), label))

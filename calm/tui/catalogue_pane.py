@@ -21,7 +21,7 @@ from calm.files.editing.user_state import Remembered
 from calm.tui import dialogs, key_table, theme
 from calm.tui.checking import distance, length, length_values
 from calm.tui.field import ScrolledEntry
-from calm.tui.forms import Asked
+from calm.tui.forms import FormField
 from calm.tui.scrolled import ScrolledText, TableCells, TableColumn
 from calm.tui.workspace import Workspace
 
@@ -296,10 +296,10 @@ class CataloguePane(Vertical):
             return
         if self.purpose == "clamp":
             place = "e.g. 2 m"
-            self._ask(chosen, Asked("at", "From the top", "", distance(), place))
+            self._ask(chosen, FormField("at", "From the top", "", distance(), place))
         elif chosen.kind in FLEXIBLE_KINDS and self.purpose != "replace":
             check = length(towed=self.workspace.session.draft.is_tow)
-            self._ask(chosen, Asked("length", "Length", "", check, "e.g. 480 m, or fit 105 m"))
+            self._ask(chosen, FormField("length", "Length", "", check, "e.g. 480 m, or fit 105 m"))
         else:
             self._give({"use": chosen.id})
 
@@ -308,7 +308,7 @@ class CataloguePane(Vertical):
         self._take(self.purpose, values)
         self.search.action_select_all()
 
-    def _ask(self, chosen: Listed, asked: Asked) -> None:
+    def _ask(self, chosen: Listed, form_field: FormField) -> None:
         """Ask for the length or the position, and for a label."""
 
         def take(texts: dict[str, str]) -> None:
@@ -317,8 +317,8 @@ class CataloguePane(Vertical):
             given = {"use": chosen.id, **keys, **texts}
             self._give({key: value for key, value in given.items() if value})
 
-        label = Asked("label", "Label", placeholder="optional")
-        dialogs.enter(self.app, chosen.id, "", [asked, label], take)
+        label = FormField("label", "Label", placeholder="optional")
+        dialogs.enter(self.app, chosen.id, "", [form_field, label], take)
 
     def action_close(self) -> None:
         """Close the catalogue."""

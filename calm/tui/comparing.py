@@ -13,7 +13,7 @@ from calm.errors import CalmError
 from calm.files.editing import Draft
 from calm.tui import checking, line_screen
 from calm.tui.dialogs import Answer, LongText, Question, choose, enter, numbered
-from calm.tui.forms import Asked
+from calm.tui.forms import FormField
 from calm.tui.mooring_sheet import PENDING
 
 if TYPE_CHECKING:
@@ -112,12 +112,14 @@ class ComparingScreen(line_screen.LineScreen):
 
         row = self.line.table.row
         label = "top float" if row is None else row.texts.get("label") or row.texts["component"]
-        asked = [
-            Asked("target", "Target", "knockdown(top) <= 20 m", checking.needed("a target")),
-            Asked("change", "Change", f"{label.strip('├ ')}.buoyancy", checking.needed("a change")),
+        fields = [
+            FormField("target", "Target", "knockdown(top) <= 20 m", checking.needed("a target")),
+            FormField(
+                "change", "Change", f"{label.strip('├ ')}.buoyancy", checking.needed("a change")
+            ),
         ]
         text = "LABEL.buoyancy, LABEL.length or LABEL.count; depth(LABEL) = 100 m, tilt(LABEL) …"
-        enter(self.app, "A target to meet", text, asked, take)
+        enter(self.app, "A target to meet", text, fields, take)
 
     def _try(self, offer: Offer, before: View) -> None:
         """Compute a change in a thread, and ask for confirmation, showing its effects."""
@@ -183,9 +185,9 @@ class ComparingScreen(line_screen.LineScreen):
             return
 
         folder = path.with_name(f"{path.stem}-{what}")
-        asked = [Asked("folder", "Folder", str(folder), checking.needed("a folder"))]
+        fields = [FormField("folder", "Folder", str(folder), checking.needed("a folder"))]
         write = partial(self._write, what, path)
-        enter(self.app, "Output folder", "", asked, write)
+        enter(self.app, "Output folder", "", fields, write)
 
     def _write(self, what: str, path: Path, texts: dict[str, str]) -> None:
         """Run the command in a thread, and show its last message."""
@@ -197,8 +199,8 @@ class ComparingScreen(line_screen.LineScreen):
             done = subprocess.run(
                 words, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace"
             )
-            said = [line for line in done.stderr.splitlines() if line.strip()]
-            message = said[-1] if said else f"written to {folder}"
+            lines = [line for line in done.stderr.splitlines() if line.strip()]
+            message = lines[-1] if lines else f"written to {folder}"
             self.call_later(self.workspace.tell, message, wrong=done.returncode > 1)
 
         self.tell(f"Writing {folder} …")

@@ -17,7 +17,7 @@ from textual.widget import Widget
 from textual.widgets import Input, Static
 
 from calm.tui.checking import Reading
-from calm.tui.forms import Asked
+from calm.tui.forms import FormField
 from calm.tui.key_table import bindings
 
 
@@ -112,19 +112,21 @@ class Field(Horizontal):
         field: Field
         reading: Reading
 
-    def __init__(self, asked: Asked, *, id: str | None = None) -> None:
+    def __init__(self, form_field: FormField, *, id: str | None = None) -> None:
         super().__init__(id=id)
-        self.key, self.check, self.asked = asked.key, asked.check, asked
-        self._note = asked.takes
-        self.begun = self._shown = asked.text  # initial text, and text last filled in
-        self.input = ScrolledEntry(asked.text, placeholder=asked.placeholder, compact=True)
-        self._told = Static(asked.takes, classes="field-note", markup=False)
+        self.key, self.check, self.form_field = form_field.key, form_field.check, form_field
+        self._note = form_field.takes
+        self.begun = self._shown = form_field.text  # initial text, and text last filled in
+        self.input = ScrolledEntry(
+            form_field.text, placeholder=form_field.placeholder, compact=True
+        )
+        self._note_line = Static(form_field.takes, classes="field-note", markup=False)
 
     def compose(self) -> ComposeResult:
         """Yield the name, the input and the note."""
-        yield Static(self.asked.title, classes="field-title", markup=False)
+        yield Static(self.form_field.title, classes="field-title", markup=False)
         yield self.input
-        yield self._told
+        yield self._note_line
 
     @property
     def is_typing(self) -> bool:
@@ -150,9 +152,9 @@ class Field(Horizontal):
 
     def tell(self, note: str) -> None:
         """Show another note unless the text is invalid; "" shows the description of the field."""
-        self._note = note or self.asked.takes
+        self._note = note or self.form_field.takes
         if not self.has_class("-wrong"):
-            self._told.update(self._note, layout=False)
+            self._note_line.update(self._note, layout=False)
 
     def note(self, reading: Reading) -> str:
         """Return the error or completion of the typed text, else the description of the field."""
@@ -160,7 +162,7 @@ class Field(Horizontal):
 
     def _tell(self, reading: Reading) -> None:
         self.set_class(not reading.is_good, "-wrong")
-        self._told.update(self.note(reading), layout=False)
+        self._note_line.update(self.note(reading), layout=False)
 
     @on(Input.Changed)
     def _judge(self, event: Input.Changed) -> None:

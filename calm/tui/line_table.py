@@ -285,8 +285,8 @@ class LineSearch(cell_editor.EditableTable):
             self.action_find_next(1)
 
         takes = "id, label, serial, maker"
-        asked = [forms.Asked("words", "Words", self.words, checking.needed("a word"), takes)]
-        dialogs.enter(self.app, "Find in the line", "", asked, take)
+        fields = [forms.FormField("words", "Words", self.words, checking.needed("a word"), takes)]
+        dialogs.enter(self.app, "Find in the line", "", fields, take)
 
     def action_find_next(self, by: int) -> None:
         """Go to the next or previous row that contains all words (id, label, serial, maker)."""
@@ -294,7 +294,9 @@ class LineSearch(cell_editor.EditableTable):
         if not wanted:
             self.workspace.tell("/ finds words in the line first")
             return
-        self._to(by, lambda row: all(word in self._said(row) for word in wanted), self.words)
+        self._to(
+            by, lambda row: all(word in self._searched_text(row) for word in wanted), self.words
+        )
 
     def action_weakest(self) -> None:
         """Go to the row with the highest use of strength."""
@@ -328,7 +330,7 @@ class LineSearch(cell_editor.EditableTable):
         self.table.cursor = number
         self.workspace.tell(f"{found.index(number) + 1} of {len(found)} {what}")
 
-    def _said(self, row: TableRow) -> str:
+    def _searched_text(self, row: TableRow) -> str:
         """Return the searchable text of a row, including its catalogue entry."""
         index, use = self.workspace.index, row.texts["component"].split()[-1:]
         listed = index.get(use[0]) if index and use else None

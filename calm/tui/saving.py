@@ -16,7 +16,7 @@ from calm.files import editing, read_mooring
 from calm.files.editing.user_state import Presence
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Question, Then, choose, enter
-from calm.tui.forms import Asked
+from calm.tui.forms import FormField
 from calm.tui.screen import DraftScreen
 from calm.tui.workspace import Workspace, place_of
 
@@ -46,7 +46,7 @@ class Saving:
         self._taken_over, self._leave = taken_over, leave
         self._app, self._workspace, self._session = app, workspace, workspace.session
         self.presence = Presence()
-        self._told: tuple[object] | None = None  # state on the disk that was reported last
+        self._reported: tuple[object] | None = None  # state on the disk that was reported last
 
     def save(self, then: Then | None = None) -> None:
         """Save, asking for a file name if needed, and call `then` afterwards."""
@@ -69,8 +69,8 @@ class Saving:
         self.presence.say(self._session.file.path)
         wrong = self._mistake()
         but = "; ".join(filter(None, [lost, wrong]))
-        told = f"{self._session.name} saved" + (f", but {but}" if but else "")
-        self._workspace.tell(told, wrong=bool(wrong))
+        message = f"{self._session.name} saved" + (f", but {but}" if but else "")
+        self._workspace.tell(message, wrong=bool(wrong))
         self._workspace.edited()  # relative names may now refer to other files
         if then is not None and not wrong:
             then()
@@ -85,8 +85,8 @@ class Saving:
             found = [each for each in error.problems if not each.lacks]
             if found:
                 place = place_of(found[0], path)
-                said = ", ".join(filter(None, [place, found[0].message]))
-                return f"the file cannot be opened: {said}"
+                mistake = ", ".join(filter(None, [place, found[0].message]))
+                return f"the file cannot be opened: {mistake}"
         return ""
 
     def save_as(self, then: Then | None = None, begin: Path | None = None) -> None:
@@ -103,9 +103,11 @@ class Saving:
                 self._write(lambda: self._session.save_as(chosen), then)
 
         begun = str(begin or path or "")
-        asked = [Asked("path", "File", begun, _is_writable, placeholder="e.g. iroise-2026.yaml")]
+        fields = [
+            FormField("path", "File", begun, _is_writable, placeholder="e.g. iroise-2026.yaml")
+        ]
         text = f"Relative to {Path.cwd()}."
-        enter(self._app, "Save as", text, asked, take)
+        enter(self._app, "Save as", text, fields, take)
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
         """Ask before overwriting another file, a protected file, or a file changed on the disk."""
@@ -133,16 +135,16 @@ class Saving:
 
     # the file on the disk
 
-    def look_at_disk(self) -> None:
+    def check_external_change(self) -> None:
         """Reload the file if another program changed it; warn if that would lose unsaved work."""
         session, screen = self._session, next(reversed(self._app.screen_stack), None)
         if not isinstance(screen, DraftScreen):
             return  # try again later: a question is open, or the application is ending
         if not session.file.changed_on_disk():
-            self._told = None
+            self._reported = None
             return
         now = (session.file.stamp,)
-        is_new, self._told = now != self._told, now
+        is_new, self._reported = now != self._reported, now
         if now[0] is None:
             if is_new:
                 session.history.saved("")
@@ -195,10 +197,12 @@ class Saving:
 
         def ask_again() -> None:
             yes = [Answer("y", "discard permanently", throw_away)]
-            told = f"It was kept {moment(kept.at)}."
+            kept_text = f"It was kept {moment(kept.at)}."
             choose(
                 app,
-                Question("Discard the work?", told, yes, back=partial(self.offer, kept, go_on)),
+                Question(
+                    "Discard the work?", kept_text, yes, back=partial(self.offer, kept, go_on)
+                ),
             )
 
         answers = [
@@ -212,7 +216,7 @@ class Saving:
 
     def quit(self) -> None:
         """Leave; unsaved work is asked about."""
-        self.look_at_disk()
+        self.check_external_change()
         if not self._session.changed:
             self._leave()
             return
@@ -229,8 +233,8 @@ class Saving:
         ]
         name, file = self._session.name, self._session.file
         is_gone = file.stamp is None and file.changed_on_disk()
-        told = "was deleted from the disk" if is_gone else "has unsaved changes"
-        choose(self._app, Question("Not saved", f"{name} {told}.", answers))
+        condition = "was deleted from the disk" if is_gone else "has unsaved changes"
+        choose(self._app, Question("Not saved", f"{name} {condition}.", answers))
 
 
 def chosen_path(text: str) -> Path:

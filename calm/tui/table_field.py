@@ -12,7 +12,7 @@ from textual import events, on
 from calm.records.delimited import NoTableError, copied_table
 from calm.tui import cell_editor, key_table, theme
 from calm.tui.checking import Reading
-from calm.tui.forms import Asked, FormColumn, Rows, rows_of, text_of_rows
+from calm.tui.forms import FormColumn, FormField, Rows, rows_of, text_of_rows
 from calm.tui.scrolled import TableCells, TableColumn
 
 _WIDTH = 14
@@ -273,12 +273,12 @@ class Grid(cell_editor.EditableTable):
 class TableField(Grid):
     """Table in a form."""
 
-    def __init__(self, asked: Asked, tell: Callable[..., object]) -> None:
+    def __init__(self, form_field: FormField, tell: Callable[..., object]) -> None:
         super().__init__(tell, lambda *_: None)
-        self.key, self.begun, self.asked = asked.key, asked.text, asked
-        rows = rows_of(asked.text, asked.columns)
+        self.key, self.begun, self.form_field = form_field.key, form_field.text, form_field
+        rows = rows_of(form_field.text, form_field.columns)
         self._shown = rows or ()
-        self.show(asked.columns if rows is not None else (), self._shown)
+        self.show(form_field.columns if rows is not None else (), self._shown)
 
     @property
     def text(self) -> str:

@@ -19,7 +19,7 @@ from calm.files.environment import CurrentFile
 from calm.records.delimited import CopiedTable
 from calm.tui import cell_editor, checking, dialogs, key_table, pictures, screen, verdict_pane
 from calm.tui.field import Field
-from calm.tui.forms import Asked, Rows
+from calm.tui.forms import FormField, Rows
 from calm.tui.table_field import GridCells
 from calm.tui.water_form import (
     DENSITY_FORMS,
@@ -40,7 +40,7 @@ from calm.tui.water_tables import (
     previewed,
     rows_in,
 )
-from calm.tui.workspace import Workspace, said
+from calm.tui.workspace import Workspace, problem_text
 
 _ELSEWHERE = (
     "The line is solved in {0}, which profile and verdict refer to. Below is the default "
@@ -121,7 +121,7 @@ class WaterScreen(screen.DraftScreen):
         """Show mistakes, and a note if an environment file is in use."""
         file, path = self.environment_file, self.workspace.path
         notes = [Content.styled(_ELSEWHERE.format(file), "$text-warning")] if file else []
-        notes += [said(each, path) for each in problems]
+        notes += [problem_text(each, path) for each in problems]
         shown = self.query_one("#water-notes", Static)
         shown.set_class(not notes, "gone")
         shown.update(Content("\n").join(notes))
@@ -147,9 +147,9 @@ class WaterScreen(screen.DraftScreen):
             field.set_class(not self._is_shown(place, "constant"), "gone")
             if not field.is_typing:
                 field.reset(water.text(*place))
-            is_lacking = field.asked.is_needed and len(place) > 1 and water.value(*place[:-1])
+            is_lacking = field.form_field.is_needed and len(place) > 1 and water.value(*place[:-1])
             lacks = is_lacking and not water.text(*place)
-            note = f"is needed: {field.asked.takes}" if lacks else ""
+            note = f"is needed: {field.form_field.takes}" if lacks else ""
             field.tell(note if water.is_own(place[0]) else _INHERITED)
         for grid in self.query(ProfileGrid):
             place = _place(grid)
@@ -225,7 +225,7 @@ class WaterScreen(screen.DraftScreen):
 
     def _take(self, field: Field, text: str) -> None:
         place = _place(field)
-        is_needed = field.asked.is_needed
+        is_needed = field.form_field.is_needed
         self.change(lambda water: water.put(place, text, is_needed=is_needed), f"the {place[0]}")
 
     @on(Field.Entered)
@@ -259,8 +259,8 @@ class WaterScreen(screen.DraftScreen):
             text += " The pasted table has no headings: check the columns below."
         first = "   ".join(copied.rows[0])
         text += f" Its first row is  {first}"
-        asked = Asked("columns", "Columns", ", ".join(headings), check)
-        dialogs.enter(self.app, "Paste a table", text, [asked], take)
+        form_field = FormField("columns", "Columns", ", ".join(headings), check)
+        dialogs.enter(self.app, "Paste a table", text, [form_field], take)
 
     def on_paste(self, event: events.Paste) -> None:
         """Use a table pasted outside the tables of the form as the current, in any form."""
@@ -333,16 +333,16 @@ class WaterScreen(screen.DraftScreen):
             current = known or water.begun(("current",), "uniform")
             place = ("environments", name, "current")
             if self.change(lambda _: water.draft.put_at(place, current), f"environment {name}"):
-                told = "" if known else "Filled with a typical current; replace it with your own"
+                note = "" if known else "Filled with a typical current; replace it with your own"
                 self._stand_in(name)
-                self.workspace.tell(told)
+                self.workspace.tell(note)
 
         if self.settle():
-            asked = [
-                Asked("name", "Name", check=checking.needed("a name"), placeholder="e.g. storm")
+            fields = [
+                FormField("name", "Name", check=checking.needed("a name"), placeholder="e.g. storm")
             ]
             text = "It contains only values that differ from the default environment."
-            dialogs.enter(self.app, "New environment", text, asked, take)
+            dialogs.enter(self.app, "New environment", text, fields, take)
 
     def action_drop_environment(self) -> None:
         """Delete the named environment from the file."""

@@ -58,9 +58,9 @@ def import_sheet(folder: Path) -> InputSheet:
         f"CSV or CF NetCDF, relative to {folder}. `refer` keeps the file's "
         "name in the mooring file; `copy` writes its profile as a table.",
         [
-            forms.Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
-            forms.Asked("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
-            forms.Asked("how", "refer or copy", "refer", one_of(("refer", "copy"))),
+            forms.FormField("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
+            forms.FormField("time", "Time", placeholder="e.g. 2026-03-01T06:00, if it is a record"),
+            forms.FormField("how", "refer or copy", "refer", one_of(("refer", "copy"))),
         ],
     )
 
@@ -97,9 +97,9 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
     if any(table.w):
         return _SPEEDS, [[*map(_written, level)] for level in levels]
     flows = [[*map(_written, level[:3])] for level in levels]
-    ways = [[*map(_written, (deep, *speed_and_direction(u, v)))] for deep, u, v, _ in levels]
-    signs = [len("".join(chain.from_iterable(rows))) for rows in (flows, ways)]
-    return (_SPEEDS[:3], flows) if signs[0] < signs[1] else (CURRENT_COLUMNS, ways)
+    tables = [[*map(_written, (deep, *speed_and_direction(u, v)))] for deep, u, v, _ in levels]
+    signs = [len("".join(chain.from_iterable(rows))) for rows in (flows, tables)]
+    return (_SPEEDS[:3], flows) if signs[0] < signs[1] else (CURRENT_COLUMNS, tables)
 
 
 def _written(value: float) -> str:
@@ -202,8 +202,8 @@ def _by_name(
 
     def report(location: Sequence[str | int], message: str) -> Problem:
         of_a_row = location[0] == "rows" and len(location) > 1
-        said = f"row {int(location[1]) + 1}: {message}" if of_a_row else message
-        problems.append((not of_a_row, said))
+        text = f"row {int(location[1]) + 1}: {message}" if of_a_row else message
+        problems.append((not of_a_row, text))
         return Problem("", 0, 0, message)
 
     names = {heading(column)[0] for column in columns}

@@ -34,7 +34,7 @@ def place_of(problem: Problem, path: Path) -> str:
     return f"{name}, {place}" if place else str(name)
 
 
-def said(problem: Problem, path: Path) -> Content:
+def problem_text(problem: Problem, path: Path) -> Content:
     """Return a mistake with its sign and its position."""
     parts = filter(None, (place_of(problem, path), problem.message))
     return Content.assemble(("!", "bold $text-error"), f" {'  '.join(parts)}")

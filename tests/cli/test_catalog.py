@@ -188,10 +188,8 @@ def test_shipped_catalogue_has_no_finding_and_lists_what_it_lacks(calm):
     done = calm("catalog", "check")
     assert done.code == 0
     lines = dict(line.split(": ", 1) for line in done.out.splitlines())
-    assert (
-        lines["vacm"] == "gives no mass, working load, breaking load, depth rating, greatest tilt"
-    )
-    assert lines["rcm11"].endswith("searched for and not found: working load, breaking load")
+    assert lines["vacm"] == "lacks mass, working load, breaking load, depth rating, greatest tilt"
+    assert lines["rcm11"].endswith("not published: working load, breaking load")
     assert "shackle-13" not in lines
     assert "findings: 0" in done.err
     assert "lack figures" in done.err
@@ -203,7 +201,7 @@ def test_what_is_missing_as_json(calm, mine):
         {
             "id": "good",
             "finding": False,
-            "message": "gives no mass, working load, breaking load, depth rating, greatest tilt",
+            "message": "lacks mass, working load, breaking load, depth rating, greatest tilt",
             "missing": ["mass", "working_load", "breaking_load", "depth_rating", "max_tilt"],
             "searched": [],
         }
@@ -214,7 +212,7 @@ def test_finding_gives_exit_code_1(calm, mine):
     file = mine("bad: {kind: sphere, diameter: 1 m, buoyancy: 9 kN, source: me}")
     done = calm("catalog", "check", file)
     assert done.code == 1
-    assert done.out.startswith("bad: lifts 9000 N")
+    assert done.out.startswith("bad: has a buoyancy of 9.00 kN")
     findings = json.loads(calm("catalog", "check", file, "--json").out)
     assert [finding["id"] for finding in findings if finding["finding"]] == ["bad"]
     assert {finding["id"] for finding in findings if not finding["finding"]} == {"good", "bad"}
@@ -263,7 +261,7 @@ def test_add_puts_a_component_where_every_command_finds_it(calm, folder, monkeyp
     monkeypatch.setenv("CALM_CATALOG_DIR", str(folder / "own"))
     done = calm("catalog", "add", "our-glass", *GLASS)
     assert done.code == 0
-    assert "gives no mass, working load, breaking load, depth rating" in done.err
+    assert "lacks mass, working load, breaking load, depth rating" in done.err
     (shown,) = json.loads(calm("catalog", "show", "our-glass", "--json").out)
     assert (shown["diameter"], shown["buoyancy"], shown["source"]) == (0.432, 250, "tank: 2026")
     assert calm("catalog", "add", "our-ball", *GLASS).code == 0
@@ -284,9 +282,9 @@ def test_add_puts_a_component_where_every_command_finds_it(calm, folder, monkeyp
         (
             "glass",
             (*GLASS[:3], "buoyancy=2500 N"),
-            "lifts 2500 N; water of its size weighs 424.3 N",
+            "has a buoyancy of 2.50 kN; water of its size weighs 424 N",
         ),
-        ("glass", GLASS[:4], "does not say where its figures come from (`source`)"),
+        ("glass", GLASS[:4], "has no `source` for its values"),
     ],
 )
 def test_add_refuses_and_writes_nothing(calm, folder, id, figures, said):

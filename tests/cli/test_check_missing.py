@@ -56,7 +56,7 @@ def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, la
         "    depth_rating:  # e.g. 2000 m: maximum depth of use\n      # needed for depth rating\n"
     ) in done.out
     assert "working_load:  # e.g. 20 kN: load it may carry in use, or `breaking_load`" in done.out
-    assert "is estimated: 10 N at least, 9000 N likely (its chain)\n" in done.out
+    assert "is estimated: at least 10 N, probably 9.00 kN (its chain)\n" in done.out
 
 
 def test_a_file_without_components_gets_a_whole_section(calm, folder):
@@ -144,4 +144,4 @@ def test_without_equilibrium_no_figure_is_known_to_be_missing(calm, lacking, fol
     assert "buoyancy" in done.err  # why there is none
     assert "block.yaml written" in done.err
     block = (folder / "block.yaml").read_text(encoding="utf-8")
-    assert block.startswith("# Without an equilibrium nothing is judged")
+    assert block.startswith("# The mooring has no equilibrium")

@@ -15,7 +15,7 @@ from calm.files.mooring_file import Solver, TowKeys
 from calm.files.reader import MooringKeys
 from calm.tui.component_screen import form_fields
 from calm.tui.forms import (
-    Asked,
+    FormField,
     filled,
     form_of,
     model_in,
@@ -41,7 +41,7 @@ def keys_of(model: type[Model], at: str = "") -> set[str]:
     return keys
 
 
-def field(asked: list[Asked], key: str) -> Asked:
+def field(asked: list[FormField], key: str) -> FormField:
     return next(each for each in asked if each.key == key)
 
 

@@ -187,15 +187,15 @@ def tension(result: LegResult, width: int, height: int) -> list[Text]:
     A red dotted line shows the allowable load of the weakest piece at each position: its working
     load, or its breaking load over the required safety factor. Much larger loads are not drawn.
     """
-    pulls, way = result.shape.tension, along_the_line(result.shape)
+    pulls, along = result.shape.tension, along_the_line(result.shape)
     if result.towed:  # pieces are listed from the ship down, while the shape begins at the body
-        pulls, way = pulls[::-1], (way[-1] - way)[::-1]
+        pulls, along = pulls[::-1], (along[-1] - along)[::-1]
     greatest = max(float(pulls.max()), 1e-9)
     loads = _allowable(result)
     near = [load for _, _, load in loads if load <= _HIGHEST_LOAD * greatest]
     scale, unit = (1e-3, "kN") if greatest >= _KILO else (1.0, "N")
     across = 0.0, 1.08 * max([greatest, *near]) * scale
-    length = max(float(way[-1]), 1e-9)
+    length = max(float(along[-1]), 1e-9)
     caption = f"at most {say('tension', greatest)}{'; dotted: limits' if near else ''}"
     frame = scaled_frame((width, height), caption, across, (0.0, length), unit)
     before = 0.0
@@ -204,7 +204,7 @@ def tension(result: LegResult, width: int, height: int) -> list[Text]:
             x, _ = frame.point(load * scale, 0.0)
             frame.canvas.dot(x, frame.row * DOTS_DOWN + row, LIMIT)
         before = load
-    frame.line(zip((pulls * scale).tolist(), way.tolist(), strict=True), LINE)
+    frame.line(zip((pulls * scale).tolist(), along.tolist(), strict=True), LINE)
     return frame.canvas.rows()
 
 
@@ -260,9 +260,9 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
         _, row = frame.cell(0.0, value)
         east, north = (float(np.interp(value, depths, each)) for each in (u, v))
         if hypot(east, north) > 0.0:
-            way = _ARROWS[round(np.degrees(np.arctan2(east, north)) / 45.0) % 8]
-            way = f"{bearing_text(bearing_of(east, north))}{way}" if beside > 2 else way
-            frame.canvas.text(width - beside + 1, row, way, _STYLE)
+            arrow = _ARROWS[round(np.degrees(np.arctan2(east, north)) / 45.0) % 8]
+            arrow = f"{bearing_text(bearing_of(east, north))}{arrow}" if beside > 2 else arrow
+            frame.canvas.text(width - beside + 1, row, arrow, _STYLE)
     return frame.canvas.rows()
 
 
@@ -288,8 +288,8 @@ def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = (
     left, right = _centred(west, east, metres * (width - gutter - 1) * DOTS_ACROSS)
     across, down = (left, right), (top, bottom)
     what = "" if result.several else "end " if result.towed else "top "
-    said = f"{what}{_distance(result)}"
-    frame = scaled_frame((width, height), said, across, down, "m east", "m E")
+    title = f"{what}{_distance(result)}"
+    frame = scaled_frame((width, height), title, across, down, "m east", "m E")
     frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)
     frame.line([(0.0, bottom), (0.0, top)], STILL, dash=1, gap=3)
     draw_picture(frame, line_picture.plan_of(result, beside))

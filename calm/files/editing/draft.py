@@ -138,7 +138,7 @@ class Draft:
         above : for an index between two legs, whether the item is the first of the lower leg
             instead of the last of the upper leg
         """
-        self._stands(rows)
+        self._check_item(rows)
         return self._add(*self.lists.place_in(rows, index, above=above), [values])
 
     def delete(self, indices: Iterable[int], rows: Location = LINE) -> Draft:
@@ -205,7 +205,7 @@ class Draft:
         snippets : items as returned by `copy`
         rows, above : as in `insert`
         """
-        self._stands(rows)
+        self._check_item(rows)
         worded = _worded(snippets)
         place = self.lists.place_in(rows, index, above=above)
         return self._add(*place, worded) if worded else self
@@ -277,7 +277,7 @@ class Draft:
         """Define a component in this file, or replace its definition of that id."""
         return self.put_at((changes.NAMED[0], id), values)
 
-    def _stands(self, rows: Location) -> None:
+    def _check_item(self, rows: Location) -> None:
         """Raise EditError if a list of clamps belongs to an item that does not exist."""
         if rows[0] == LINE[0] and rows != LINE:
             own, index = self.lists.place(int(rows[1]), above=True)
