@@ -65,8 +65,8 @@ def on_cluster(
         except (ImportError, AttributeError, RuntimeError) as error:
             # dask raises these for missing modules
             raise UsageError(
-                f"the scheduler or a worker cannot take the work: {error}; "
-                f"calm-mooring {__version__} is needed there too"
+                f"the scheduler or a worker cannot run the tasks: {error}; install "
+                f"calm-mooring {__version__} there, too"
             ) from None
 
 

@@ -247,8 +247,8 @@ class Leg:
             return too_heavy(lift)
         pulls = "pulls the line's top under water and " if floats_at_rest else ""
         return Status.GROUNDED.because(
-            f"The current {pulls}lays {label} on the seabed: only the chain of a sub-surface "
-            "line may lie there."
+            f"The current {pulls}puts {label} on the seabed, where only chain of a "
+            "sub-surface line may lie."
         )
 
     def refuse_in_the_slope(self, solution: Solution) -> None:

@@ -17,15 +17,14 @@ def docs(
 ) -> ExitCode:
     """Print where a page of the manual is on this machine, open it, or list pages by a word.
 
-    The path printed is that of the page's text; `--open` shows the page of the
+    CALM prints the path of the page's text; `--open` shows the page of the
     built site in a browser, without a network. A word that is not the name of a
     page lists the pages that contain it, the most relevant first.
 
     Parameters
     ----------
     page
-        Its name, with or without its book (batch, reference/batch, how-to), or
-        words to look for.
+        Name of the page, with or without its part of the manual (batch, reference/batch, how-to), or words to search for.
     open_
         Open the page in a browser.
 

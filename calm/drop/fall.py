@@ -264,7 +264,7 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
     while excess(share := max(0.5 * share, least)) > 0.0:
         if share == least:
             raise UsageError(
-                f"behind a ship that hardly moves the line still streams {_streamed(state):.1f} m: "
+                f"even behind a very slow ship the line streams {_streamed(state):.1f} m, so "
                 f"it cannot be streamed to {streamed:g} m"
             )
     excess(bracketed_root(excess, share, min(2.0 * share, 1.0), rtol=1e-7))

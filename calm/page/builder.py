@@ -154,7 +154,7 @@ class WebPage:
         if name.startswith("app."):
             app.call_later(app.run_action, name)
         elif app.screen is not app.builder:
-            self._post("told", "Finish what is open first: Esc leads back to the line", None)
+            self._post("told", "Close the open form first: Esc leads back to the line", None)
         else:
             app.take_typed()
             actions = (each for place in ("line", "anywhere") for each in ACTIONS[place])

@@ -87,10 +87,12 @@ def document(kind: str, view: live.View) -> tuple[str, bytes]:
     wanted = next(each for each in DOCUMENTS if each.kind == kind)
     name = f"{view.path.stem}{wanted.suffix}"
     if view.result is None:
-        raise view.failure or UsageError("the line is not complete: the verdict says what it lacks")
+        raise view.failure or UsageError(
+            "the line is incomplete; the verdict names the missing parts"
+        )
     if view.result.towed:
         if kind != "report":
-            raise UsageError("a tow has a report alone")
+            raise UsageError("for a tow, only the report is available")
         from calm.report.html import page
         from calm.report.result_report import result_report
 

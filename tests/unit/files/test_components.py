@@ -241,7 +241,7 @@ def test_cable() -> None:
         ({"mass": "1 kg/m"}, "needs `weight` or `buoyancy` in water, or `mass` with `density`"),
         (
             {"weight": "1 N/m", "buoyancy": "-1 N/m"},
-            "gives both `weight` and `buoyancy`; one is the other negated",
+            "has both `weight` and `buoyancy`; give only one, since each is the negative of the other",
         ),
         (
             {"weight": "10 N/m", "mass": "1 kg/m"},

@@ -163,7 +163,7 @@ def test_a_later_visit_goes_on_with_the_last_file(visit, tmp_path):
         assert sent.of("open") == [("kept.yaml", None)]
         page.receive({"kind": "document", "text": "report"})
         ((told, _),) = await until(lambda: sent.of("failed"))
-        assert told == "the line is not complete: the verdict says what it lacks"
+        assert told == "the line is incomplete; the verdict names the missing parts"
 
     visit(story)
 
@@ -193,6 +193,8 @@ def test_a_tow_has_a_report(visit):
         page.receive({"kind": "document", "text": "report"})
         await until(lambda: sent.of("document"))
         page.receive({"kind": "document", "text": "deck"})
-        assert await until(lambda: sent.of("failed")) == [("a tow has a report alone", None)]
+        assert await until(lambda: sent.of("failed")) == [
+            ("for a tow, only the report is available", None)
+        ]
 
     visit(story)
