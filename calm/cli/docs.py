@@ -24,7 +24,8 @@ def docs(
     Parameters
     ----------
     page
-        Name of the page, with or without its part of the manual (batch, reference/batch, how-to), or words to search for.
+        Name of the page, with or without its part of the manual (batch, reference/batch, how-to),
+        or words to search for.
     open_
         Open the page in a browser.
 

@@ -39,7 +39,8 @@ def size(
         What to change: the label of a part, and its buoyancy, length or count.
         A label without its number means all pieces of that label.
     between
-        The smallest and the largest value, with units; by default a buoyancy may become 0 to 100 times its present value, a length up to twice the water depth, a count up to 1000.
+        The smallest and the largest value, with units; by default a buoyancy may become 0 to 100
+        times its present value, a length up to twice the water depth, a count up to 1000.
 
     Examples
     --------

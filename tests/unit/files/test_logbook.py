@@ -119,7 +119,8 @@ def test_a_release_that_is_not_in_the_line_is_reported(read: Read) -> None:
             (
                 11,
                 18,
-                "`length_at` is for cables and chains; the length of this piece is that of its definition",
+                "`length_at` is for cables and chains; the length of this piece is that of its "
+                "definition",
             ),
         ),
         (
