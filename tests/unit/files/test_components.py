@@ -170,13 +170,13 @@ def test_body_gives_its_drag_in_one_way(drag: dict[str, Any]) -> None:
     [
         (
             {},
-            "gives no drag; drag must be given by one of: `kn` with `kt`, `drag_area` with `cd`, "
-            "`drag_measurements`, or `made_of`",
+            "gives no drag; drag must be given by one of: `kn` with `kt`, `drag_area` with "
+            "`cd`, `drag_measurements`, or `made_of`",
         ),
         (
             {"kn": "1 N/(m/s)^2", "cd": "1"},
-            "gives `kn` and `cd`; drag must be given by one of: `kn` with `kt`, `drag_area` with `cd`, "
-            "`drag_measurements`, or `made_of`",
+            "gives `kn` and `cd`; drag must be given by one of: `kn` with `kt`, `drag_area` with "
+            "`cd`, `drag_measurements`, or `made_of`",
         ),
         ({"drag_area": "1 m^2"}, "`drag_area` and `cd` go together"),
         ({"kn": "1 N/(m/s)^2"}, "`kn` needs `kt`, or `inclination: insensitive`"),
