@@ -36,7 +36,7 @@ class PageTerminal:
     driver: PageDriver | None = None
 
     def type(self, text: str) -> None:
-        """Take what keys and mouse send."""
+        """Receive the input of keyboard and mouse."""
         if self.driver is not None:
             self.driver.feed(text)
 
