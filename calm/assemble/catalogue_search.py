@@ -6,7 +6,7 @@ import difflib
 import operator
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property, lru_cache
@@ -33,7 +33,9 @@ _OF_A_SIZE = 0.02
 _USED = re.compile(r"\buse: *([\w-]+)")
 _ALIKE = 0.8
 """Similarity above which a word counts as misspelt: `releese` and `release` have 0.86."""
-_SHORT = 5
+_ALIKE_IF_SHORT = 0.75
+"""Similarity above which a word of `_SHORT` letters counts as misspelt: `wyre` and `wire`."""
+_SHORT = 4
 """Number of letters below which an unknown word does not count as misspelt."""
 
 
@@ -132,27 +134,53 @@ class Index:
         by : key of a column to sort by: largest first, unknown values last
         """
         plain, limits = _parsed(text)
-        words = _words(plain)
-        sizes = [(_words(found[0]), _metres(*found.groups())) for found in _SIZE.finditer(plain)]
-        others = _words(_SIZE.sub(" ", plain))
-        only = None if kinds is None else frozenset(kinds)
+        terms = _terms(plain)
         hits = [
-            each
-            for each in self._listed.values()
-            if (only is None or each.kind in only)
-            and all(word in each.searched for word in others)
-            and all(
-                any(abs(one - size) <= _OF_A_SIZE * size for one in each.sizes)
-                or all(word in each.searched for word in parts)
-                for parts, size in sizes
-            )
-            and all(limit.holds(self.figures(each.id)) for limit in limits)
+            each for each in self._of(kinds, limits) if all(term.matches(each) for term in terms)
         ]
         if by is not None:
             return sorted(hits, key=lambda each: self._least_first(each.id, by))
+        return self._ranked(hits, terms, first)
+
+    def nearly(
+        self, text: str, kinds: Iterable[str] | None = None, *, first: Sequence[str] = ()
+    ) -> tuple[list[Listed], list[str]]:
+        """Find the components that contain most words of a text, and meet all its limits.
+
+        Returns
+        -------
+        found : components with the largest number of words, ordered as by `search`; empty if no
+            component has any of the words
+        unknown : words that no component contains
+        """
+        plain, limits = _parsed(text)
+        every, terms = [*self._of(kinds, limits)], _terms(plain)
+        counts = {each.id: sum(term.matches(each) for term in terms) for each in every}
+        most = max(counts.values(), default=0)
+        found = [each for each in every if counts[each.id] == most] if most else []
+        known = [term for term in terms if any(map(term.matches, every))]
+        unknown = [term.text for term in terms if term not in known]
+        return self._ranked(found, known, first), unknown
+
+    def _of(self, kinds: Iterable[str] | None, limits: Sequence[Wanted]) -> Iterator[Listed]:
+        """Yield the components of some kinds that meet all limits."""
+        only = None if kinds is None else frozenset(kinds)
+        for each in self._listed.values():
+            if (only is None or each.kind in only) and all(
+                limit.holds(self.figures(each.id)) for limit in limits
+            ):
+                yield each
+
+    def _ranked(
+        self, hits: Iterable[Listed], terms: Sequence[Term], first: Sequence[str]
+    ) -> list[Listed]:
+        """Sort by `_rank` in the terms that a component matches, with the ids of `first` first."""
         places = {id: number for number, id in enumerate(first)}
 
         def order(each: Listed) -> tuple[bool, int, bool, bool, int, int]:
+            own = [term for term in terms if term.matches(each)]
+            words = [word for term in own for word in term.words]
+            others = [word for term in own if term.size is None for word in term.words]
             rank = _rank(each, words, others)
             place = places.get(each.id, len(places)) if rank < _ELSEWHERE else len(places)
             elsewhere = rank > _ELSEWHERE
@@ -166,16 +194,43 @@ class Index:
         """
         every = " ".join(each.searched for each in self._listed.values())
         own = _BETWEEN.split(" ".join(each.own_words for each in self._listed.values()))
-        known = {word for word in own if word.isalpha() and len(word) >= _SHORT - 1}
+        known = {word for word in own if word.isalpha() and len(word) >= _SHORT}
         for word in _words(_SIZE.sub(" ", _parsed(text)[0])):
             if len(word) >= _SHORT and word.isalpha() and word not in every:
-                near = difflib.get_close_matches(word, known, 1, _ALIKE)
+                alike = _ALIKE if len(word) > _SHORT else _ALIKE_IF_SHORT
+                near = difflib.get_close_matches(word, known, 1, alike)
                 text = re.sub(re.escape(word), near[0] if near else word, text, flags=re.I)
         return text
 
     def _least_first(self, id: str, by: str) -> float:
         value = self.figures(id).get(by)
         return inf if value is None else -abs(value)
+
+
+@dataclass(frozen=True)
+class Term:
+    """A word of a search, or a size of one or several words with its value [m]."""
+
+    text: str
+    words: tuple[str, ...]
+    size: float | None = None
+
+    def matches(self, each: Listed) -> bool:
+        """Whether a component has the size, or contains the words."""
+        size = self.size
+        if size is not None and any(abs(one - size) <= _OF_A_SIZE * size for one in each.sizes):
+            return True
+        return all(word in each.searched for word in self.words)
+
+
+def _terms(plain: str) -> list[Term]:
+    """Split a text without limits into its words and sizes."""
+    words = [Term(word, (word,)) for word in _words(_SIZE.sub(" ", plain))]
+    sizes = [
+        Term(found[0], tuple(_words(found[0])), _metres(*found.groups()))
+        for found in _SIZE.finditer(plain)
+    ]
+    return words + sizes
 
 
 def _parsed(text: str) -> tuple[str, list[Wanted]]:

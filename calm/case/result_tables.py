@@ -845,6 +845,32 @@ def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
     return {row.place: row for row in (*result.components, *result.clamps)}
 
 
+def item_numbers(*results: WithClamps) -> dict[str, str]:
+    """Number of each piece and clamp by its label, the same in all documents.
+
+    Pieces are numbered from 1 in the order of the results, such as the legs of a net; a clamp has
+    the number of its piece and a letter.
+    """
+    found: dict[str, str] = {}
+    rows = (row for result in results for row in rows_down(result))
+    for piece, (row, clamps) in enumerate(rows, 1):
+        found[row.label] = str(piece)
+        for at, clamp in enumerate(clamps):
+            found[clamp.label] = f"{piece}{chr(ord('a') + at) if at < 26 else f'.{at + 1}'}"
+    return found
+
+
+def run_of(numbers: Sequence[str]) -> str:
+    """Format the numbers of items that share a row, such as `19–26` or `5a–5c, 6`.
+
+    Clamps on the first piece are not named.
+    """
+    pieces = sorted(int(one) for one in numbers if one.isdigit())
+    clamps = [] if numbers[0].isdigit() else [one for one in numbers if not one.isdigit()]
+    runs = (clamps, [*map(str, pieces)])
+    return ", ".join("–".join(dict.fromkeys((run[0], run[-1]))) for run in runs if run)
+
+
 def rows_down(result: WithClamps) -> Iterator[tuple[ComponentRow, list[ClampRow]]]:
     """Yield the pieces of a result, each with its clamps, without placeholders for anchors."""
     on: dict[int, list[ClampRow]] = {}

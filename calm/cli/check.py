@@ -133,7 +133,7 @@ def check(
         compared = comparison_of(names, earlier, designs[0].moorings[0])
         drawings = [drawn_section(assessments[0], 1, drawing, compared)]
     if missing:
-        _write_missing(assessments, output)
+        _write_missing(assessments, [design.path for design in designs], output)
     else:
         _answer(assessments, drawings, outputs, report, page, own, every=all_findings)
     return gravest(_code(each, allow_unknown) for each in assessments)
@@ -209,14 +209,16 @@ def _check_missing(
             raise UsageError(f"{output} would overwrite the file that is read")
 
 
-def _write_missing(assessments: Sequence[Assessment], output: Path | None) -> None:
+def _write_missing(
+    assessments: Sequence[Assessment], paths: Sequence[Path], output: Path | None
+) -> None:
     from calm.report.folder import write_file
-    from calm.report.missing_block import missing_block
+    from calm.report.missing_block import definition_places, missing_block
 
     found = [one for each in assessments for one in each.all_findings()]
     for message in dict.fromkeys(one.message for one in found if one.rule == "equilibrium"):
         narrate(message)
-    block = missing_block(found)
+    block = missing_block(found, definition_places(paths))
     if output is None:
         show(block)
     else:

@@ -25,6 +25,7 @@ def import_(
     environment: Path | None = None,
     onto: Path | None = None,
     columns: str | None = None,
+    sheet: str | None = None,
     elements: Path | None = None,
     match_catalogue: bool = False,
     allow_include: bool = False,
@@ -59,6 +60,8 @@ def import_(
         is a copy whose `deployed:` has the serial numbers.
     columns
         The columns of a table by their headings: name=Item,length=Len.
+    sheet
+        The sheet of a workbook; needed if several have headings.
     elements
         A library of elements, for values that a list or oceanarray lacks: the mdcodes.mat of
         Mooring Design & Dynamics, the table of moords, or a workbook.
@@ -89,7 +92,9 @@ def import_(
             raise UsageError("--onto takes one list of instruments")
         return _assign(files[0], onto, output, json)
     headings = _pairs("--columns", columns.split(",") if columns else [])
-    given = ImportOptions(_pairs("--define", define or []), headings, elements, allow_include)
+    given = ImportOptions(
+        _pairs("--define", define or []), headings, elements, allow_include, sheet
+    )
     targets = _targets(files, output)
     if json is not None and json != STDOUT:
         folder.check_destination(json)

@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Sequence
 from typing import Any, Literal
 
-from cyclopts import App, CycloptsError, Group, Parameter, UnusedCliTokensError
+from cyclopts import App, CycloptsError, Group, Parameter
 
 from calm.cli.batch import batch
 from calm.cli.build import build
@@ -26,6 +26,7 @@ from calm.cli.grid import grid
 from calm.cli.help import HelpAtWidth, examples
 from calm.cli.import_ import import_
 from calm.cli.locate import locate
+from calm.cli.mistakes import complaint
 from calm.cli.motion import motion
 from calm.cli.new import new
 from calm.cli.outputs import ExitCode, narrate, prepare, show
@@ -120,7 +121,7 @@ _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
     "More": (
         (chart, ""),
         (verify, "[OPTIONS] [WORD...]"),
-        (docs, "[OPTIONS] [PAGE]"),
+        (docs, "[OPTIONS] [PAGE|WORD...]"),
         (completion, "SHELL"),
     ),
 }
@@ -173,10 +174,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except NoEquilibrium as error:
         narrate(f"calm: {error}")
         return ExitCode.NO_EQUILIBRIUM
-    except UnusedCliTokensError as error:
-        narrate(f"calm: unexpected argument: {' '.join(error.unused_tokens or ())}")
+    except CycloptsError as error:
+        narrate(f"calm: {complaint(error)}")
         return ExitCode.BAD_INPUT
-    except (CycloptsError, CalmError) as error:
+    except CalmError as error:
         narrate(f"calm: {error}")
         return ExitCode.BAD_INPUT
     except KeyboardInterrupt:

@@ -106,8 +106,11 @@ def elevation(
     span = float(np.ptp(reach))
     listed = [*labels[: int((height - _ABOVE) / _NEAREST)]]
     flow = _LEFT + _FLOW
-    room = width - flow - _SYMBOLS - _longest(listed)
-    scale = max((depth + rise) / tall, span / max(room, 1.0))
+    upright = (depth + rise) / tall
+    room = width - flow - _SYMBOLS - _longest(listed, _WIDEST_LABEL)
+    if span > upright * room:
+        room = width - flow - _SYMBOLS - _longest(listed, _NARROW_LABEL)
+    scale = max(upright, span / max(room, 1.0))
     if depth / scale < _LEAST * tall:  # too wide to have the labels beside it
         listed, flow, room = [], _LEFT, width - _LEFT - 8.0
         scale = max((depth + rise) / tall, span / room)
@@ -163,16 +166,16 @@ _STROKES: dict[str, dict[str, float | str]] = {
 }
 """Strokes of the lines, by the last letter of a code."""
 _HOLLOW = (*BALLS, Symbol.SPHERE, Symbol.FOAM, Symbol.STREAMLINED, Symbol.BUOY)
-_WIDEST_LABEL, _FIGURES = 106.0, 26.0
+_WIDEST_LABEL, _NARROW_LABEL, _FIGURES = 140.0, 106.0, 26.0
 _REAL = 0.78
 """Ratio of the actual width of a text to the upper bound given by `text_width`."""
 _MOST_LEVELS = 7
 
 
-def _longest(labels: Sequence[Label]) -> float:
-    """Return the width of the labels with their depths."""
+def _longest(labels: Sequence[Label], most: float) -> float:
+    """Return the width of the labels, at most `most`, with their depths."""
     widths = (text_width(f"{one.text} {one.tag}", FONT, bold=True) for one in labels)
-    return min(_REAL * max(widths, default=0.0), _WIDEST_LABEL) + _FIGURES
+    return min(_REAL * max(widths, default=0.0), most) + _FIGURES
 
 
 def _level(place: int, count: int, height: float) -> float:
@@ -214,7 +217,7 @@ def _draw_labels(
     pen.line(at, levels[0], at, levels[-1])
     left = at + 20.0
     for one, y in zip(labels, levels, strict=True):
-        sign = one.part.floats or one.part.sign
+        sign = one.part.sign
         if sign.symbol not in LINES:
             figure = figure_of(sign)
             scale = min(CLAMP_SCALE, (pitch - 1.0) / figure.height)
@@ -327,7 +330,7 @@ def seabed_row(height: float) -> str:
 
 def row_height(part: ShownPart) -> float:
     """Return the smallest height of a row that contains the symbol of a part."""
-    if part.sign.symbol in LINES and part.floats is None:
+    if part.sign.symbol in LINES:
         return 19.0
-    scale = CLAMP_SCALE if part.clamped or part.floats else SYMBOL_SCALE
-    return max(13.0, scale * figure_of(part.floats or part.sign).height + 2.0)
+    scale = CLAMP_SCALE if part.clamped else SYMBOL_SCALE
+    return max(13.0, scale * figure_of(part.sign).height + 2.0)

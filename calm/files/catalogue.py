@@ -90,18 +90,19 @@ class Catalogue:
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def _completed(self, entry: CatalogueEntry) -> CatalogueEntry:
-        """Return an entry; one without `kind` completes the definition of the same id in this
-        catalogue.
+        """Return an entry without the keys that have no value; one without `kind` completes the
+        definition of the same id in this catalogue.
 
-        Keys without a value are left out. Assemblies have no figures to complete.
+        Assemblies have no figures to complete.
         """
-        section, below = entry.section, self.entry(entry.id)
+        below = self.entry(entry.id)
+        given = {key: value for key, value in entry.section.data.items() if value is not None}
+        section = entry.section.holding(given)
         kind = None if below is None else below.section.data.get("kind")
-        if below is None or "kind" in section.data or kind not in KINDS:
-            return entry
-        given = {key: value for key, value in section.data.items() if value is not None}
+        if below is None or "kind" in given or kind not in KINDS:
+            return CatalogueEntry(entry.id, entry.family, section)
         void = contradicted(str(kind), below.section.data.keys(), given.keys())
-        whole = section.holding(given).over(below.section, dropping=void)
+        whole = section.over(below.section, dropping=void)
         return CatalogueEntry(entry.id, below.family, whole)
 
     def ids(self) -> list[str]:

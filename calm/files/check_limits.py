@@ -192,6 +192,7 @@ class LimitKey:
     default : default [SI, degrees]; None if there is none
     source : source of the default
     backed : whether the design gives the source of its own value
+    share : whether the value is a share, which is shown in percent
     """
 
     name: str
@@ -200,6 +201,7 @@ class LimitKey:
     default: float | None
     source: str
     backed: bool = True
+    share: bool = False
 
     @property
     def departs(self) -> bool:
@@ -220,7 +222,10 @@ def limit_keys(checks: definition.Model, prefix: str = "") -> Iterator[LimitKey]
         elif limit is not None and quantity is not None:
             default = limit.default if field.default is None else field.default
             used = default if value is None else value
-            yield LimitKey(prefix + name, quantity.dimension, used, default, limit.source)
+            share = quantity == _SHARE
+            yield LimitKey(
+                prefix + name, quantity.dimension, used, default, limit.source, share=share
+            )
 
 
 def _day(text: str) -> str:

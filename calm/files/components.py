@@ -211,7 +211,7 @@ class Anchor(definition.Definition):
     friction: Annotated[float | None, QuantityField("number", above=0, at_most=10)] = optional(
         "coefficient on the seabed", 0.6
     )
-    kt: definition.TangentialDrag = None
+    kt: definition.TangentialDrag = Field(default=None, examples=["200 N/(m/s)^2"])
 
     @property
     def net_buoyancy(self) -> float:

@@ -313,9 +313,7 @@ class LineReader:
             near = self._catalogue.nearest(use)
             offer = f"; did you mean {near}?" if near else " (`calm catalog list` shows all)"
             if some := self._catalogue.of_a_sort(use):
-                offer = (
-                    f"; {use.rstrip('s')}s are {', '.join(some)} … (`calm catalog search {use}`)"
-                )
+                offer = f"; {use.rstrip('s')}s are {', '.join(some)} … (`calm catalog list {use}`)"
             item.refuse(("use",), f"`use: {shown(use)}`: no such component{offer}")
             return None
         hidden = self._catalogue.hidden(use)

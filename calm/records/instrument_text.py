@@ -2,7 +2,7 @@
 
 RODB files (`.use`, `.microcat` and `.rcm` of RAPID and OSNAP) have lines ``Name = value`` above
 columns in known units. Sea-Bird's `.cnv` files and the tables of RBR's library name each column and
-its unit in their headers.
+its unit in their headers, and so do plain tables such as ``time,temperature[degC],salinity[PSU]``.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.errors import InputError, Problem, refused
+from calm.errors import InputError, Problem, refused, unknown
 from calm.physics.line import Floats
 from calm.positions import plain_degrees
+from calm.records.headings import read_time_columns
 from calm.whole_file import read_content
 
 if TYPE_CHECKING:
@@ -214,6 +215,31 @@ def _rbr(path: Path) -> xr.Dataset:
     }
     serial = re.search(r"(?m)serialID: .* (\d+)$", "\n".join(lines[:first]))
     return _dataset(path, time, columns, serial=serial[1] if serial else "")
+
+
+_IN_TABLES = {
+    "temperature": "degC",
+    "salinity": "1",
+    "pressure": "Pa",
+    "length": "m",
+    "speed": "m/s",
+}
+
+
+def read_plain_table(path: Path) -> xr.Dataset:
+    """Read a table over time of one instrument, with columns such as ``temperature[degC]``.
+
+    InputError: the table has mistakes, or a column with another name.
+    """
+    table = read_time_columns(path, tuple(_IN_TABLES), "temperature[degC]")
+    names = {archive: what for what, (archive, _) in _WHAT.items()}
+    columns = {}
+    for label, dimension, values in zip(table.names, table.dimensions, table.values.T, strict=True):
+        what = names.get(label, label)
+        if what not in _WHAT:
+            raise refused(path, unknown(f"no column is called `{label}`", label, _WHAT), line=1)
+        columns[what, _IN_TABLES[dimension]] = values
+    return _dataset(path, table.time.astype("M8[us]"), columns)
 
 
 def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats:

@@ -19,7 +19,7 @@ from calm.checks.finding import (
     governing_of_each_rule,
 )
 from calm.checks.situations import FOULED, STILL, STILL_LOW, STRUMMING
-from calm.quantities import say
+from calm.quantities import QUANTITIES, say
 from calm.report import blocks
 from calm.report.blocks import Cell, Line, OpenItem, Prose, ReportPart, Span, number, words
 from calm.report.check_matrix import MatrixCell, environments_of, summary_row
@@ -32,7 +32,6 @@ from calm.report.open_items import (
     open_groups,
     open_items,
     percent_text,
-    quantity_of,
     short,
 )
 from calm.report.page_one import case_columns, shown_cases
@@ -86,9 +85,9 @@ def _head(assessment: Assessment) -> Line:
 
 def _verdict(assessment: Assessment) -> Line:
     """Format the verdict and the number of open items."""
-    said = assessment.verdict.words.upper() + ", DRAFT" * assessment.draft
-    told = counts_text(open_groups(assessment)) or "nothing is open"
-    return (Span(_apart(said, told), STATES[assessment.verdict]),)
+    verdict = assessment.verdict.words.upper() + ", DRAFT" * assessment.draft
+    counts = counts_text(open_groups(assessment)) or "no open items"
+    return (Span(_apart(verdict, counts), STATES[assessment.verdict]),)
 
 
 def _apart(left: str, right: str) -> str:
@@ -114,8 +113,8 @@ def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
             dense=True,
         )
     if fallen:
-        told = (f"! {one.code} {one.words}: no equilibrium ({one.failure})" for one in fallen)
-        yield Prose(tuple((Span(text, State.FAIL),) for text in told))
+        texts = (f"! {one.code} {one.words}: no equilibrium ({one.failure})" for one in fallen)
+        yield Prose(tuple((Span(text, State.FAIL),) for text in texts))
 
 
 def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
@@ -154,10 +153,10 @@ def _checks(assessment: Assessment) -> Iterator[blocks.Block]:
 def _below(rows: Sequence[Finding], rest: Sequence[Finding]) -> str:
     """Summarise the utilisation of the remaining checks, and explain case codes of rows above."""
     most = max((one.utilisation or 0.0 for one in rest), default=None)
-    told = [f"all other checks: {percent_text(most)} % or less"] if rest else []
+    others = [f"all other checks: {percent_text(most)} % or less"] if rest else []
     shown = {one.case[-1] for one in rows if one.case}
     codes = ", ".join(f"{code} {means}" for code, means in _CODES.items() if code in shown)
-    return "  " + "; ".join(filter(None, (*told, codes)))
+    return "  " + "; ".join(filter(None, (*others, codes)))
 
 
 _CODES = {"L": "launch", "R": "rise", "B": "break", "w": "in waves"}
@@ -211,8 +210,11 @@ def _bar(finding: Finding) -> Cell | None:
 
 
 def _found(finding: Finding) -> str:
-    quantity = quantity_of(finding)
-    return "" if finding.value is None or quantity is None else quantity.format(finding.value)
+    """Format a value without its unit, which the limit has."""
+    quantity = QUANTITIES.get(RULES[finding.rule].quantity)
+    if finding.value is None or quantity is None:
+        return ""
+    return quantity.number_and_unit(finding.value, finding.limit)[0]
 
 
 def _where(finding: Finding) -> str:
@@ -233,9 +235,11 @@ def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> bloc
         if len(kept) == most or (most is None and room < 0 and kept):
             break
         kept.append(item)
-    left = len(items) - len(kept)
-    note = f"   and {left} more: in the report (--report) and in --json" if left else ""
-    return blocks.OpenItems("Open items", tuple(kept), note)
+    left = items[len(kept) :]
+    notes = [f"{len(left)} more in the report (--report) and the JSON (--json)"] if left else []
+    unknown = [one.head.removesuffix(".") for one in left if one.state is State.UNKNOWN]
+    notes += wrap(f"Also unknown: {'; '.join(unknown)}.", _WIDTH - 3) if unknown else []
+    return blocks.OpenItems("Open items", tuple(kept), "\n".join(f"   {one}" for one in notes))
 
 
 def _height(block: blocks.Block) -> int:
@@ -254,10 +258,10 @@ def _height(block: blocks.Block) -> int:
 
 
 def beyond_text(findings: Sequence[Finding]) -> tuple[str, ...]:
-    """Exclusions of any static check."""
+    """Effects that no check covers."""
     waves = any(one.rule == "wave-slack" for one in findings)
     beyond = ["waves", "snap loads", "fatigue", "wear", "soil", "trawls", "hauling"][int(waves) :]
-    return (f"Beyond a static check: {', '.join(beyond)}.",)
+    return (f"Not covered: {', '.join(beyond)}.",)
 
 
 def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
@@ -273,15 +277,15 @@ def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
     places = f"{len(names)} ENVIRONMENT{'S' * (len(names) != 1)}"
     head = f"DESIGN CHECK OF {len(rows)} MOORINGS IN {places}: {said}"
     yield Prose(((Span(head, state),),))
-    milder = f"; {len(names) - len(kept)} milder ones are left out" * (len(kept) < len(names))
+    milder = f"; {len(names) - len(kept)} milder environments omitted" * (len(kept) < len(names))
     room = max(20, _WIDTH - 6 * len(kept) - 8)
     yield blocks.table_of(
         "",
         rows,
-        words("greatest use, %", lambda row: short(row.mooring, room)),
+        words("largest use, %", lambda row: short(row.mooring, room)),
         *(_of_environment(name, codes[name]) for name in kept),
         number("launch", lambda row: _matrix_text(row.handling)),
-        note="! fails  ~ over 100, a warning or accepted  ? not known\n"
+        note="! fails  ~ over 100, a warning or accepted  ? unknown\n"
         + ", ".join(f"{codes[name]} {name}" for name in kept if codes[name] != name)
         + milder,
         dense=True,

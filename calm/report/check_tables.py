@@ -9,7 +9,7 @@ from operator import attrgetter
 from typing import TypeVar
 
 from calm.checks.assess import RULES
-from calm.checks.criterion import said
+from calm.checks.criterion import limit_value_text
 from calm.checks.finding import AS_GIVEN, Finding, State, worst_of
 from calm.checks.inventory import InventoryItem
 from calm.files.check_limits import LimitKey
@@ -58,8 +58,11 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
 
 
 def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
-    """Group findings of one rule that differ only in component and values."""
-    return grouped(findings, lambda one: (one.rule, one.state, _wording(one)))
+    """Group findings of one rule that differ only in component and values.
+
+    Each missing value of a component is a group of its own.
+    """
+    return grouped(findings, lambda one: (one.rule, one.state, one.missing or _wording(one)))
 
 
 def _wording(finding: Finding) -> str:
@@ -128,25 +131,27 @@ def counted_as(finding: Finding) -> tuple[Hashable, ...]:
 
 def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> Table:
     """Tabulate limits with their defaults and sources, changed limits first."""
-    departs = Cell("departs", state=State.WARN)
+    departs = Cell("changed", state=State.WARN)
     return table_of(
         title,
         sorted(limits, key=lambda key: not key.departs),
         words("", lambda key: departs if key.departs else None, 0.0),
         words("limit", "name", 1.2),
-        number("as used", lambda key: said(key, key.value)),
-        number("default", lambda key: said(key, key.default)),
+        number("value", lambda key: limit_value_text(key, key.value)),
+        number("default", lambda key: limit_value_text(key, key.default)),
         words("source of the default", "source", 2.0),
-        note="A limit that departs from its default is the design's own; no source is given "
-        "for it.",
+        note="Limits that differ from their defaults are set in the mooring file, without a "
+        "source.",
     )
 
 
 def inventory_table(items: Sequence[InventoryItem]) -> Table:
     """Tabulate the number and quantity of each component, with room for spares."""
-    note = "Cut lengths are of wires, ropes and chains. Spares are filled in by hand."
+    note = "Cut lengths apply to wire, rope and chain. Enter spares by hand."
     if any(item.dry_mass is None for item in items):
-        note += " ≥ marks a lower bound, because masses in air are missing: plan no lift on it."
+        note += (
+            " ≥ marks a lower bound, as some masses in air are unknown: do not plan lifts by it."
+        )
 
     def summed(name: str) -> Field:
         return quantity(name, lambda group: None)[0], lambda group: _sum(name, group)

@@ -20,10 +20,10 @@ from calm.checks.situations import FOULED, STILL, STILL_LOW, STRUMMING, case_of
 from calm.checks.strength import allowable_load
 from calm.errors import NoEquilibrium
 from calm.files.pieces import STAND_IN
-from calm.quantities import QUANTITIES, Quantity, say
+from calm.quantities import QUANTITIES, say
 
-LOAD = Quantity("load", "load", "N", "Force on paper.", 2, "", "kN")
-"""Force in print: kN to 0.01, or the unit chosen by the user."""
+LOAD = QUANTITIES["load"]
+"""Force in tables: kN to 0.01, or the unit chosen by the user."""
 
 
 def load_text(value: float | None) -> str:

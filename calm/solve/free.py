@@ -130,8 +130,8 @@ def _tangles(solution: Solution) -> tuple[int, ...]:
 
 
 SHORTEST_LOOP = 2.0
-"""Shortest loop of a line that may tangle [m]; a shorter one is a shackle that leans on the float
-below it."""
+"""Shortest loop of a line that may tangle [m], a default of CALM; a shorter one is a shackle that
+leans on the float below it."""
 
 
 def looped(

@@ -16,9 +16,10 @@ from textual.widgets import Input, Static
 from calm.assemble.catalogue_search import COLUMNS, Index, Listed
 from calm.errors import CalmError
 from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
+from calm.files.editing import Value
 from calm.files.editing.user_state import Remembered
 from calm.tui import dialogs, key_table, theme
-from calm.tui.checking import distance, length
+from calm.tui.checking import distance, length, length_values
 from calm.tui.field import ScrolledEntry
 from calm.tui.forms import FormField
 from calm.tui.scrolled import ScrolledText, TableCells, TableColumn
@@ -167,7 +168,7 @@ class CataloguePane(Vertical):
     def __init__(
         self,
         workspace: Workspace,
-        take: Callable[[Purpose, dict[str, str]], object],
+        take: Callable[[Purpose, dict[str, Value]], object],
         close: Callable[[], object],
     ) -> None:
         super().__init__(id="catalogue")
@@ -302,8 +303,8 @@ class CataloguePane(Vertical):
         else:
             self._give({"use": chosen.id})
 
-    def _give(self, values: dict[str, str]) -> None:
-        self.remembered.take(values["use"])
+    def _give(self, values: dict[str, Value]) -> None:
+        self.remembered.take(str(values["use"]))
         self._take(self.purpose, values)
         self.search.action_select_all()
 
@@ -311,7 +312,10 @@ class CataloguePane(Vertical):
         """Ask for the length or the position, and for a label."""
 
         def take(texts: dict[str, str]) -> None:
-            self._give({"use": chosen.id} | {key: text for key, text in texts.items() if text})
+            long, towed = texts.pop("length", ""), self.workspace.session.draft.is_tow
+            keys = length_values(long, towed=towed) if long else {}
+            given = {"use": chosen.id, **keys, **texts}
+            self._give({key: value for key, value in given.items() if value})
 
         label = FormField("label", "Label", placeholder="optional")
         dialogs.enter(self.app, chosen.id, "", [form_field, label], take)

@@ -7,6 +7,7 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 
 from calm.files import Place
+from calm.files.editing import Value
 from calm.tui import line_pane, line_table, pictures, screen
 from calm.tui.catalogue_pane import CataloguePane, Purpose
 from calm.tui.verdict_pane import VerdictPane, state_word
@@ -163,8 +164,8 @@ class LineScreen(screen.DraftScreen):
         values = self.session.item(spot if purpose == "replace" else Place(spot.item)).values
         return values.get("label") or values.get("use", "")
 
-    def _take_component(self, purpose: Purpose, values: dict[str, str]) -> None:
-        spot, session, use = self.line.table.spot, self.session, values["use"]
+    def _take_component(self, purpose: Purpose, values: dict[str, Value]) -> None:
+        spot, session, use = self.line.table.spot, self.session, str(values["use"])
         if purpose == "replace" and spot is not None:
             kept: list[str] = []
             if self.line.attempt(lambda: kept.extend(session.replace(spot, values))):

@@ -128,14 +128,14 @@ class Session:
             self.history.undo()
         self.do(Draft(text), label)
 
-    def insert(self, spot: Place | None, values: Mapping[str, str], *, below: bool) -> Place:
+    def insert(self, spot: Place | None, values: Mapping[str, Value], *, below: bool) -> Place:
         """Add a piece next to a row, or at the top of an empty line."""
         index = 0 if spot is None else spot.item + below
         draft = self.draft.insert(index, dict(values), above=not below)
         self._edit(draft, f"add {values['use']}", new=_rows_of(draft, index, 1))
         return Place(index)
 
-    def clamp(self, spot: Place, values: Mapping[str, str]) -> Place:
+    def clamp(self, spot: Place, values: Mapping[str, Value]) -> Place:
         """Add a clamp to the piece of a row, below its other clamps."""
         index = spot.clamp + 1 if spot.is_clamp else len(self.draft.items[spot.item].clamps)
         draft = self.draft.insert(index, dict(values), clamps_of(spot.item))
@@ -152,7 +152,7 @@ class Session:
                 draft = draft.put(index, key, value, rows)
         self._edit(draft, label)
 
-    def replace(self, spot: Place, values: Mapping[str, str]) -> list[str]:
+    def replace(self, spot: Place, values: Mapping[str, Value]) -> list[str]:
         """Replace the component of a row; return the remaining overrides of the old component."""
         kept = [
             f"{key} {value}" if isinstance(value, str) else key

@@ -80,7 +80,7 @@ def test_the_table_goes_leg_by_leg(net: Path, capsys: pytest.CaptureFixture[str]
     ):
         assert leg in said
     assert "Converged" in said
-    assert "nodes in balance" in said
+    assert "in the balance of the nodes" in said
     assert max(map(len, said.splitlines())) <= 80
 
 
@@ -576,7 +576,7 @@ def test_the_anchor_of_a_line_is_judged_on_the_slope(
         each for each in findings
         if each["rule"] == "anchor-sliding" and each["situation"] == "as given"
     )  # fmt: skip
-    assert "down a slope of 10°" in sliding["message"]
+    assert "on a slope of 10°" in sliding["message"]
     held = friction * (anchor["weight"] / 1.5 - anchor["vertical"])
     assert sliding["limit"] == pytest.approx(held, rel=1e-9)
 

@@ -124,7 +124,7 @@ def test_the_form_shows_the_class_estimate_of_a_figure():
 def test_the_form_asks_for_what_the_block_asks_for():
     """Both name the figure that is missing and those that would do in its place."""
     view = judge_fully(judge(UNKNOWN))
-    block = yaml.safe_load(missing_block(view.findings))["components"]
+    block = yaml.safe_load(missing_block(view.findings, {}))["components"]
     asked = {each.use: each for each in missing_figures(view, Draft(UNKNOWN))}
     assert asked.keys() == block.keys()
     for use, keys in block.items():

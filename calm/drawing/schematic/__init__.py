@@ -304,11 +304,10 @@ def draw_symbol(pen: Pen, one: PlacedPart, x: float) -> None:
         draw_cable(pen, part.cable, x, *one.ends)
     else:
         pen.line(x, one.ends[0], x, one.ends[1])
-    beside = part.sign if part.clamped else part.floats
-    if beside is not None:
+    if part.clamped:
         clamp = pen.group(x, one.middle)
         draw_clamp(clamp, _CLAMP_AT)
-        figure_of(beside).draw(clamp.group(_CLAMP_AT, 0.0, CLAMP_SCALE))
+        figure_of(part.sign).draw(clamp.group(_CLAMP_AT, 0.0, CLAMP_SCALE))
     elif part.sign.symbol not in LINES:
         figure_of(part.sign).draw(pen.group(x, one.middle, SYMBOL_SCALE))
 

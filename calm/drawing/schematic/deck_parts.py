@@ -7,9 +7,9 @@ from itertools import groupby
 from math import nan
 
 from calm.deck import Deck
-from calm.deck.deck_items import DeckItem, DeckRow, rows_on_paper
+from calm.deck.deck_items import DeckItem, DeckRow, hardware_text, rows_on_paper
 from calm.drawing.schematic.shown_parts import ShownPart, TextRow, afloat, one_line, place_text
-from calm.drawing.schematic.symbols import LINES, Sign, Symbol, sign_of
+from calm.drawing.schematic.symbols import BALLS, LINES, Sign, Symbol, sign_of
 from calm.files import MooringFile
 from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
@@ -41,8 +41,8 @@ def parts_of(
 ) -> tuple[ShownPart, ...]:
     """The parts listed, down a line or a leg, whose top is at the `surface` or below it.
 
-    Connectors that follow one another make one junction. The labels of a part are those of all
-    that it stands for.
+    Connectors that follow one another make one junction, except those that stand apart. The labels
+    of a part are those of all that it stands for.
 
     Parameters
     ----------
@@ -56,13 +56,12 @@ def parts_of(
     cable: Symbol | None = None
     for row in rows_on_paper(listed):
         one = row.first
-        joins = one.role == "connector" and one.on is None and one.is_rigid
-        if joins and not getattr(one.part, "clamps", ()):
+        if one.is_connector and not one.apart and not getattr(one.part, "clamps", ()):
             joints += (*row.items, *row.joints)
             continue
         if joints:
             found.append(_junction(joints, own, cells))
-        joints = [*row.joints] if len(row.items) == 1 else []
+        joints = [*row.after]
         if row.first.on is None:
             sign = _sign(row.first)
             cable = sign.symbol if sign.symbol in LINES else None
@@ -96,11 +95,15 @@ def _piece(
     row: DeckRow, cable: Symbol | None, codes: Mapping[str | None, str], cells: Cells
 ) -> ShownPart:
     first, label = row.first, one_line(row.label)
-    joints = row.joints if len(row.items) > 1 else ()
+    sign, floats = _sign(first), sum(one.role == "float" for one in (*row.items, *row.floats))
+    if row.floats:
+        sign = _sign(row.floats[0])
+    if sign.symbol in BALLS:
+        sign = replace(sign, count=sign.count * max(floats, 1))
     words = [
         "" if (name := one_line(row.name)) == label else name,
         f"on {one_line(first.name)}" if row.floats else "",
-        f"with {one_line(row.joined)}" if joints else "",
+        f"with {one_line(hardware_text(row.between))}" if row.between else "",
         "" if first.serial is None else f"no. {one_line(first.serial)}",
         one_line(codes.get(first.serial, "")) if first.role == "release" else "",
     ]
@@ -114,16 +117,15 @@ def _piece(
     row_beside = TextRow(
         label,
         " · ".join(filter(None, words)),
-        cells([*row.items, *row.floats, *joints], lengths),
+        cells([*row.items, *row.floats, *row.between], lengths),
         strong=first.role != "line" or bool(row.floats),
     )
     return ShownPart(
-        _sign(first),
+        sign,
         (row_beside,),
-        labels=tuple(one.label for one in (*row.items, *row.floats, *joints)),
+        labels=tuple(one.label for one in (*row.items, *row.floats, *row.between)),
         cable=cable,
         length=first.cut_length if first.cut_length is not None else nan,
-        floats=_sign(row.floats[0]) if row.floats else None,
         clamped=first.on is not None,
     )
 

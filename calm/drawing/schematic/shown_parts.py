@@ -37,12 +37,11 @@ class ShownPart:
 
     Attributes
     ----------
-    sign : symbol to draw
+    sign : symbol to draw; of a chain or cable with floats that of the floats, with their number
     rows : rows of text; two for a pair of releases, else one
     labels : labels of the pieces it represents
     cable : symbol of the cable that it is or is clamped on; None for a rigid part
     length : length of a cable [m], NaN if unknown
-    floats : symbol of the floats clamped on it
     clamped : whether it is clamped on the part above it
     junction : whether a page break above it separates nothing that belongs together
     """
@@ -52,7 +51,6 @@ class ShownPart:
     labels: tuple[str, ...] = ()
     cable: Symbol | None = None
     length: float = math.nan
-    floats: Sign | None = None
     clamped: bool = False
     junction: bool = False
 

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import UsageError
-from calm.grid.samples import Floats, Samples
+from calm.gridding.samples import Floats, Samples
 
 NODES = 60
 """Depths at which mean and standard deviation of the record are kept."""
