@@ -163,7 +163,6 @@ class Index:
         return self._ranked(found, known, first), unknown
 
     def _of(self, kinds: Iterable[str] | None, limits: Sequence[Wanted]) -> Iterator[Listed]:
-        """Yield the components of some kinds that meet all limits."""
         only = None if kinds is None else frozenset(kinds)
         for each in self._listed.values():
             if (only is None or each.kind in only) and all(

@@ -104,7 +104,6 @@ class Profiles(Columnar):
         return cls(**labels, **known, status=status)
 
     def __repr__(self) -> str:
-        """Summary with the numbers of profiles, components and clamps."""
         parts = f"{len(self.component_label)} components, {len(self.clamp_label)} clamps"
         failed = np.count_nonzero(self.status)
         return f"Profiles({self.status.size} profiles, {failed} not solved; {parts})"

@@ -278,7 +278,6 @@ def _variations(mooring: Design) -> Iterator[tuple[str, Design]]:
 
 
 def _with(design: Design, changed: Callable[[Line], Line], water: Water | None = None) -> Design:
-    """Return the design with lines or water that differ from its file."""
     return design.with_lines([changed(leg.line) for leg in design.legs], water)
 
 

@@ -142,8 +142,6 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
 
 
 def _plan(deck: Deck) -> dict[str, Any]:
-    """The plan of the anchor drop, or why there is none."""
-
     if deck.result.several:
         return {"status": "net", "message": "The drop of a net of legs is not solved."}
     if deck.plan is None:

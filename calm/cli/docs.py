@@ -115,7 +115,6 @@ def _context(text: str, wanted: Sequence[re.Pattern[str]]) -> str:
 
 
 def _pages(folder: Path, suffix: str) -> dict[str, Path]:
-    """The pages of a folder, by book and name."""
     return {
         path.relative_to(folder).with_suffix("").as_posix(): path
         for path in sorted(folder.rglob(f"*{suffix}"))

@@ -127,7 +127,6 @@ def run(
 
 
 def _refuse(options: Mapping[str, object], what: str, designs: Sequence[Design]) -> None:
-    """Reject the first of the options if there are designs that it does not apply to."""
     chosen = [option for option, value in options.items() if value]
     if chosen and designs:
         raise UsageError(

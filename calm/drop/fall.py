@@ -238,7 +238,6 @@ def _laid_down(mover: Mover, state: ChainState) -> ChainState | None:
 
 
 def _streamed(state: ChainState) -> float:
-    """Horizontal distance from the lower end to the free end [m]."""
     return float(np.linalg.norm(state.node[0, :2] - state.node[-1, :2]))
 
 

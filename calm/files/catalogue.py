@@ -120,7 +120,6 @@ class Catalogue:
         return next(islice(self._of(id), 1, None), None)
 
     def _of(self, id: str) -> Iterator[CatalogueEntry]:
-        """Return the definitions of an id, the nearest first."""
         return (level[id] for level in self.levels if id in level)
 
     def _all(self) -> dict[str, CatalogueEntry]:

@@ -40,7 +40,6 @@ _ON_A_CHART = re.compile(r"deg|[°º]|\d['′\s]*[NSEW]\s*$", re.IGNORECASE)
 
 
 def _at_given(value: object, info: ValidationInfo) -> object:
-    """Convert a latitude and longitude to metres from the mooring's position."""
     given = value if isinstance(value, list) and len(value) == 2 else ()
     if not any(_ON_A_CHART.search(str(each)) for each in given):
         return value

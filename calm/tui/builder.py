@@ -228,7 +228,6 @@ class BuilderScreen(ComparingScreen):
         self.app.push_screen(TextScreen(self.workspace, line), self._back)
 
     def _back(self, _: None) -> None:
-        """Update the line, which another screen may have changed."""
         self.show_draft()
         self.tell("")
         self.workspace.edited()

@@ -201,7 +201,6 @@ class CataloguePane(Vertical):
                 self._search_again()
 
     def _search_again(self) -> None:
-        """Repeat the search, keeping the cursor on the same component."""
         chosen = self.listing.chosen
         self._search()
         ids = [each.id for each in self.listing.rows]
@@ -309,8 +308,6 @@ class CataloguePane(Vertical):
         self.search.action_select_all()
 
     def _ask(self, chosen: Listed, form_field: FormField) -> None:
-        """Ask for the length or the position, and for a label."""
-
         def take(texts: dict[str, str]) -> None:
             long, towed = texts.pop("length", ""), self.workspace.session.draft.is_tow
             keys = length_values(long, towed=towed) if long else {}

@@ -114,7 +114,7 @@ sheet('tow') | T | tow |  | Edit speed and course of a tow; turns a mooring into
 settings | comma | settings |  | Edit solver, limits of the check, uncertainty and units of output.
 begin | b | begin |  | Start an empty line from a template: deep, shelf, ADCP, taut or slack surface
   mooring, or tow.
-papers | f9 | documents |  | Show the bill of material; write the report of the check or the deck
+documents | f9 | documents |  | Show the bill of material; write the report of the check or the deck
   sheets.
 history | h | history |  | Show the history of changes, and go back to an earlier state.
 text | t | text |  | Edit the file as text, with its mistakes.

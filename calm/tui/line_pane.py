@@ -76,7 +76,6 @@ class LinePane(LineSearch):
         return is_made
 
     def _show_edited(self, spot: Place | None = None, message: str = "") -> None:
-        """Show the edited draft and have it judged."""
         self.show_draft(spot)
         self.workspace.tell("; ".join([*filter(None, [message]), *self.session.followed]))
         self.workspace.edited()
@@ -124,7 +123,6 @@ class LinePane(LineSearch):
         self.workspace.tell("There are no findings")
 
     def _found_of(self, spot: Place) -> list[VerdictLine]:
-        """Return the current findings of a row, the most severe first."""
         view = self.workspace.view
         return why(view, spot) if view is not None and self.workspace.is_fresh else []
 

@@ -259,7 +259,6 @@ def layout_for(
 
 
 def _heading(figure: ResultColumn) -> str:
-    """Return the heading of a result column, with its unit."""
     if figure.quantity is None:
         return figure.name
     return f"{figure.quantity.heading} {figure.quantity.display_unit}".rstrip()

@@ -40,10 +40,10 @@ class Saving:
         self,
         app: App[Any],
         workspace: Workspace,
-        taken_over: Callable[[str], object],
+        show_replaced_draft: Callable[[str], object],
         leave: Callable[[], object],
     ) -> None:
-        self._taken_over, self._leave = taken_over, leave
+        self._taken_over, self._leave = show_replaced_draft, leave
         self._app, self._workspace, self._session = app, workspace, workspace.session
         self.presence = Presence()
         self._reported: tuple[object] | None = None  # state on the disk that was reported last

@@ -260,7 +260,6 @@ class Session:
         return self._put_clamps(spot, first, self.copied, label)[-1 if below else 0]
 
     def _clamps(self, chosen: Sequence[Place]) -> tuple[str, ...]:
-        """Return the text of clamps, which may be on different pieces."""
         copied = (self.draft.copy([spot.clamp], clamps_of(spot.item)) for spot in chosen)
         return tuple(text for texts in copied for text in texts)
 
@@ -308,7 +307,6 @@ class Session:
 
 
 def _rows_of(draft: Draft, first: int, count: int) -> list[Place]:
-    """Return the rows of consecutive items."""
     return [
         Place(number, clamp=clamp)
         for number in range(first, first + count)

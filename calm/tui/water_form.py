@@ -363,7 +363,6 @@ def fields_of_water(towed: bool, grid: Callable[..., ProfileGrid]) -> Iterator[W
 
 
 def _density(form_field: FormField, grid: Callable[..., ProfileGrid]) -> Iterator[Widget]:
-    """Yield the widgets of density, temperature and salinity, each a constant or a table."""
     of_sea_water = {each.key: each for each in form_of(SeaWaterKeys, "density.")}
     for place, (kind, _, _) in _CONSTANTS.items():
         id, is_inner = "-".join(place), len(place) > 1
@@ -375,7 +374,6 @@ def _density(form_field: FormField, grid: Callable[..., ProfileGrid]) -> Iterato
 
 
 def _fields(fields: Iterable[FormField]) -> Iterator[Widget]:
-    """Yield fields; fields of a nested model are indented below its name."""
     for each in fields:
         if each.above:
             yield Static(each.above, classes="above", markup=False)

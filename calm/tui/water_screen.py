@@ -118,7 +118,6 @@ class WaterScreen(screen.DraftScreen):
         self.show_title()
 
     def _show_notes(self, problems: Sequence[Problem]) -> None:
-        """Show mistakes, and a note if an environment file is in use."""
         file, path = self.environment_file, self.workspace.path
         notes = [Content.styled(_ELSEWHERE.format(file), "$text-warning")] if file else []
         notes += [problem_text(each, path) for each in problems]
@@ -438,6 +437,5 @@ class WaterScreen(screen.DraftScreen):
 
 
 def _place(part: DOMNode | None) -> Place:
-    """Return the path of the key that a widget of the form edits."""
     name = part.id if part else None
     return tuple((name or "").removesuffix("-form").removesuffix("-table").split("-"))

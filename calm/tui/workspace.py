@@ -68,7 +68,7 @@ class Workspace:
     view : last view of the file; None before the first
     good : last view with an equilibrium
     is_late : whether the view has been out of date for some time
-    papers_elsewhere : how to get reports and sheets if the builder cannot run commands
+    documents_elsewhere : how to get reports and sheets if the builder cannot run commands
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class Workspace:
         self.view: View | None = None
         self.good: View | None = None
         self.is_late = False
-        self.papers_elsewhere = ""
+        self.documents_elsewhere = ""
         self._catalogue: Catalogue | None = None
         self._defined: Any = None
 
@@ -224,7 +224,6 @@ class Judging:
             self._show(is_first=is_first)
 
     def _fail(self, reason: str) -> None:
-        """Report an internal error; later drafts are still judged."""
         self._workspace.tell(f"internal error ({reason}); please report it", wrong=True)
         self._is_judging, self._checked = False, None
         if self._is_wanted:

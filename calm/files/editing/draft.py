@@ -284,7 +284,6 @@ class Draft:
             self._page.known(own, [index])
 
     def _add(self, location: Location, index: int, values: Sequence[Value]) -> Draft:
-        """Add new items to a list that may not exist yet."""
         page = self._page
         node = page.node(location)
         if node is not None and node.kind != "sequence" and node.data is not None:
@@ -319,7 +318,6 @@ class Draft:
 
     @cached_property
     def _padded(self) -> str:
-        """Return the text with a final line break."""
         ends = self.text.endswith("\n")
         return self.text if ends else self.text + WritingStyle.of(self.text, None).line_break
 

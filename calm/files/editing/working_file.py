@@ -255,7 +255,6 @@ def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
 
 
 def _status(path: Path) -> os.stat_result | None:
-    """Return the status of a file; None if it cannot be obtained."""
     try:
         return path.stat()
     except (OSError, ValueError):
@@ -331,7 +330,6 @@ class KeptWork:
 
 
 def _digest(content: bytes | None) -> str:
-    """Return a short hash of a content; empty for None."""
     return "" if content is None else hashlib.sha256(content).hexdigest()[:16]
 
 

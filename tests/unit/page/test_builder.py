@@ -138,7 +138,7 @@ def test_files_are_opened_and_unsaved_work_is_offered_again(visit, tmp_path, mon
         await until(lambda: ("own.yaml", None) in sent.of("open"))
         assert (tmp_path / "moorings/water.yaml").is_file()
         assert (tmp_path / "moorings/own.yaml").read_bytes() == own
-        assert sent.of("told") == [("water.yaml can be named in a mooring file now", None)]
+        assert sent.of("told") == [("water.yaml can now be used in a mooring file", None)]
         page.receive({"kind": "example", "text": FIRST})
         await until(lambda: sent.of("open")[-1][0] == FIRST)
         await until(lambda: page.app is not None and page.app.is_running)
