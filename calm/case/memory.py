@@ -60,11 +60,11 @@ class Memory:
         return solved
 
 
-class Forgetful(Memory):
+class NoMemory(Memory):
     """A cache that keeps nothing: every line is solved."""
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
-        return Forgetful, ()
+        return NoMemory, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
         """Return the result of the solver."""

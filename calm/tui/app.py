@@ -26,10 +26,10 @@ from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import DARK, LIGHT, PICTURE_DARK, PICTURE_LIGHT, choose_theme, legible
 
-_AUTOSAVED_AFTER = 0.3  # seconds
-_LOOKED_AT_DISK = 2.0  # seconds between two checks of the file
-_HELD_AT_MOST = 3.0  # seconds that a frame waits for an unresponsive terminal
-_MOST_ROUNDS = 50  # a widget that keeps sending itself messages is not waited for
+_AUTOSAVE_DELAY = 0.3  # seconds
+_DISK_INTERVAL = 2.0  # seconds between two checks of the file
+_MAX_HOLD = 3.0  # seconds that a frame waits for an unresponsive terminal
+_MAX_WAITS = 50  # a widget that keeps sending itself messages is not waited for
 _COLOURLESS = NoColor()
 
 
@@ -139,7 +139,7 @@ class BuildApp(App[int]):
         self._waits += 1
         now = self._listeners()
         is_busy = any(each.message_queue_size for each in now)
-        if self._waits < 2 or (is_busy and self._waits < _MOST_ROUNDS):
+        if self._waits < 2 or (is_busy and self._waits < _MAX_WAITS):
             self._wait_for_listeners(now)
         elif self._waiting:
             self.call_after_refresh(self._press)
@@ -156,7 +156,7 @@ class BuildApp(App[int]):
         """Start timers; solve the line and read the catalogue after the first frame."""
         self.app_resume_signal.subscribe(self, lambda _: self.action_repaint())
         self.call_after_refresh(self._begin)
-        self.set_interval(_LOOKED_AT_DISK, self.saving.check_external_change)
+        self.set_interval(_DISK_INTERVAL, self.saving.check_external_change)
 
     def _begin(self) -> None:
         """Read the catalogue, solve the line and report, once the line is on the screen."""
@@ -167,7 +167,7 @@ class BuildApp(App[int]):
         else:
             self.open_text_if_invalid()
         is_unsaved = self.session.file.is_open_elsewhere()
-        others = self.saving.presence.say(self.session.file.path)
+        others = self.saving.presence.announce(self.session.file.path)
         if is_unsaved or others:
             what = "with unsaved work" if is_unsaved else "in another builder"
             who = f" (process {others[0]})" if others else ""
@@ -191,7 +191,7 @@ class BuildApp(App[int]):
             super()._display(screen, renderable)
         elif self._pace.holds(time.monotonic()):
             if self._late is None:
-                self._late = self.set_timer(_HELD_AT_MOST, self.on_cursor_position)
+                self._late = self.set_timer(_MAX_HOLD, self.on_cursor_position)
         else:
             super()._display(screen, self._painted.update(renderable))
             driver = self._driver
@@ -273,7 +273,7 @@ class BuildApp(App[int]):
         self._tell_lost_environment()
         self.judging.after_an_edit()
         if self._autosaving is None:
-            self._autosaving = self.set_timer(_AUTOSAVED_AFTER, self._autosave)
+            self._autosaving = self.set_timer(_AUTOSAVE_DELAY, self._autosave)
 
     def _show_views(self, *, is_first: bool = False) -> None:
         if self.is_running:  # else the screens are being taken apart
@@ -346,15 +346,15 @@ class BuildApp(App[int]):
 
     def on_unmount(self) -> None:
         """Keep unsaved work, even after a failure or a closed page."""
-        self.saving.presence.say(None)
-        self.keep_at_the_end()
+        self.saving.presence.announce(None)
+        self.save_copy_on_exit()
 
     def take_typed(self) -> None:
         """Accept a valid value that is being typed, without questions."""
         if self.is_running and self.screen_stack and isinstance(self.screen, DraftScreen):
             self.screen.settle()
 
-    def keep_at_the_end(self) -> None:
+    def save_copy_on_exit(self) -> None:
         """Keep unsaved work unless the user has quit; set `not_kept` if this fails."""
         if not self._is_left:
             self.not_kept = self.keep()

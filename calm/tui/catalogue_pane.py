@@ -131,7 +131,7 @@ class ComponentList(TableCells, can_focus=False):
 Purpose = Literal["below", "above", "clamp", "replace"]
 """Purpose of the search."""
 
-_WHAT_FOR = {
+_TITLES = {
     "below": "Add below",
     "above": "Add above",
     "clamp": "Clamp on",
@@ -225,7 +225,7 @@ class CataloguePane(Vertical):
     def retitle(self, target: str) -> None:
         """Show the row next to which the component will be added."""
         self._target = target
-        text = f"{_WHAT_FOR[self.purpose]} {target}" if target else "The top of the line"
+        text = f"{_TITLES[self.purpose]} {target}" if target else "The top of the line"
         if self._by is not None:
             text += f"   sorted by {self._by}"
         self.query_one("#catalogue-title", Static).update(text, layout=False)

@@ -10,7 +10,7 @@ from typing import Any
 from calm.files import Place, editing
 from calm.files.editing import LINE, Draft, History, LineItem, Value, WorkingFile, clamps_of
 from calm.files.yaml_document import Location
-from calm.tui.names import EnvironmentChoice, Named, followed, widened
+from calm.tui.names import EnvironmentChoice, Named, followed, with_extended_acceptances
 
 _OF_THE_ROW = frozenset({"use", "label", "count", "at", "clamps"})
 """Keys of a row that are independent of its component."""
@@ -193,7 +193,7 @@ class Session:
         label = f"duplicate {self._called(chosen)}"
         if items:
             copies = self.draft.copy(items) * times
-            draft = widened(self.draft.paste(items[-1] + 1, copies), also)
+            draft = with_extended_acceptances(self.draft.paste(items[-1] + 1, copies), also)
             self._edit(draft, label, new=_rows_of(draft, items[-1] + 1, len(copies)))
             return Place(items[-1] + 1)
         last, clamps = chosen[-1], self._clamps(chosen) * times

@@ -136,8 +136,8 @@ class Workspace:
         return True, spot if isinstance(spot, Place) else None
 
 
-_DIMMED_AFTER = 0.3  # seconds; faster solutions cause no dimming
-_FULLY_AFTER = 0.5  # seconds without a change before launch, recovery and breaks are judged
+_DIM_DELAY = 0.3  # seconds; faster solutions cause no dimming
+_FULL_CHECK_DELAY = 0.5  # seconds without a change before launch, recovery and breaks are judged
 
 
 class Judging:
@@ -170,7 +170,7 @@ class Judging:
         self._is_stale = True
         self._app.call_after_refresh(self.ask)
         if self._dimming is None:
-            self._dimming = self._app.set_timer(_DIMMED_AFTER, self.dim)
+            self._dimming = self._app.set_timer(_DIM_DELAY, self.dim)
 
     def dim(self) -> None:
         """Dim values that are still of an earlier draft."""
@@ -219,7 +219,7 @@ class Judging:
         if self._is_wanted:
             self.ask()
         elif (is_late or not fully) and not (self._is_judging or self._fully):
-            self._fully = self._app.set_timer(_FULLY_AFTER, self.ask_fully)
+            self._fully = self._app.set_timer(_FULL_CHECK_DELAY, self.ask_fully)
         if not is_late:
             self._show(is_first=is_first)
 
