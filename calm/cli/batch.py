@@ -46,8 +46,8 @@ def batch(
     equilibrium is NaN, with its status. Statistics are printed, and written as
     RESULT.summary.json and .html.
 
-    The result is written whole or not at all: an interrupted run starts again
-    from the beginning.
+    The result is written completely or not at all; an interrupted run starts again from the
+    beginning.
 
     Parameters
     ----------

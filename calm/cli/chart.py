@@ -70,11 +70,11 @@ def solve(
     Parameters
     ----------
     weight
-        Weight in water of a metre; negative for a cable that floats.
+        Weight of a metre in water; negative for a cable that floats.
     k
         K = density × cd × diameter × speed² / (2 × weight), from 0 to 100.
     diameter
-        Diameter of the cable, instead of K, together with the next three.
+        Diameter of the cable; with the next three options, instead of K.
     cd
         Drag coefficient of the cable.
     speed
@@ -82,7 +82,7 @@ def solve(
     density
         Density of the water; 1025 kg/m^3 by default.
     phi_a
-        Angle to the current at A; negative when the cable first goes down.
+        Angle to the current at A; negative if the cable first goes down.
     phi_b
         Angle to the current at B.
     tension_a

@@ -198,7 +198,9 @@ def _check_missing(
     if output is not None and not missing:
         raise UsageError("-o is the file of --missing; for the findings, use --json or --report")
     if missing and any(other):
-        raise UsageError("--missing is printed in place of the findings: leave out the others")
+        raise UsageError(
+            "--missing replaces the findings and cannot be combined with other outputs"
+        )
     if output is not None:
         from calm.report.folder import check_destination
 

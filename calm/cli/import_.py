@@ -155,7 +155,6 @@ def _assign(file: Path, onto: Path, output: Path, json: Path | None) -> ExitCode
 
 
 def _pairs(option: str, texts: list[str]) -> dict[str, str]:
-    """NAME=VALUE pairs."""
     pairs = {}
     for text in texts:
         name, equals, value = text.partition("=")

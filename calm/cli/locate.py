@@ -147,7 +147,6 @@ def locate(
 
 
 def _sound(text: str) -> Sound:
-    """One speed, or the profile of a file."""
     from calm.ranging import Sound, ranges
 
     if text.lower().endswith((".csv", ".txt", ".tsv")):

@@ -28,19 +28,19 @@ if TYPE_CHECKING:
     TerminalPart = ReportPart | TerminalSchematic
 
 _NARROWEST = 40  # columns: below this width the terminal wraps the numbers
-_WRITTEN_OUT = "calm-written-out"  # error handler for characters that a stream cannot encode
+_ERROR_HANDLER = "calm-written-out"  # error handler for characters that a stream cannot encode
 _SIGNS = "°×–−→≤≥²³█▒◦≈"  # those of the tables
 
 
 def prepare() -> None:
     """Escape characters that the terminal cannot show, or replace them by ?."""
-    codecs.register_error(_WRITTEN_OUT, _written_out)
+    codecs.register_error(_ERROR_HANDLER, _transliterated)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors=_WRITTEN_OUT)
+            stream.reconfigure(errors=_ERROR_HANDLER)
 
 
-def _written_out(error: UnicodeError) -> tuple[str, int]:
+def _transliterated(error: UnicodeError) -> tuple[str, int]:
     from calm.drawing.picture import in_ascii
 
     assert isinstance(error, UnicodeEncodeError)

@@ -147,7 +147,6 @@ def _cut_alike(moorings: Sequence[Design]) -> tuple[Design, ...]:
 def _load(
     task: tuple[Path, Sequence[str] | None, Sequence[Path]],
 ) -> list[Design] | tuple[Problem, ...]:
-    """Read a file and return its designs or its problems."""
     from calm.case.design import load_in
 
     try:

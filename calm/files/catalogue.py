@@ -43,7 +43,7 @@ _HEAD = re.compile(r"^(?=[^ \n#])(?:([\w.-]+): *(?:#.*)?$)?", re.MULTILINE | re.
 class Assembly(Definition):
     """Pieces that are always used together; `parts` are items as in the `line` of a mooring."""
 
-    kind: Literal["assembly"] = Field(description="which kind of component it is")
+    kind: Literal["assembly"] = Field(description="kind of the component")
     parts: tuple[dict[str, Any], ...] = described(
         "pieces as in `line`, from the top",
         [{"use": "glass-17in", "count": 2}, {"use": "chain-13", "length": "1 m"}],
@@ -121,7 +121,6 @@ class Catalogue:
         return next(islice(self._of(id), 1, None), None)
 
     def _of(self, id: str) -> Iterator[CatalogueEntry]:
-        """Return the definitions of an id, the nearest first."""
         return (level[id] for level in self.levels if id in level)
 
     def _all(self) -> dict[str, CatalogueEntry]:

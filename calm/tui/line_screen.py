@@ -143,7 +143,6 @@ class LineScreen(screen.DraftScreen):
         self.catalogue.open(purpose, self._target(purpose), self._role(purpose), clampable=is_clamp)
 
     def _role(self, purpose: Purpose) -> str:
-        """Return the likely role of a new component, such as a float on top or an anchor."""
         spot, index, items = self.line.table.spot, self.workspace.index, self.session.draft.items
         if spot is None or (purpose == "above" and spot == Place(0)):
             return "" if self.session.draft.is_tow else "float"

@@ -25,8 +25,8 @@ Tab = Literal["elevation", "plan", "tension", "schematic"]
 TABS: tuple[Tab, ...] = ("elevation", "plan", "tension", "schematic")
 
 _LEAST = (20, 6)
-_LEAST_BESIDE = 52
-_BESIDE, _MOST_BESIDE = 3, 26
+_MIN_WIDTH_FOR_CURRENT = 52
+_CURRENT_SHARE, _MAX_CURRENT_WIDTH = 3, 26
 
 
 class Picture(scrolled.DrawnRows, can_focus=True):
@@ -87,14 +87,14 @@ class Picture(scrolled.DrawnRows, can_focus=True):
     def _elevation(self, result: Result, size: Size) -> list[Text]:
         from calm.drawing.sketch import current_profile, elevation
 
-        if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
+        if size.width < _MIN_WIDTH_FOR_CURRENT or result.file.environment.depth is None:
             return elevation(result, *size, self._beside)
-        beside = min(size.width // _BESIDE, _MOST_BESIDE)
-        line = elevation(result, size.width - beside - 1, size.height, self._beside)
-        profile = current_profile(result.water, beside, size.height)
+        current_width = min(size.width // _CURRENT_SHARE, _MAX_CURRENT_WIDTH)
+        line = elevation(result, size.width - current_width - 1, size.height, self._beside)
+        profile = current_profile(result.water, current_width, size.height)
         rows = []
         for left, right in zip(line, profile, strict=True):
-            left.truncate(size.width - beside, pad=True)
+            left.truncate(size.width - current_width, pad=True)
             rows.append(left.append_text(right))
         return rows
 

@@ -186,7 +186,6 @@ class KeyBar(Static):
         self.update(keys, layout=False)
 
     def _keys(self, width: int) -> list[Content]:
-        """The keys for which there is room."""
         parts, used = [], 0
         for action in self._actions:
             pressed = action.keys.split(",")[0]

@@ -63,7 +63,6 @@ def headline(view: View | None) -> VerdictLine:
 
 
 def _judged(findings: Sequence[Finding], view: View) -> VerdictLine:
-    """Return the verdict in the wording of `calm check`."""
     from calm.files.pieces import parts_of
     from calm.report.open_items import verdict_of
 
@@ -117,7 +116,6 @@ def _environment(name: str) -> str:
 
 
 def _environment_line(case: MooringInEnvironment, view: View) -> VerdictLine:
-    """Return the verdict of one environment in one line."""
     verdict = _judged((*case.findings, *case.tighter, *case.lacking), view)
     result = case.result
     figures = ""
@@ -215,7 +213,6 @@ def _figure(text: str, heading: str, worst: Finding | None) -> VerdictLine:
 
 
 def _net(result: Result) -> Iterator[VerdictLine]:
-    """Yield the loads on anchors and held ends of a net, and the depths of its nodes."""
     for end in (*result.anchors, *result.held):
         needs = end.required_weight
         needed = "" if needs is None else f", needs {say('required_weight', needs)} in water"
@@ -271,7 +268,6 @@ def _found(
 
 
 def _used(finding: Finding) -> str:
-    """Return the title of a rule with the use of its finding in percent."""
     from calm.report.open_items import percent_text
 
     used = finding.utilisation
@@ -299,7 +295,6 @@ def _finding_line(finding: Finding) -> VerdictLine:
 
 
 def _places(findings: Iterable[Finding | None]) -> tuple[Place, ...]:
-    """Return the rows concerned by findings, each once."""
     found = (place.row for each in findings if each is not None for place in each.places)
     return tuple(dict.fromkeys(found))
 

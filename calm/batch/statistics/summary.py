@@ -302,7 +302,6 @@ def _responses(
 
 
 def _greatest(values: Column) -> list[int]:
-    """Indices of the `WORST` largest values, with earlier ones first among equal values."""
     known = values[np.isfinite(values)]
     if not len(known):
         return []

@@ -90,7 +90,6 @@ def draw_picture(frame: canvas.PlotFrame, picture: LinePicture) -> None:
 
 
 def _caption(result: AnyResult) -> str:
-    """Describe depth and offset of the end in words."""
     if result.several:
         return _distance(result)
     (leg,) = result.legs
@@ -104,7 +103,6 @@ def _caption(result: AnyResult) -> str:
 
 
 def _distance(result: AnyResult) -> str:
-    """Describe offset and direction of the end, or the number of legs of a net."""
     if result.several:
         return f"net of {len(result.legs)} legs"
     (leg,) = result.legs

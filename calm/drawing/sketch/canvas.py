@@ -199,7 +199,6 @@ class PlotFrame:
 
 
 def _end(labels: list[tuple[int, str]]) -> int:
-    """Column after the last label."""
     return labels[-1][0] + len(labels[-1][1]) if labels else 0
 
 
