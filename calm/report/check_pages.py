@@ -304,8 +304,7 @@ def _inventory(signed: SignedMooring) -> Table:
             missing = total_of(items).missing_masses
             return Cell(detail=f"{missing} without mass" if missing else "")
         known = _runs(numbers[one.label] for one in group if one.label in numbers)
-        text = ", ".join(known[:8]) + (f" and {len(known) - 8} more" if len(known) > 8 else "")
-        return Cell(detail=text)
+        return Cell(detail=", ".join(known))
 
     def name(group: Sequence[InventoryItem]) -> str:
         return "Total" if group is items else group[0].name or group[0].use
@@ -318,8 +317,8 @@ def _inventory(signed: SignedMooring) -> Table:
         words(
             "Catalogue", lambda group: None if group is items else Cell(detail=group[0].use), 0.9
         ),
-        number("Cut length\nm", length),
-        number("Mass in\nair kg", mass),
+        number(f"Cut length\n{QUANTITIES['length'].display_unit}", length),
+        number(f"Mass in\nair {QUANTITIES['dry_mass'].display_unit}", mass),
         number(f"Weight in\nwater {unit}", weight),
         words("Items", places, 1.0),
         sums=[items],

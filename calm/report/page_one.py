@@ -184,10 +184,13 @@ def _whole(name: str) -> Quantity:
 
 def _figures() -> tuple[_Figure, ...]:
     depth, metres = QUANTITIES["depth"].format, _whole("depth_rating").format
+    unit = QUANTITIES["depth"].display_unit
     return (
-        _Figure("Top depth\nm", lambda one: one.depth, metres, short="top\nm"),
-        _Figure("Knock-\ndown m", lambda one: one.knockdown, depth, short="knock-\ndown m"),
-        _Figure("Offset\nm", lambda one: one.offset, metres, short="offset\nm"),
+        _Figure(f"Top depth\n{unit}", lambda one: one.depth, metres, short=f"top\n{unit}"),
+        _Figure(
+            f"Knock-\ndown {unit}", lambda one: one.knockdown, depth, short=f"knock-\ndown {unit}"
+        ),
+        _Figure(f"Offset\n{unit}", lambda one: one.offset, metres, short=f"offset\n{unit}"),
         _Figure(
             f"Largest\ntension {LOAD.display_unit}",
             lambda one: one.tension,
