@@ -10,8 +10,8 @@ import pytest
 from calm.solve import CompiledPart, Settings, two_speeds
 from calm.solve.two_speeds import (
     COMPILE_FROM,
-    UNANNOUNCED,
     LOAD_FROM,
+    UNANNOUNCED,
     count_lines,
     expect_many,
     runs_compiled,
