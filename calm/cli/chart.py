@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from cyclopts import App, Group, Parameter
 
 from calm.cli import options
-from calm.cli.outputs import ExitCode, Outputs, narrate
+from calm.cli.outputs import ExitCode, Outputs, narrate, save
 from calm.errors import UsageError
 
 _BUOY = """  calm chart solve --k 2.4 --weight "5 N/m" \\
@@ -143,13 +143,12 @@ def draw(
     from calm.drawing.picture import check_format, image
     from calm.drawing.plot import figure_svg
     from calm.report.chart_page import draw_chart
-    from calm.report.folder import check_destination, write_file
+    from calm.report.folder import check_destination
 
     check_format(output)
     check_destination(output)
     (drag_over_weight,) = options.quantities(k=(k, "number")).values()
-    write_file(output, image(figure_svg(draw_chart(drag_over_weight, lower_end)), output.suffix))
-    narrate(f"{output} written")
+    save(output, image(figure_svg(draw_chart(drag_over_weight, lower_end)), output.suffix))
     return ExitCode.DONE
 
 

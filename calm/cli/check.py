@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 from calm.cli import options
 from calm.cli.judging import Drawing, DrawnSection, drawn_section, judge, load_ahead
-from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate, show
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate, save, show
 from calm.cli.reading import DesignFile, names_of_files, read_designs
 from calm.errors import InputError, Problem, UsageError
 
@@ -212,7 +212,6 @@ def _check_missing(
 def _write_missing(
     assessments: Sequence[Assessment], paths: Sequence[Path], output: Path | None
 ) -> None:
-    from calm.report.folder import write_file
     from calm.report.missing_block import definition_places, missing_block
 
     found = [one for each in assessments for one in each.all_findings()]
@@ -222,8 +221,7 @@ def _write_missing(
     if output is None:
         show(block)
     else:
-        write_file(output, block.encode())
-        narrate(f"{output} written")
+        save(output, block.encode())
 
 
 def _answer(

@@ -106,6 +106,17 @@ def narrate_card(card: ReadCard) -> None:
         narrate(f"  {name:{width}}  {' '.join(value.split())}")
 
 
+def save(path: Path, content: bytes, then: str = "") -> None:
+    """Write a file, and report its path on standard error, followed by `then`.
+
+    UsageError: the system rejects the file.
+    """
+    from calm.report.folder import write_file
+
+    write_file(path, content)
+    narrate(f"{path} written{then}")
+
+
 def _abandon_output() -> None:
     """Discard buffered output, which would fail again when the interpreter exits."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -239,7 +250,6 @@ class Outputs:
         `document` is called only if JSON is requested; the version of CALM and the units are added
         if missing. Raises UsageError if the system rejects the file.
         """
-        from calm.report.folder import write_file
         from calm.report.result_files import to_json
 
         def text() -> str:
@@ -251,7 +261,7 @@ class Outputs:
         if part is not None:
             show_parts(part)
         if self.json is not None:
-            write_file(self.json, text().encode())
+            save(self.json, text().encode())
 
     def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
         """Write the files, then the standard output: JSON if requested there, or the tables.
@@ -259,7 +269,6 @@ class Outputs:
         There is something to show of each of `files`, in order; the CSV table of all of them is
         made only where it was asked for. UsageError: the system refuses to write.
         """
-        from calm.report.folder import write_file
         from calm.report.result_files import to_json
 
         def document() -> str:
@@ -269,12 +278,12 @@ class Outputs:
         for path in self.written:
             suffix = path.suffix.lower()
             if suffix in together:
-                write_file(path, together[suffix]().encode("utf-8", "replace"))
+                save(path, together[suffix]().encode("utf-8", "replace"))
                 continue
             for one, each in zip(self.apiece(path), shown, strict=True):
                 content = each.rendered(suffix)
                 if content is not None:
-                    write_file(one, content)
+                    save(one, content)
         if self.json == STDOUT:
             show(document())
         else:

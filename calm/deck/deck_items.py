@@ -33,7 +33,7 @@ class DeckItem:
     depth, height : depth and height above the seabed of a clamp, or of the upper end of a piece [m]
     tilt : tilt from the vertical [degrees]
     tension : maximum tension in a piece [N]; None for a clamp
-    serial : serial number as designed
+    serial : serial number as designed, or those of its items
     deployed_serial, remark : as deployed; the serial number defaults to that of the design
     apart : whether connecting hardware has a row of its own, because it governs a check or has an
         open finding
@@ -64,6 +64,11 @@ class DeckItem:
     def name(self) -> str:
         """Name of the component, or its id if it has no name."""
         return self.part.component.name or self.part.use
+
+    @property
+    def serials(self) -> tuple[str, ...]:
+        """Serial numbers as designed."""
+        return self.part.serials
 
     @property
     def planned_depth(self) -> float | None:
@@ -267,13 +272,13 @@ def deck_items_of(result: AnyResult, apart: Collection[str] = ()) -> tuple[DeckI
     """
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}
+    serials = deployed.serials if deployed else {}
     seabeds = [leg.water.depth for leg in result.legs]
     own = leg_numbers(result.file)
     found: list[DeckItem] = []
     for row, clamps in rows_down(result):
         bottom = seabeds[own[row.index]]
-        found.append(_deck_item(row, row, items, bottom))
-        found += (_deck_item(row, clamp, items, bottom) for clamp in clamps)
+        found += (_deck_item(row, one, items, serials, bottom) for one in (row, *clamps))
     return tuple(
         replace(one, apart=True) if one.is_connector and one.label in apart else one
         for one in found
@@ -284,6 +289,7 @@ def _deck_item(
     piece: ComponentRow,
     row: ComponentRow | ClampRow,
     items: Mapping[str, DeployedItem],
+    serials: Mapping[str, Sequence[str]],
     bottom: float,
 ) -> DeckItem:
     part = row.part
@@ -292,7 +298,7 @@ def _deck_item(
     depth, _, _ = row.upper
     return DeckItem(
         part=part, index=piece.index, serial=part.serial, remark=item.remark if item else None,
-        deployed_serial=(item.serial if item else None) or part.serial,
+        deployed_serial=", ".join(serials.get(part.label, ())) or part.serial,
         on=None if clamp is None else piece.label,
         at=None if clamp is None else clamp.at,
         of_length=None if clamp is None else piece.cut_length,

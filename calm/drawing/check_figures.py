@@ -166,7 +166,7 @@ _STROKES: dict[str, dict[str, float | str]] = {
 }
 """Strokes of the lines, by the last letter of a code."""
 _HOLLOW = (*BALLS, Symbol.SPHERE, Symbol.FOAM, Symbol.STREAMLINED, Symbol.BUOY)
-_WIDEST_LABEL, _NARROW_LABEL, _FIGURES = 140.0, 106.0, 26.0
+_WIDEST_LABEL, _NARROW_LABEL, _FIGURES, _GAP = 140.0, 106.0, 26.0, 6.0
 _REAL = 0.78
 """Ratio of the actual width of a text to the upper bound given by `text_width`."""
 _MOST_LEVELS = 7
@@ -175,7 +175,7 @@ _MOST_LEVELS = 7
 def _longest(labels: Sequence[Label], most: float) -> float:
     """Return the width of the labels, at most `most`, with their depths."""
     widths = (text_width(f"{one.text} {one.tag}", FONT, bold=True) for one in labels)
-    return min(_REAL * max(widths, default=0.0), most) + _FIGURES
+    return min(_REAL * max(widths, default=0.0), most) + _FIGURES + _GAP
 
 
 def _level(place: int, count: int, height: float) -> float:

@@ -300,6 +300,11 @@ class Definition(Model):
     )
     prefer: Text | None = optional("id of the better documented entry of the same product", "sbe37")
     date: Text | None = optional("day, e.g. 2026-11-20", "2026-11-20")
+    items: Annotated[int | None, Field(ge=1)] = optional(
+        "number of equal items it consists of, each with its own serial number, such as two "
+        "releases in parallel",
+        2,
+    )
     depth_rating: PositiveLength = optional("maximum depth of use", "2000 m")
     working_load: PositiveForce = optional("load it may carry in use, e.g. 20 kN", "20 kN")
     breaking_load: PositiveForce = optional("load at which it breaks, e.g. 40 kN", "40 kN")

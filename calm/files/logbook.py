@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, WithJsonSchema, model_validator
+from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
 
 from calm.errors import shown, unknown
 from calm.files import definition
@@ -148,7 +148,9 @@ class DeployedItem(definition.Model):
     """A piece or a clamp as deployed; a cable was cut to `length` [m]."""
 
     label: Text = described("label of the piece or clamp in results", "wire-jacketed-8")
-    serial: Text | None = optional("serial number; a list of as many as `count`", 12345)
+    serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
+        "serial number, or one for each release of a pair", 12345
+    )
     length: definition.PositiveLength = optional("cut length of a cable", "480 m")
     clock: ClockCheck | None = optional(
         "delay of the instrument's clock when it was checked; it is assumed to grow linearly "
@@ -173,6 +175,15 @@ class Deployed(definition.Model):
         [{"label": "wire-jacketed-8", "length": "479.2 m"}],
         default=(),
     )
+
+    @property
+    def serials(self) -> dict[str, tuple[str, ...]]:
+        """Return the serial numbers of the items that give any, by label."""
+        return {
+            one.label: (one.serial,) if isinstance(one.serial, str) else one.serial
+            for one in self.items
+            if one.serial
+        }
 
 
 def check_deployed(

@@ -65,6 +65,8 @@ LEAST_SPREAD = 0.02
 """Least deviation of a current about its mean [m/s]."""
 CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
 """Default correlation time [h] and correlation depth [m] of the current."""
+HOURS, REACHES = (4.0, 48.0), tuple(np.geomspace(150.0, 2400.0, 17).tolist())
+"""Limits of the estimated correlation time [h], and trial correlation depths [m]."""
 
 STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
 """Number of stretches with separate errors in knockdown, their correlation length as a share of the
@@ -188,6 +190,7 @@ class ErrorScales:
 
     flag: Mapping[int, float]
     share: float = SHARE
+    tide: float = common_unknowns.TIDE
     hours: float = CURRENT_HOURS
     reach: float = CURRENT_REACH
 
@@ -217,7 +220,9 @@ class CurrentSmoother:
         spread = np.sqrt(0.5 * np.nanvar(flow, axis=1).sum(axis=0))
         self.spread = np.maximum(self._along(place, spread), LEAST_SPREAD)
         flags = np.unique(one.flag[np.isfinite(one.u)])
-        self.scales = ErrorScales({f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()})
+        usual = {f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()}
+        self.tide = common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
+        self.scales = ErrorScales(usual, tide=self.tide)
         self.levels = np.where(np.isfinite(one.level_depth), one.level_depth, place)
         self.knot_depth = self.knots.at(self.levels)
         self.state = np.zeros((len(one.time), self.columns.count))
@@ -344,8 +349,7 @@ class CurrentSmoother:
         alike = np.exp(-apart / scales.reach) * np.outer(self.spread, self.spread)
         steady[at.current, at.current] = np.kron(np.eye(2), alike)
         steady[at.share, at.share] = self._stretches[2]
-        tide = common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
-        steady[at.tide, at.tide] = tide**2
+        steady[at.tide, at.tide] = scales.tide**2
         first = steady.copy()
         first[at.factor, at.factor] = self.common_covariance[: len(self.names), : len(self.names)]
         first[at.stays, at.stays] = np.diag(self.first)
@@ -395,11 +399,18 @@ class CurrentSmoother:
         """Error variances (n, k) of the current components [m²/s²]."""
         one = self.measured
         table = np.array([self.scales.flag.get(f, FLAGGED[4]) for f in range(256)])
-        speed = np.nan_to_num(np.hypot(one.u, one.v))
+        u, v = self.at_levels
+        speed = np.hypot(u, v)
         noise: Floats = (METER[0] ** 2 + (METER[1] * speed) ** 2) * table[
             one.flag.astype(np.uint8)
         ] ** 2
         return noise
+
+    @property
+    def at_levels(self) -> tuple[Floats, Floats]:
+        """Estimated currents (n, k), u and v, at the levels [m/s]."""
+        u, v = self.currents(self.state[:, self.columns.current])
+        return u @ self.knots.level.T, v @ self.knots.level.T
 
     # --- iterations
 
@@ -463,6 +474,28 @@ class CurrentSmoother:
         whole = float(np.clip(self._longer * step, -0.4, 0.4))
         return float(np.clip(self.scales.share * np.exp(whole), *SHARES))
 
+    def _remember(self, pushed: Floats) -> None:
+        """Update the correlation time and depth of the current.
+
+        Parameters
+        ----------
+        pushed : (2 K, 2 K) mean products of the noise of the currents, as a share of that in a
+            step; those of the prior, if its correlation time and depth are right
+        """
+        count = len(self.spread)
+        both = 0.5 * (pushed[:count, :count] + pushed[count:, count:])
+        found = both / np.outer(self.spread, self.spread)
+        apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
+        best = np.inf
+        for reach in REACHES:
+            alike = np.exp(-apart / reach)
+            size = float(np.trace(np.linalg.solve(alike, found))) / count
+            cost = count * np.log(size) + np.linalg.slogdet(alike)[1]
+            if cost < best:
+                best, ratio, likely = cost, size, reach
+        hours = float(np.clip(self.scales.hours / ratio, *HOURS))
+        self.scales = replace(self.scales, hours=hours, reach=likely)
+
     def _heavy(self, square: Floats) -> Floats:
         """Return initial variances by Student's law, from the expected squares."""
         return np.maximum(self.begin, 0.5 * (self.begin + square))
@@ -474,7 +507,8 @@ class CurrentSmoother:
         wide = np.empty((count, law.read.shape[1]))
         stay = np.zeros_like(self.stepped)
         alike = np.linalg.inv(self._stretches[2])
-        share = np.zeros(count)
+        share, tide = np.zeros(count), np.zeros(count)
+        pushed = np.zeros((at.current.stop, at.current.stop))
         for each in smoothed(law):
             t, spread = each.time, each.covariance
             now[t] = each.mean
@@ -484,8 +518,10 @@ class CurrentSmoother:
             flow = slope[t][:, at.current]
             curved[t] = np.einsum("pq,pq->p", flow @ spread[at.current, at.current], flow)
             if t + 1 < count:
-                stay[t + 1] = each.moved[at.stays]
+                stay[t + 1] = each.moved[at.stays, at.stays].diagonal()
+                pushed += each.moved[at.current, at.current] / (1.0 - law.fade[t + 1, 0] ** 2)
             z = each.mean[at.share]
+            tide[t] = each.mean[at.tide][0] ** 2 + spread[at.tide, at.tide][0, 0]
             share[t] = z @ alike @ z + np.sum(alike * spread[at.share, at.share])
             if t == 0:
                 begun = each.mean[at.stays] ** 2 + spread.diagonal()[at.stays]
@@ -512,6 +548,9 @@ class CurrentSmoother:
         if turn >= SETTLED:
             grown = self._grown(float(0.5 * np.log(share.mean() / STRETCHES)))
             self.scales = replace(self.scales, share=grown)
+        if turn >= 2 and count > 1:
+            self._remember(pushed / (count - 1))
+            self.scales = replace(self.scales, tide=min(float(np.sqrt(tide.mean())), self.tide))
         if turn >= 1:
             self.first = self._heavy(begun)
             self.stepped = 0.5 * (self.usual + np.maximum(stay, 0.0))
@@ -585,9 +624,7 @@ class CurrentSmoother:
     def current_factor(self) -> Floats:
         """Ratio (n,) of the estimated currents to the measured currents."""
         one = self.measured
-        u, v = (
-            each @ self.knots.level.T for each in self.currents(self.state[:, self.columns.current])
-        )
+        u, v = self.at_levels
         along, own = u * one.u + v * one.v, one.u**2 + one.v**2
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.asarray(np.nansum(along, axis=1) / np.nansum(own, axis=1), np.float64)

@@ -244,9 +244,14 @@ def cases_table(signed: SignedMooring) -> Table:
         ruled=False,
         aside="governing values in bold, their components in the last row",
     )
-    where = (Cell(detail=short(lead[1], 15)) for _, lead in shown)
+    where = (Cell(detail=_shorter(lead[1])) for _, lead in shown)
     row = Cell(), Cell(detail="where"), *where
     return replace(table, rows=(*table.rows, row), totals=1) if shown else table
+
+
+def _shorter(label: str) -> str:
+    """A label of at most 15 characters, with the end that tells equal pieces apart."""
+    return label if len(label) <= 15 else f"{label[:9].rstrip()}…{label[-5:].lstrip()}"
 
 
 def governing_rows(findings: Iterable[Finding]) -> list[Finding]:

@@ -145,7 +145,6 @@ def _summary_texts(found: Sequence[FoundRow]) -> dict[str, str]:
 
 
 _NO_COUNT = "Clamps cannot have a count; duplicate the clamp instead"
-_NO_SERIAL = "is an assembly: only its parts have serial numbers"
 _NO_LENGTH = "The component determines the length"
 
 
@@ -168,8 +167,6 @@ class LineCell:
     def refused(self) -> str:
         """Reason why the value cannot be edited, or ""."""
         listed = self.listed
-        if self.column == "serial" and listed is not None and listed.kind == "assembly":
-            return _NO_SERIAL
         if self.spot.is_clamp:
             return _NO_COUNT if self.column == "count" else ""
         is_rigid = listed is not None and listed.kind not in components.FLEXIBLE_KINDS

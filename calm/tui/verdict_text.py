@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State
+from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, grouped_by
 from calm.quantities import say
 from calm.tui.theme import ELLIPSIS
 from calm.tui.workspace import mistakes, place_of
@@ -230,7 +230,7 @@ def _found(
     A rule passes if every component passes; with a missing value its state is unknown.
     """
     from calm.checks.finding import governing
-    from calm.report.check_tables import grouped, named, named_components
+    from calm.report.check_tables import named, named_components
 
     governs = {(one.rule, one.place, one.state): one for one in (*findings, *tighter)}
     listed = dict.fromkeys(governs[one.rule, one.place, one.state] for one in findings)
@@ -244,7 +244,7 @@ def _found(
             text = f"{figure.quantity} of {named(figure.pieces)}, needed by {needed}"
             heading = f"Missing value of {figure.component_id}"
             yield VerdictLine(text, heading, State.UNKNOWN, places=_places([one]))
-    for own in grouped((each for each in unknown if each.missing is None), _title):
+    for own in grouped_by((each for each in unknown if each.missing is None), _title).values():
         text = f"unknown for {named_components(own)}"
         yield VerdictLine(text, _title(own[0]), State.UNKNOWN, places=_places(own))
     met = (State.PASS, State.NOT_JUDGED)
@@ -257,7 +257,9 @@ def _found(
         those = [one for one in (*findings, *tighter) if one.state is state]
         passes = state is State.PASS
         rules = [
-            each for each in grouped(those, _title) if not passes or _title(each[0]) not in other
+            each
+            for each in grouped_by(those, _title).values()
+            if not passes or _title(each[0]) not in other
         ]
         if rules:
             leads = sorted(map(governing, rules), key=lambda one: -(one.utilisation or 0.0))

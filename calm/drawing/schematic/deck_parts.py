@@ -105,7 +105,7 @@ def _piece(
         f"on {one_line(first.name)}" if row.floats else "",
         f"with {one_line(hardware_text(row.between))}" if row.between else "",
         "" if first.serial is None else f"no. {one_line(first.serial)}",
-        one_line(codes.get(first.serial, "")) if first.role == "release" else "",
+        _codes(first, codes) if first.role == "release" else "",
     ]
     if first.on is not None:
         places = dict.fromkeys((row.items[0].places[0], row.items[-1].places[-1]))
@@ -128,6 +128,14 @@ def _piece(
         length=first.cut_length if first.cut_length is not None else nan,
         clamped=first.on is not None,
     )
+
+
+def _codes(one: DeckItem, codes: Mapping[str | None, str]) -> str:
+    """Codes of a release, or of each release of a pair after its serial number."""
+    known = {serial: one_line(codes[serial]) for serial in one.serials if codes.get(serial)}
+    if len(one.serials) < 2:
+        return "".join(known.values())
+    return " · ".join(f"{one_line(serial)}: {text}" for serial, text in known.items())
 
 
 def _figures(
