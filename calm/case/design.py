@@ -255,7 +255,7 @@ class Design:
         return (self.leg.equilibrium(self.water),)
 
     @cached_property
-    def meant(self) -> tuple[Leg, ...]:
+    def typed_legs(self) -> tuple[Leg, ...]:
         """Legs with `for_surface` set: a leg counts as a surface leg if it floats at the surface in
         still water.
         """
@@ -310,7 +310,7 @@ class Design:
 def solved_alone(leg: Leg) -> LegResult:
     """Solve a leg alone, with its profilers at all positions; raises NoEquilibrium."""
     solution = leg.equilibrium()
-    still = leg.still_beside(solution)
+    still = leg.still_counterpart(solution)
     return LegResult(leg=leg, solution=solution, still=still, profilers=profilers_of(leg))
 
 

@@ -278,8 +278,8 @@ class Leg:
             return solve_tow(line, self.water, self.towing, self.settings)
         return solve_mooring(line, self.water, self.settings)
 
-    def still_beside(self, solution: Solution) -> Solution | None:
-        """The line in still water; None for a tow, or without a unique shape."""
+    def still_counterpart(self, solution: Solution) -> Solution | None:
+        """Solution of the line in still water; None for a tow, or without a unique shape."""
         if self.towed:
             return None
         floating = self.line.floating

@@ -255,8 +255,8 @@ def _answer(
     from calm.report.html import page
 
     report = check_report([each.section for each in drawings])
-    with ThreadPoolExecutor(1) as beside:
-        pdf = beside.submit(printed, report, paper, leaves=[each.pdf for each in drawings])
+    with ThreadPoolExecutor(1) as pool:
+        pdf = pool.submit(printed, report, paper, leaves=[each.pdf for each in drawings])
         outputs.write_answer(document, check_part(assessments))
         texts = {
             "report.html": page(report, [each.html for each in drawings]),

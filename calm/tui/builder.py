@@ -59,7 +59,7 @@ class BuilderScreen(ComparingScreen):
         place = places.get(type(self.focused), "line")
         if self.focused is not None and self.catalogue in self.focused.ancestors_with_self:
             place = "catalogue"
-        self.query_one(KeyBar).show_keys(hints(place), beside=place == "catalogue")
+        self.query_one(KeyBar).show_keys(hints(place), beside_message=place == "catalogue")
 
     def action_suspend(self) -> None:
         """Suspend to the shell; undo while a value is typed, or without a shell."""

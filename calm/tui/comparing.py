@@ -40,7 +40,7 @@ class ComparingScreen(line_screen.LineScreen):
         if not self.settle():
             return
         if not self.session.changed:
-            self.pictures.put_beside(None)
+            self.pictures.overlay(None)
             self.tell("There are no changes since the file was saved")
             return
         view = self.workspace.judged("Checks are still running; try again in a moment")
@@ -60,7 +60,7 @@ class ComparingScreen(line_screen.LineScreen):
             now = self.workspace.view
             shape = getattr(before.result, "shape", None)  # a net has one for each leg
             if shape is not None and now and type(before.result) is type(now.result):
-                self.pictures.put_beside(shape)
+                self.pictures.overlay(shape)
             answers = [Answer("b", "back to the line")]
             choose(self.app, Question("Compared with the saved file", "\n".join(lines), answers))
 

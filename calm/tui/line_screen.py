@@ -75,22 +75,22 @@ class LineScreen(screen.DraftScreen):
     def show_draft(self) -> None:
         """Show the current draft."""
         self.line.show_draft()
-        self._show_beside()
+        self._show_side_panes()
         self.show_title()
 
     def show_view(self) -> None:
         """Show the last view; values of an earlier draft are dimmed."""
         if self.workspace.is_fresh or self.workspace.is_old:
             self.line.show_rows()
-        self._show_beside()
+        self._show_side_panes()
         self.show_title()
 
     def show_catalogue(self) -> None:
         """Use the catalogue that was loaded."""
         self.line.show_rows()
-        self._show_beside()
+        self._show_side_panes()
 
-    def _show_beside(self) -> None:
+    def _show_side_panes(self) -> None:
         """Show catalogue, picture and verdict of the last view, dimmed if out of date."""
         self.catalogue.refresh_index()
         view, fresh = self.workspace.view, self.workspace.is_fresh

@@ -44,13 +44,13 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         super().__init__()
         self.tab: Tab = "elevation"
         self._view: View | None = None
-        self._beside: Sequence[Shape] = ()
+        self._overlays: Sequence[Shape] = ()
 
-    def show(self, view: View | None, tab: Tab, beside: Sequence[Shape] = ()) -> None:
+    def show(self, view: View | None, tab: Tab, overlays: Sequence[Shape] = ()) -> None:
         """Draw the line of a view, with other shapes for comparison."""
         if tab != self.tab:
             self.scroll_to(0, 0, animate=False)
-        self._view, self.tab, self._beside = view, tab, beside
+        self._view, self.tab, self._overlays = view, tab, overlays
         self.draw_again()
 
     def rows_for(self, size: Size) -> list[scrolled.Row]:
@@ -72,7 +72,7 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         from calm.drawing.sketch import plan, tension
 
         if self.tab == "plan":
-            return plan(result, *size, self._beside)
+            return plan(result, *size, self._overlays)
         lines = result.legs
         if self.tab == "tension":
             rows = size.height // len(lines)
@@ -88,9 +88,9 @@ class Picture(scrolled.DrawnRows, can_focus=True):
         from calm.drawing.sketch import current_profile, elevation
 
         if size.width < _MIN_WIDTH_FOR_CURRENT or result.file.environment.depth is None:
-            return elevation(result, *size, self._beside)
+            return elevation(result, *size, self._overlays)
         current_width = min(size.width // _CURRENT_SHARE, _MAX_CURRENT_WIDTH)
-        line = elevation(result, size.width - current_width - 1, size.height, self._beside)
+        line = elevation(result, size.width - current_width - 1, size.height, self._overlays)
         profile = current_profile(result.water, current_width, size.height)
         rows = []
         for left, right in zip(line, profile, strict=True):
@@ -142,7 +142,7 @@ class Pictures(Vertical):
         self._view, self._note = view, note
         self._show()
 
-    def put_beside(self, saved: Shape | None) -> None:
+    def overlay(self, saved: Shape | None) -> None:
         """Draw the saved line for comparison; None removes it."""
         self._saved = saved
         self._show()

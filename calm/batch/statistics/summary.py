@@ -203,7 +203,7 @@ def summarize(
             limits_used=tuple(
                 dict.fromkeys(
                     key
-                    for leg in mooring.meant
+                    for leg in mooring.typed_legs
                     for key in limits_used(leg.file, reaches_the_surface(leg))
                 )
             ),

@@ -15,7 +15,7 @@ from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
 
 Cells = Callable[[Sequence[DeckItem], tuple[str, str]], tuple[str, ...]]
-"""The figures beside some items, by these and by their cut length, or place, and stretched one."""
+"""Function that returns the values next to items, given their cut and stretched length."""
 
 
 def parts_of_deck(
@@ -47,7 +47,7 @@ def parts_of(
     Parameters
     ----------
     every : all of the line, among which a label is a person's own or not
-    cells : the figures beside the items of a part
+    cells : values next to the items of a part
     """
     own = _own_labels(every)
     codes = {one.serial: " · ".join(one.code_lines) for one in file.releases}
@@ -114,7 +114,7 @@ def _piece(
         lengths = "" if first.is_rigid else row.lengths, ""
     else:
         lengths = _number_text("length", first.cut_length), _number_text("length", first.stretched)
-    row_beside = TextRow(
+    connector_row = TextRow(
         label,
         " · ".join(filter(None, words)),
         cells([*row.items, *row.floats, *row.between], lengths),
@@ -122,7 +122,7 @@ def _piece(
     )
     return ShownPart(
         sign,
-        (row_beside,),
+        (connector_row,),
         labels=tuple(one.label for one in (*row.items, *row.floats, *row.between)),
         cable=cable,
         length=first.cut_length if first.cut_length is not None else nan,
