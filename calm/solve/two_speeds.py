@@ -92,7 +92,7 @@ def runs_compiled(
 
 
 def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -> None:
-    """Count lines that are solved next; their work is in ordinary lines."""
+    """Count lines that are solved next; `work` is relative to that of a typical line."""
     pace = _paces[solver]
     pace.solved += lines
     pace.work += lines if work is None else work

@@ -39,10 +39,10 @@ def parts_of(
     *,
     surface: bool,
 ) -> tuple[ShownPart, ...]:
-    """The parts listed, down a line or a leg, whose top is at the `surface` or below it.
+    """Return the parts of a line or a leg from its top, which may be at the `surface`.
 
-    Connectors that follow one another make one junction, except those that stand apart. The labels
-    of a part are those of all that it stands for.
+    Consecutive connectors form one junction, unless they are listed separately. A part has the
+    labels of all items that it represents.
 
     Parameters
     ----------
