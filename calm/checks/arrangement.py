@@ -220,7 +220,7 @@ def metals(handling: Handling) -> Iterator[Verdict]:
     """
     warned: set[str] = set()
     for base, noble, volts in unlike_metals(handling.leg.file.pieces):
-        if base.label not in warned and not (_is_insulated(base) or _is_insulated(noble)):
+        if base.label not in warned:
             warned.add(base.label)
             message = (
                 f"{base.label} ({base.component.material}) corrodes in contact with {noble.label} "
@@ -236,9 +236,9 @@ def _is_insulated(part: Piece | Clamp) -> bool:
 
 
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
-    """Yield adjoining dissimilar metals: the less noble, the more noble, their potential [V].
+    """Yield dissimilar metals that touch: the less noble, the more noble, their potential [V].
 
-    Pairs with an `insulated` part are included, because the insulation still has to be fitted.
+    A part that is `insulated` touches nothing.
     """
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
@@ -246,6 +246,8 @@ def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piec
         if not any(word in said for word in _INSULATED):
             pairs += [(piece, clamp) for clamp in piece.clamps]
     for one, other in pairs:
+        if _is_insulated(one) or _is_insulated(other):
+            continue
         first, second = (potential_of(part.component.material) for part in (one, other))
         if first is None or second is None or abs(first - second) <= GREATEST_DIFFERENCE:
             continue

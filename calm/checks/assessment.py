@@ -230,7 +230,7 @@ class Acceptance:
     def _estimated(self, finding: Finding) -> Finding:
         """Mark a pass that relies on a lower bound as estimated, and a failure as unknown."""
         part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
-        own = {} if part is None else part.component.estimates
+        own = {} if part is None or not figures else part.component.estimates
         used = [one for name, one in own.items() if name in figures]
         if part is None or not used or finding.state not in (State.PASS, State.FAIL):
             return finding

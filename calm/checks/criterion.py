@@ -231,9 +231,11 @@ def cited(file: MooringFile, *names: str) -> str:
 
 
 def limit_value_text(key: LimitKey, value: float | None) -> str:
-    """Format a value of a limit with its unit (times in days), or a dash for None."""
+    """Format a value of a limit with its unit (times in days, shares in percent), or a dash."""
     if value is None:
         return "-"
+    if key.share:
+        return f"{100.0 * value:.10g} %"
     if key.dimension == "time":
         return f"{value / 86_400.0:.10g} d"
     if key.dimension == "force":

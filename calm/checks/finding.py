@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from functools import partial
+from functools import cached_property, partial
 from math import ceil, inf, isfinite
 from operator import attrgetter
 from typing import Any, Literal, TypeVar
@@ -23,8 +23,16 @@ AS_GIVEN = "as given"
 OWN = "own"
 """Name of the environment that a mooring file gives itself."""
 
+DEFAULT_ENVIRONMENT = "default environment"
+"""The same environment in print."""
+
 ON_THE_WAY = "launch, recovery, breaks"
 """Label used instead of an environment for rules that are evaluated once per mooring."""
+
+
+def environment_text(name: str) -> str:
+    """Describe an environment in print, such as `environment storm`."""
+    return DEFAULT_ENVIRONMENT if name == OWN else f"environment {name}"
 
 
 class State(StrEnum):
@@ -352,7 +360,7 @@ class Finding(Verdict):
     probability: float | None = None
     estimates: tuple[EstimatedFigure, ...] = ()
 
-    @property
+    @cached_property
     def utilisation(self) -> float | None:
         """Demand over capacity; None if the rule has no such ratio."""
         return super().utilisation if RULE_TEXTS[self.rule].has_ratio else None

@@ -236,11 +236,13 @@ def read_gridded(
     wanted, notes = chosen_quantities(variables), list[str]()
 
     def note(text: str) -> None:
-        notes.append(text)
-        report(text)
+        if text not in notes:
+            notes.append(text)
+            report(text)
 
     places = read_depths(depths)
-    series = read_series(values, wanted, parse_flags(flags), places.seabed)
+    usual = dict(zip(places.places.label, places.places.still.tolist(), strict=True))
+    series = read_series(values, wanted, parse_flags(flags), places.seabed, usual)
     every = [one for each in series.values() for one in each]
     cards = tuple({id(one.card): one.card for one in every if one.card is not None}.values())
     for card in cards:
@@ -311,7 +313,7 @@ def sample_notes(
         if abs(one.pressure - usual) > max(ANOTHER_PLACE, 0.1 * usual):
             yield (
                 f"{one.source}: the median of its pressures is {one.pressure:.0f} dbar, where "
-                f"{here}: are two files exchanged?"
+                f"{here}: are two files exchanged, or is its unit wrong?"
             )
         if one.called in labels and one.called != labels[at]:
             yield f"{one.source}: given as `{labels[at]}`, and calls itself `{one.called}`"

@@ -115,10 +115,32 @@ class ReadCard:
 
 
 def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
-    """Merge the cards of the parts of one file."""
-    variables = {taken: one for card in cards for taken, one in card.variables.items()}
+    """Merge the cards of several quantities of a file."""
+    variables = {role: one for card in cards for role, one in card.variables.items()}
     flags = {name: count for card in cards for name, count in card.flags.items()}
     return replace(cards[0], variables=variables, flags=flags)
+
+
+def card_of_instruments(cards: Sequence[ReadCard]) -> ReadCard:
+    """Merge the cards of a file's instruments; a median is that of the instruments' medians."""
+    variables = {}
+    for role in {role: None for card in cards for role in card.variables}:
+        each = [card.variables[role] for card in cards if role in card.variables]
+        figures = np.array([(one.least, one.median, one.greatest) for one in each])
+        known = figures[np.isfinite(figures).all(axis=1)]
+        if known.size:
+            least, median, greatest = known[:, 0].min(), np.median(known[:, 1]), known[:, 2].max()
+            each[0] = replace(
+                each[0], least=float(least), median=float(median), greatest=float(greatest)
+            )
+        variables[role] = each[0]
+    flags = {name: 0 for card in cards for name in card.flags}
+    for card in cards:
+        for name, count in card.flags.items():
+            flags[name] += count
+    times = np.unique(np.concatenate([card.times for card in cards]))
+    levels = sum(card.levels for card in cards)
+    return replace(cards[0], variables=variables, flags=flags, times=times, levels=levels)
 
 
 def card_rows(card: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:

@@ -120,7 +120,8 @@ class CurrentDataset:
         )
         if not self._terms.on_the_line:
             for variable in self._flags:
-                first[self._along(variable, index, velocity.marked_bad)] = np.nan
+                bad = self._along(variable, index, velocity.marked_bad)
+                first[bad] = second[bad] = np.nan
         if self._velocity.turn is not None:
             impossible = (first < 0.0) | (np.abs(second) > 360.0)
             first, second = self._velocity.components(first, second)

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,14 @@ from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
 from calm.quantities import QUANTITIES_MEASURED, MeasuredQuantity
 from calm.records import attributes, cf_files, instrument_text, velocity
-from calm.records.card import ReadCard, VariableSummary, joined_cards, said_of, texts_in
+from calm.records.card import (
+    ReadCard,
+    VariableSummary,
+    card_of_instruments,
+    joined_cards,
+    said_of,
+    texts_in,
+)
 from calm.records.cf_files import UnreadableError, factor_of, first_present, known_values
 from calm.records.level_depths import find_levels
 from calm.records.value_tests import WATER, impossible_values, series_doubts
@@ -124,7 +132,11 @@ class InstrumentSeries(Identity):
 
 
 def read_series(
-    given: Sequence[str], names: Sequence[str], flags: frozenset[int], seabed: float
+    given: Sequence[str],
+    names: Sequence[str],
+    flags: frozenset[int],
+    seabed: float,
+    usual: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, list[InstrumentSeries]]:
     """Read the series of several quantities from files; the keys are the names of the quantities.
 
@@ -134,6 +146,8 @@ def read_series(
     names : keys of `QUANTITIES_MEASURED`
     flags : accepted quality flags, for files with flags; 8 is never accepted
     seabed : water depth, for nominal heights above the seabed [m]; NaN if unknown
+    usual : depth of each part of the line by label [m], for a file without pressures and nominal
+        depth
 
     Raises
     ------
@@ -146,7 +160,7 @@ def read_series(
     problems: list[Problem] = []
     for label, path in files_given(given):
         try:
-            mine = _of_file(path, names, flags, seabed)
+            mine = _of_file(path, names, flags, seabed, usual.get(label, np.nan))
         except InputError as error:
             problems += error.problems
             continue
@@ -191,18 +205,21 @@ def split_label(text: str) -> tuple[str, Path]:
 
 
 def _of_file(
-    path: Path, names: Sequence[str], flags: frozenset[int], seabed: float
+    path: Path, names: Sequence[str], flags: frozenset[int], seabed: float, nominal: float
 ) -> dict[str, list[InstrumentSeries]]:
     found: dict[str, list[InstrumentSeries]] = {name: [] for name in names}
+    cards = []
     with _opened(path) as dataset:
         for part in instruments_apart(velocity.with_components(dataset)):
-            file = _SeriesFile(part, path.name, flags, seabed)
-            for name in names:
-                found[name] += file.series(name)
+            file = _SeriesFile(part, path.name, flags, seabed, nominal)
+            mine = {name: file.series(name) for name in names}
+            each = [one.card for series in mine.values() for one in series if one.card is not None]
+            cards += [joined_cards(each)] if each else []
+            for name, series in mine.items():
+                found[name] += series
         if not any(found.values()):
             raise UnreadableError(f"holds no {' or '.join(names)}")
-    cards = [one.card for series in found.values() for one in series if one.card is not None]
-    whole = joined_cards(cards)
+    whole = card_of_instruments(cards)
     return {name: [replace(one, card=whole) for one in each] for name, each in found.items()}
 
 
@@ -219,19 +236,35 @@ def _opened(path: Path) -> Iterator[xr.Dataset]:
 def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
     """Split a dataset whose instruments follow each other along one dimension.
 
-    An index with `instance_dimension` assigns each reading to an instrument (CF's indexed ragged
-    arrays, as in the aggregated and hourly products of IMOS). A dataset without such an index is
-    returned alone.
+    These are the indexed and the contiguous ragged arrays of CF: an index with `instance_dimension`
+    assigns each reading to an instrument, as in the aggregated and hourly products of IMOS, or
+    counts with `sample_dimension` give the readings of each. Readings without an instrument are
+    left out. A dataset without such a variable is returned alone.
+
+    UnreadableError: the index or the counts do not fit the dimensions.
     """
     for name, index in dataset.variables.items():
-        instances = str(index.attrs.get("instance_dimension", ""))
-        if instances in dataset.dims and index.ndim == 1:
-            whose = np.asarray(index.values)
-            return [
-                dataset.drop_vars([name]).isel({index.dims[0]: whose == i, instances: i})
-                for i in range(dataset.sizes[instances])
-                if (whose == i).any()
-            ]
+        instances = index.attrs.get("instance_dimension")
+        readings = index.attrs.get("sample_dimension")
+        if index.ndim != 1 or not {instances, readings} & {*dataset.dims}:
+            continue
+        whose = np.nan_to_num(np.asarray(index.values, np.float64), nan=-1.0)
+        if readings in dataset.dims:
+            instances = index.dims[0]
+            whose = np.repeat(np.arange(whose.size), np.maximum(whose, 0.0).astype(np.int64))
+        else:
+            readings = index.dims[0]
+        count = dataset.sizes[instances]
+        if whose.size != dataset.sizes[readings] or whose.max(initial=0.0) >= count:
+            raise UnreadableError(
+                f"`{name}` does not fit its {count} instruments, which are counted from 0, and "
+                f"{dataset.sizes[readings]} readings"
+            )
+        return [
+            dataset.drop_vars([name]).isel({readings: whose == i, instances: i})
+            for i in range(count)
+            if (whose == i).any()
+        ]
     return [dataset]
 
 
@@ -254,6 +287,7 @@ class _SeriesFile:
     name: str
     flags: frozenset[int]
     seabed: float
+    usual: float
 
     def series(self, name: str) -> list[InstrumentSeries]:
         """Return the series of a quantity, one per instrument; empty if the file lacks it."""
@@ -307,9 +341,10 @@ class _SeriesFile:
             parts = (each * factor for each, factor in zip(found.values, factors, strict=True))
             return current.components(*parts)[0 if name == "u" else 1], []
         if "conductivity" in taken:
-            note = "salinity is computed from conductivity, temperature and pressure"
             nominal = np.array([one.nominal for one in who])
-            return practical_salinity(self.dataset, taken, found.values, nominal), [note]
+            nominal = np.where(np.isfinite(nominal), nominal, self.usual)
+            salinity = practical_salinity(self.dataset, taken, found.values, nominal)
+            return salinity, [*_salinity_notes(salinity, taken)]
         if name == "temperature":
             return cf_files.converted(first, found.values[0], "degC"), []
         cf_files.refuse_other_salinity(first)
@@ -396,6 +431,19 @@ def practical_salinity(
     with np.errstate(invalid="ignore"):
         salinity: Floats = gsw.SP_from_C(parts["conductivity"], parts["temperature"], pressure)
     return salinity
+
+
+_FRESH = 5.0
+
+
+def _salinity_notes(salinity: Floats, taken: Mapping[str, str]) -> Iterator[str]:
+    """Yield how a salinity was computed, and doubts about the unit of the conductivity."""
+    if not np.isfinite(salinity).any():
+        yield "salinity is not computed: there is neither a pressure nor a nominal depth"
+        return
+    yield f"salinity is computed from {', '.join(taken)}"
+    if (middle := float(np.nanmedian(salinity))) < _FRESH:
+        yield f"its median is {middle:.2g}: is `{taken['conductivity']}` in another unit?"
 
 
 def _decibars(variable: xr.DataArray, values: Floats) -> Floats:

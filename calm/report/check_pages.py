@@ -2,14 +2,23 @@
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from math import ceil
+from itertools import groupby
 
 import numpy as np
 
+from calm.case.result_tables import item_numbers, run_of
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.criterion import limit_value_text
-from calm.checks.finding import Finding, State, by_rule, governing, grouped_by, told_of_rule
+from calm.checks.finding import (
+    DEFAULT_ENVIRONMENT,
+    Finding,
+    State,
+    by_rule,
+    governing,
+    grouped_by,
+    told_of_rule,
+)
 from calm.checks.inventory import InventoryItem, total_of
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Break, Loss
@@ -31,18 +40,19 @@ from calm.report.blocks import (
     table_of,
     words,
 )
-from calm.report.drawing_page import item_numbers
 from calm.report.load_cases import LOAD, length_text, load_text
 from calm.report.open_items import (
     FIGURE_FIELDS,
     advice,
     figure_text,
     limit_text,
+    open_counts,
     percent_text,
     plain,
     where_text,
 )
 from calm.report.page_one import MOST_REVISIONS, TEXT_HEIGHT, SignedMooring, item_tags
+from calm.report.sheet import accuracy_text
 
 
 def checks_page(signed: SignedMooring) -> Iterator[Block]:
@@ -64,8 +74,15 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         for one in told
     ]
     counts = {state: sum(one.state is state for one in findings) for state in State}
+    items = open_counts(signed.assessment)
+
+    def of_items(state: State) -> str:
+        return f" (open item{'s' * (items[state] != 1)}: {items[state]})" if items[state] else ""
+
     counted = ", ".join(
-        f"{count} {state.value.replace('-', ' ')}" for state, count in counts.items() if count
+        f"{count} {state.value.replace('-', ' ')}{of_items(state)}"
+        for state, count in counts.items()
+        if count
     )
 
     def basis(row: tuple[Finding, int]) -> Cell:
@@ -104,16 +121,7 @@ def _trust(signed: SignedMooring) -> str:
     results = [one for case in signed.standing for one in case.results]
     if not results:
         return "The mooring has no equilibrium, so checks that need one were skipped."
-    depth = max(one.accuracy.depth for one in results)
-    share = max(
-        100.0 * one.accuracy.tension / max(float(one.components.tension.max()), 1.0)
-        for one in results
-    )
-    text = (
-        f"The numerical error of the solution is below {ceil(10.0 * depth) / 10.0:.1f} m in depth "
-        f"and {max(ceil(10.0 * share) / 10.0, 0.1):.1f} % of the tension. Inputs are less certain: "
-        "the current to about 10 %, the drag of a cable to about 20 %."
-    )
+    text = accuracy_text(results)
     given = signed.standing[0]
     strums = next((one for one in signed.standing if one.code == f"{given.code}s"), None)
     if strums is not None and strums.knockdown - given.knockdown >= _A_DIFFERENCE:
@@ -262,10 +270,16 @@ def _breaks(assessment: Assessment) -> Table:
     )  # fmt: skip
 
 
+def _runs(numbers: Iterable[str]) -> list[str]:
+    """Join the numbers of clamps on one piece, such as ``7a–7d``."""
+    groups = groupby(dict.fromkeys(numbers), lambda one: re.sub(r"\D.*", "", one))
+    return [run_of([*own]) for _, own in groups]
+
+
 def _inventory(signed: SignedMooring) -> Table:
     """Tabulate number, length, mass and weight of each component, with item numbers."""
     items = signed.assessment.inventory
-    numbers = item_numbers(signed) if signed.standing else {}
+    numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
     unit = LOAD.display_unit
 
     def length(group: Sequence[InventoryItem]) -> str | None:
@@ -287,12 +301,8 @@ def _inventory(signed: SignedMooring) -> Table:
         if group is items:
             missing = total_of(items).missing_masses
             return Cell(detail=f"{missing} without mass" if missing else "")
-        known = list(dict.fromkeys(
-            numbers[one.label] if one.clamped_on is None else f"on {numbers[one.clamped_on]}"
-            for one in group if one.label in numbers
-        ))  # fmt: skip
-        text = ", ".join(known[:8]) + (f" and {len(known) - 8} more" if len(known) > 8 else "")
-        return Cell(detail=text)
+        known = _runs(numbers[one.label] for one in group if one.label in numbers)
+        return Cell(detail=", ".join(known))
 
     def name(group: Sequence[InventoryItem]) -> str:
         return "Total" if group is items else group[0].name or group[0].use
@@ -300,13 +310,13 @@ def _inventory(signed: SignedMooring) -> Table:
     return table_of(
         "Inventory",
         grouped_by(items, lambda one: one.use).values(),
-        number("Pieces", len),
+        number("Pieces", lambda group: sum(one.items for one in group)),
         words("Component", name, 1.6),
         words(
             "Catalogue", lambda group: None if group is items else Cell(detail=group[0].use), 0.9
         ),
-        number("Cut length\nm", length),
-        number("Mass in\nair kg", mass),
+        number(f"Cut length\n{QUANTITIES['length'].display_unit}", length),
+        number(f"Mass in\nair {QUANTITIES['dry_mass'].display_unit}", mass),
         number(f"Weight in\nwater {unit}", weight),
         words("Items", places, 1.0),
         sums=[items],
@@ -318,7 +328,10 @@ def _inventory(signed: SignedMooring) -> Table:
 def basis_page(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
     """Yield the limits, environment, exclusions, mooring file, and hash of all inputs."""
     assessment = signed.assessment
-    waters = {one.leg.file.environment.name or "own": one.leg.water for one in assessment.stands}
+    waters = {
+        one.leg.file.environment.name or DEFAULT_ENVIRONMENT: one.leg.water
+        for one in assessment.stands
+    }
     waves = all(one.leg.file.environment.waves for one in assessment.stands)
     unjudged = (one for one in provenance.UNJUDGED if not (waves and one in provenance.BY_WAVES))
     unseen = f"{plain('; '.join(unjudged))}.", "No utilisation in this report includes them."

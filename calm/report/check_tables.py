@@ -128,7 +128,7 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
             "component", lambda group: "Total" if group is items else group[0].name or group[0].use
         ),
         words("id", lambda each: None if each is items else each[0].use),
-        number("pieces", len),
+        number("pieces", lambda group: sum(item.items for item in group)),
         *map(summed, ("cut_length", "dry_mass", "wet_weight")),
         blocks.blank("spares"),
         note=note,

@@ -4,12 +4,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import Any
 
+from calm.checks.finding import OWN, environment_text
 from calm.deck import Deck
 from calm.deck.deck_items import DeckInstrument, DeckItem, label_of_run, name_of_run, rows_on_paper
 from calm.deck.hardware import LENGTH_ERROR, Cut, Mark, all_shipped
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
 from calm.report.blocks import Cell, Field, Note, ReportPart, number, quantity, table_of, words
+from calm.report.check_tables import named
 from calm.report.sheet import leg_titles
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
@@ -45,8 +47,8 @@ def cutting_part(deck: Deck) -> ReportPart:
         "Lengths are unloaded unless a load is stated; marks are measured from the upper end "
         f"under the same load. Tolerance: {_SHARE} of the length. Top deeper: change in the top "
         f"depth{' of the leg' if deck.result.several else ''} if only this piece is {_SHARE} "
-        f"longer (environment: {deck.environment}). Over side, onto drum: sequence numbers; the "
-        "last piece deployed is spooled first."
+        f"longer, in the {environment_text(deck.environment)}. Over side, onto drum: "
+        "sequence numbers; the last piece deployed is spooled first."
     )
     table = table_of(
         "Wires and ropes",
@@ -169,8 +171,8 @@ def lifts_part(deck: Deck) -> ReportPart:
             f"{say('wet_weight', heaviest.weight)} in water."
         )
     if unknown:
-        shown = ", ".join(unknown[:6]) + (" …" if len(unknown) > 6 else "")
-        said.append(f"This is a lower bound: the mass in air of {shown} is unknown.")
+        told = named(unknown, len(unknown))
+        said.append(f"This is a lower bound: the mass in air of {told} is unknown.")
     greatest = max(deck.lifts.deployment, key=lambda one: one.hanging or 0.0, default=None)
     if greatest is not None and (greatest.hanging or 0.0) > 0.0:
         said.append(
@@ -194,7 +196,7 @@ def _stages(deck: Deck) -> blocks.Table:
         f"In the order over the side{', leg by leg' * deck.result.several}",
         [one for one in deck.lifts.deployment if one.label not in joints],
         *([words("leg", lambda one: deck.leg(one.index))] if deck.result.several else []),
-        number("no.", "index"),
+        number("no.", lambda one: deck.numbers[one.label]),
         words("at the rail", "label", 2.0),
         quantity("lift_mass", "mass", "lift in\nair"),
         quantity("wet_weight", "weight", "lift in\nwater"),
@@ -225,11 +227,12 @@ def instruments_part(deck: Deck) -> ReportPart:
 
         def cell(one: DeckInstrument) -> Cell:
             found = getattr(one, name)
-            return Cell(depth.format(found.depth), found.environment)
+            own = found.environment == OWN
+            return Cell(depth.format(found.depth), "default" if own else found.environment)
 
         return number(heading, cell, depth.display_unit)
 
-    note = f"Depths are in the environment {deck.environment}."
+    note = f"Depths are in the {environment_text(deck.environment)}."
     if several:
         note += (
             f" Minimum and maximum depth, and tilt, cover {len(deck.environments)} environments; "
@@ -238,6 +241,7 @@ def instruments_part(deck: Deck) -> ReportPart:
     table = table_of(
         "Instruments and releases",
         rows,
+        number("no.", lambda one: deck.numbers[one.item.label]),
         words("instrument", named, 2.0),
         words("serial number", "item.serial", 0.8),
         quantity("depth", "item.depth", "depth"),

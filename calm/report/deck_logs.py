@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from calm.case.result_tables import run_of
 from calm.deck import Deck, RecoveredItem
-from calm.deck.deck_items import DeckItem, DeckRow, Order, rows_on_paper
+from calm.deck.deck_items import DeckItem, DeckRow, Order, hardware_text, rows_on_paper
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
@@ -167,27 +168,27 @@ def _span(values: Sequence[float]) -> str:
     return " to ".join(ends)
 
 
-def _numbers(row: DeckRow, order: dict[int, int]) -> str:
-    """Return the first and the last number that the items of a row have in the list."""
-    numbers = [order[id(one)] for one in (*row.items, *row.floats, *row.joints)]
-    return "–".join(dict.fromkeys((str(min(numbers)), str(max(numbers)))))
+def _numbers(row: DeckRow, deck: Deck) -> str:
+    """Return the numbers of the items of a row, which are the same on all sheets."""
+    return run_of([deck.numbers[one.label] for one in (*row.items, *row.floats, *row.joints)])
 
 
 def _piece(row: DeckRow) -> Cell:
-    detail = f"{row.name}; with {row.joined}" if row.joined else row.name
+    joints = hardware_text(row.joints)
+    detail = f"{row.name}; with {joints}" if joints else row.name
     return Cell(row.label, detail, indented=row.first.on is not None, strong=True, goes_on=True)
 
 
 def _releases(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
     """Tabulate the releases with their codes, and checks with boxes or room to write."""
-    releases = deck.file.releases
-    known = {release.serial for release in releases}
-    rows = [(Cell(one.serial or ""), "\n".join(one.code_lines)) for one in releases]
-    rows += [
-        (Cell(one.serial or "", one.label), "")
-        for one in deck.parts
-        if one.role == "release" and (one.serial is None or one.serial not in known)
-    ]
+    codes = {one.serial: "\n".join(one.code_lines) for one in deck.file.releases}
+    rows = []
+    for part in deck.parts:
+        if part.role == "release":
+            items = max(part.part.component.items or 1, len(part.serials))
+            for serial in (*part.serials, *[""] * items)[:items]:
+                rows.append((Cell(serial, part.label), codes.pop(serial, "")))
+    rows += [(Cell(serial or ""), text) for serial, text in codes.items()]
     table = table_of(
         "Releases",
         rows,
@@ -204,7 +205,6 @@ def _releases(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
 
 
 def _over_the_side(deck: Deck) -> list[Table]:
-    order = {id(one): number for number, one in enumerate(deck.deployment, 1)}
     planned = any(one.planned_depth is not None for one in deck.deployment)
 
     def length(row: DeckRow) -> str:
@@ -219,7 +219,7 @@ def _over_the_side(deck: Deck) -> list[Table]:
 
     unit, deep = QUANTITIES["length"].display_unit, QUANTITIES["depth"].display_unit
     fields = (
-        number("no.", lambda row: _numbers(row, order)),
+        number("no.", lambda row: _numbers(row, deck)),
         words("piece", _piece, 3.8),
         words("length,\nor position", length, 1.3, unit=unit),
         *([quantity("depth", "first.depth"), number("planned", plan, deep)] if planned else []),
@@ -270,7 +270,6 @@ def _positions(deck: Deck) -> Table:
 
 
 def _surfacing(deck: Deck) -> list[Table]:
-    order = {id(one.item): number for number, one in enumerate(deck.recovery, 1)}
     risen = {id(one.item): one for one in deck.recovery}
     listed = [one.item for one in deck.recovery if not one.item.is_joint]
 
@@ -278,7 +277,7 @@ def _surfacing(deck: Deck) -> list[Table]:
         return _expected([risen[id(one)] for one in (*row.items, *row.floats)])
 
     fields = (
-        number("no.", lambda row: _numbers(row, order)),
+        number("no.", lambda row: _numbers(row, deck)),
         words("piece", _piece, 4.6),
         words("serial\nnumber", "first.deployed_serial", 0.95),
         words("surfaces\nor hangs", expected, 0.0),

@@ -2,18 +2,19 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import nan
 
 from calm.case.leg_result import LegResult
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import Finding, State, governing_of_each_rule
-from calm.deck.deck_items import DeckItem, deck_items_of
+from calm.deck.deck_items import SHOWN_USE, DeckItem, deck_items_of, standing_out
 from calm.drawing.check_figures import DrawnCase, Label, elevation
 from calm.drawing.line_picture import alike, together
 from calm.drawing.schematic.deck_parts import Cells, parts_of
 from calm.drawing.schematic.shown_parts import ShownPart
-from calm.drawing.schematic.symbols import BALLS
+from calm.drawing.schematic.symbols import LINES
 from calm.quantities import QUANTITIES, Quantity, bearing_of, bearing_text
 from calm.report import blocks, provenance
 from calm.report.blocks import (
@@ -52,7 +53,6 @@ MARKS = {
     State.NOT_JUDGED: "–", State.PASS: "✓",
 }  # fmt: skip
 """Signs of the states in print."""
-_HALF = 0.4999  # of the capacity: what is used more is shown on page one
 
 MOST_REVISIONS = 3
 
@@ -60,6 +60,7 @@ TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
 """Height of a page between its head and its foot [pt]."""
 _FIXED, _ROW = 250.0, 12.6
 _LINE = 100  # letters of the verdict
+_TITLE_LINE, _TITLE_LETTERS = 12.0, 52  # height of a line of the description, and its letters
 _FIGURE_WIDTH, _WIDTH = 281.0, 510.0
 
 
@@ -83,6 +84,11 @@ class SignedMooring:
     def standing(self) -> list[LoadCase]:
         """The cases in which it has an equilibrium."""
         return [one for one in self.cases if one.results]
+
+    @cached_property
+    def apart(self) -> frozenset[str]:
+        """Labels of connecting hardware with a row of its own."""
+        return standing_out(self.assessment.every_finding())
 
     @property
     def document(self) -> str:
@@ -125,7 +131,7 @@ def title_block(signed: SignedMooring) -> TitleBlock:
     return TitleBlock(
         "Design check of a mooring",
         signed.assessment.name,
-        " · ".join(filter(None, below)),
+        tuple(filter(None, (file.description, " · ".join(filter(None, below))))),
         (
             ("Document", field("id")), ("Rev.", field("revision")),
             ("Date", field("date") or provenance.date() or ""), ("Page", ""),
@@ -177,10 +183,13 @@ def _whole(name: str) -> Quantity:
 
 def _figures() -> tuple[_Figure, ...]:
     depth, metres = QUANTITIES["depth"].format, _whole("depth_rating").format
+    unit = QUANTITIES["depth"].display_unit
     return (
-        _Figure("Top depth\nm", lambda one: one.depth, metres, short="top\nm"),
-        _Figure("Knock-\ndown m", lambda one: one.knockdown, depth, short="knock-\ndown m"),
-        _Figure("Offset\nm", lambda one: one.offset, metres, short="offset\nm"),
+        _Figure(f"Top depth\n{unit}", lambda one: one.depth, metres, short=f"top\n{unit}"),
+        _Figure(
+            f"Knock-\ndown {unit}", lambda one: one.knockdown, depth, short=f"knock-\ndown {unit}"
+        ),
+        _Figure(f"Offset\n{unit}", lambda one: one.offset, metres, short=f"offset\n{unit}"),
         _Figure(
             f"Largest\ntension {LOAD.display_unit}",
             lambda one: one.tension,
@@ -263,13 +272,16 @@ def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
 def governing_table(signed: SignedMooring) -> Table:
     """Tabulate the checks with the largest utilisation, with bars."""
     rows = governing_rows(signed.assessment.every_finding())
-    over, half = (sum((one.utilisation or 0.0) > share for one in rows) for share in (1.0, _HALF))
+    over, half = (
+        sum((one.utilisation or 0.0) > share for one in rows) for share in (1.0, SHOWN_USE)
+    )
     kept = rows[: max(over, min(MOST_CHECKS, half))] or rows[:3]
     rest = rows[len(kept) :]
     note = "✓ passes  ≈ by an estimate  ▲ warning  ○ accepted  ? unknown  ✗ fails.  "
     note += "Cases: L launch, R rise, B break."
     if rest:
-        note = f"All other checks: {percent_text(rest[0].utilisation)} % or less (page 4). {note}"
+        most = percent_text(rest[0].utilisation)
+        note = f"All other checks: {most} % or less (checks in full). {note}"
     return table_of(
         "Governing checks",
         kept,
@@ -318,7 +330,10 @@ def page_one(signed: SignedMooring, paper: str = "a4") -> Iterator[Block]:
     rows = len(cases.rows) + len(checks.rows) + len(signs.revisions) + bool(cases.note)
     rows += len(verdict_sentence(signed.assessment)) // _LINE
     height = TEXT_HEIGHT[paper] - _FIXED - _ROW * rows
-    items = OpenItems("Open items", tuple(signed.items) or (), _no_items(signed), "more, page 4")
+    height -= _TITLE_LINE * len(signed.assessment.file.description or "") // _TITLE_LETTERS
+    items = OpenItems(
+        "Open items", tuple(signed.items) or (), _no_items(signed), "more: checks in full"
+    )
     yield title_block(signed)
     yield verdict_box(signed)
     yield cases
@@ -366,13 +381,13 @@ def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
             tags.setdefault(label, tag)
     found: list[tuple[bool, Label]] = []
     for result in case.results:
-        items = deck_items_of(result)
+        items = deck_items_of(result, signed.apart)
         own = {one.label: one for one in items}
         for part in drawn_parts(result, items, lambda *_: ()):
             if part.junction:
                 continue
             first = own[part.labels[0]]
-            cable = part.cable is not None and not part.clamped
+            cable = part.sign.symbol in LINES
             tag = next((tags[label] for label in part.labels if label in tags), "")
             label = part.rows[0].label
             if cable:
@@ -384,9 +399,12 @@ def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
     if len(found) > MOST_LABELS:
         found = [one for one in found if not one[0]]
     kept = [label for _, label in found]
-    if len(kept) > MOST_LABELS:  # ends, and every so many of a string
-        step = (len(kept) - 1) / (MOST_LABELS - 1)
-        kept = [kept[round(number * step)] for number in range(MOST_LABELS)]
+    if len(kept) > MOST_LABELS:  # ends and open items, and every so many of a string
+        others = [one for one in kept[1:-1] if not one.tag]
+        step = max(MOST_LABELS - len(kept) + len(others), 0) / max(len(others), 1)
+        chosen = {id(one) for at, one in enumerate(others) if int((at + 1) * step) > int(at * step)}
+        ends = (kept[0], kept[-1])
+        kept = [one for one in kept if one.tag or one in ends or id(one) in chosen]
     return kept
 
 
@@ -398,19 +416,13 @@ def afloat(result: LegResult) -> bool:
 def drawn_parts(
     result: LegResult, items: Sequence[DeckItem], cells: Cells
 ) -> tuple[ShownPart, ...]:
-    """Parts of a leg as drawn: glass floats by the number of balls, runs of names shortened."""
-    roles = {one.label: one.role for one in items}
+    """Parts of a leg as drawn, with runs of names shortened."""
     found = []
     for part in parts_of(result.file, items, items, cells, surface=afloat(result)):
         (row,) = part.rows
         first, _, last = row.label.partition(" – ")
         if last and not part.junction and alike(first, last):
             part = replace(part, rows=(replace(row, label=together([first, last])),))
-        sign = part.floats or part.sign
-        if sign.symbol in BALLS:
-            count = sum(roles[label] == "float" for label in part.labels)
-            sign = replace(sign, count=sign.count * max(count, 1))
-            part = replace(part, sign=sign, floats=None, cable=None)
         found.append(part)
     return tuple(found)
 

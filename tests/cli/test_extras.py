@@ -54,7 +54,7 @@ size m.yaml --target knockdown(top)<=5m --change rope.length | diff m.yaml new.y
 waves w.yaml --hs 2m --tp 8s | export m.yaml --to mdd -o m.mat | export m.yaml --to csv -o m.csv
 import m.mat -o from-mat.yaml | import list.xlsx -o list.yaml --environment e.yaml
 import m.csv -o from-csv.yaml --environment e.yaml
-catalog list | catalog search sphere | catalog show glass-17in | schema
+catalog list sphere | catalog show glass-17in | schema
 locate ranges.csv --depth 2000m --plot ranges.pdf | verify cdms | docs | completion bash
 chart solve --k 2.4 --weight 5N/m --phi-b 75deg --tension-b 350N --height 20m
 """

@@ -206,7 +206,7 @@ def test_salinity_is_computed_where_a_file_holds_none(calm, depths):
 
     run = both(calm, depths, cell, "--json", "grid.json")
     assert run.code == 0, run.err
-    assert "salinity is computed from conductivity, temperature and pressure" in run.err
+    assert "salinity is computed from conductivity, temperature, pressure" in run.err
     with xarray.open_dataset("out.nc", engine="h5netcdf") as result:
         assert float(abs(result["salinity"] - 35.2).max()) < 1e-6
     said = json.loads(Path("grid.json").read_text())
@@ -214,6 +214,51 @@ def test_salinity_is_computed_where_a_file_holds_none(calm, depths):
     assert set(said["read"][0]["variables"]) == {
         "temperature", "conductivity", "pressure", "time"
     }  # fmt: skip
+
+
+def test_salinity_without_a_pressure_is_that_of_the_depth_on_the_line(calm, depths):
+    def cell(label, t):
+        pressure = gsw.p_from_z(-STILL[LABELS.index(label)], 48.0)
+        one_file("TEMP", t, *WATER, label, CNDC=(gsw.C_from_SP(35.2, t, pressure) / unit[0],
+                 {"units": unit[1]}))  # fmt: skip
+
+    unit = (10.0, "S m-1")
+    run = both(calm, depths, cell, "--variables", "salinity")
+    assert run.code == 0, run.err
+    with xarray.open_dataset("out.nc", engine="h5netcdf") as result:
+        assert float(abs(result["salinity"] - 35.2).max()) < 0.01
+    run = calm("grid", "depths.nc", *(f"{one}.nc" for one in LABELS[:2]), "-o", "out.nc",
+               "--levels", "100:25:300")  # fmt: skip
+    assert "salinity is not computed: there is neither a pressure nor a nominal depth" in run.err
+    unit = (10.0, "mS/cm")
+    run = both(calm, depths, cell)
+    assert "its median is 2.9: is `CNDC` in another unit?" in run.err
+
+
+@pytest.mark.parametrize("make", [
+    lambda count: ("INDEX", ("READING", np.repeat([0, 1], count), {"instance_dimension": "PLACE"})),
+    lambda count: ("COUNT", ("PLACE", [count, count], {"sample_dimension": "READING"})),
+    lambda count: ("INDEX", ("READING", np.repeat([1, 2], count), {"instance_dimension": "PLACE"})),
+])  # fmt: skip
+def test_ragged_arrays_of_instruments_are_split(calm, depths, make):
+    time = START + np.arange(HOURS) * np.timedelta64(3600, "s")
+    name, index = make(HOURS)
+    values = np.concatenate([profile(depths[:, j]) for j in range(2)])
+    about = {"standard_name": WATER[0], "units": WATER[1]}
+    nominal = {"units": "m", "standard_name": "depth", "positive": "down"}
+    xarray.Dataset(
+        {"TEMP": ("READING", values, about), name: index,
+         "NOMINAL_DEPTH": ("PLACE", STILL[:2], nominal), "serial": ("PLACE", ["11", "12"])},
+        {"TIME": ("READING", np.tile(time, 2))},
+    ).to_netcdf("all.nc", engine="h5netcdf")  # fmt: skip
+    run = calm("grid", "depths.nc", "all.nc", "-o", "out.nc", "--levels", "100:25:150")
+    if index[1][0] == 1:  # counted from 1
+        assert run.code == 2
+        assert "`INDEX` does not fit its 2 instruments, which are counted from 0" in run.err
+        return
+    assert run.code == 0, run.err
+    assert f"TEMP [degree_Celsius]: {values.min():.4g} to {values.max():.4g}, median" in run.err
+    assert "  levels       2" in run.err and "step 1 h, no gaps" in run.err
 
 
 def test_capitals_as_oceansites_has_them(calm, depths):

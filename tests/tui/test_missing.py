@@ -117,7 +117,7 @@ def test_the_form_shows_the_class_estimate_of_a_figure():
     text = UNKNOWN.replace("role: release,", f"role: release, {estimate},")
     (found,) = (one for one in missing_figures(judge(text), Draft(text)) if one.use == "releaser")
     assert found.estimates == {"working_load": "estimated: 1 N at least, 20000 N likely"}
-    takes = {each.key: each.takes for each in figures_sheet([found])._asked}
+    takes = {each.key: each.takes for each in figures_sheet([found])._form_fields}
     assert takes["releaser.working_load"] == "estimated: 1 N at least, 20000 N likely"
 
 

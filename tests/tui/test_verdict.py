@@ -11,7 +11,7 @@ from calm.files.editing import Draft
 from calm.tui.line_rows import table_rows
 from calm.tui.live import judge, judge_fully
 from calm.tui.theme import ELLIPSIS
-from calm.tui.verdict_text import headline, sayings
+from calm.tui.verdict_text import headline, verdict_lines
 from tests.judged import without_checks
 from tests.tui.conftest import MOORING
 
@@ -22,7 +22,7 @@ BUOY = without_checks("braconnot-buoy")
 
 
 def said(text):
-    return list(sayings(judge_fully(judge(text))))
+    return list(verdict_lines(judge_fully(judge(text))))
 
 
 def the(told, begin):
@@ -76,7 +76,7 @@ def test_the_use_of_a_row_is_the_greatest_of_any_situation():
 
 
 def test_a_line_without_an_anchor_is_told_what_one_is_to_weigh():
-    told = list(sayings(judge(BUOY.replace("  - {use: block}\n", ""))))
+    told = list(verdict_lines(judge(BUOY.replace("  - {use: block}\n", ""))))
     assert the(told, "needs").text == "needs 720 N in water"
 
 
@@ -114,8 +114,8 @@ environments:
 def test_all_environments_are_judged_and_the_worst_is_named():
     text = MOORING.replace("breaking_load: 20 kN", "breaking_load: 12 kN") + STORM
     view = judge_fully(judge(text))
-    assert [each.environment for each in view.stands] == ["own", "storm"]
-    told = list(sayings(view))
+    assert [each.environment for each in view.cases] == ["own", "storm"]
+    told = list(verdict_lines(view))
     lines = {each.heading: each for each in told}
     assert lines["In storm"].state is State.FAIL
     assert lines["In default environment"].state is not State.FAIL
@@ -127,7 +127,7 @@ def test_all_environments_are_judged_and_the_worst_is_named():
 def test_seen_from_the_storm_the_own_environment_is_named():
     text = MOORING + STORM
     here, there = (judge_fully(judge(text, environment=name)) for name in (None, "storm"))
-    assert {each.environment for each in there.stands} == {"own", "storm"}
+    assert {each.environment for each in there.cases} == {"own", "storm"}
     count = [sum(f.state is State.FAIL for f in each.findings) for each in (here, there)]
     assert count[0] == count[1] > 0
 
@@ -138,14 +138,14 @@ def test_an_environment_that_cannot_be_read_is_named(tmp_path):
     if not view.problems:  # the file of another environment is looked for when that is judged
         view = judge_fully(view)
         assert view.elsewhere and headline(view).state is State.FAIL
-        assert any("none.csv" in each.text for each in sayings(view))
+        assert any("none.csv" in each.text for each in verdict_lines(view))
 
 
 def test_nothing_passes_before_all_is_judged_nor_where_a_figure_is_missing():
     early = judge(MOORING)
-    signs = [headline(early).sign, *(each.sign for each in sayings(early))]
+    signs = [headline(early).sign, *(each.sign for each in verdict_lines(early))]
     assert State.PASS.sign not in signs and signs[0] == ELLIPSIS
-    told = [*sayings(judge_fully(early))]
+    told = [*verdict_lines(judge_fully(early))]
     unknown = {each.heading for each in told if each.state is State.UNKNOWN}
     passed = next(each.text for each in told if each.heading == "Pass").split(", ")
     assert unknown and not unknown & set(passed)
@@ -155,8 +155,8 @@ def test_an_environment_that_fails_is_named_and_each_has_its_line():
     """The own one is sound; what fails elsewhere makes the whole verdict fail."""
     gale = "environments:\n  gale: {current: {speed: 4 m/s, toward: 0 deg}}\n"
     view = judge_fully(judge(MOORING.replace("line:\n", f"{gale}line:\n")))
-    lines = [each for each in sayings(view) if each.heading.startswith("In ")]
+    lines = [each for each in verdict_lines(view) if each.heading.startswith("In ")]
     assert [each.heading for each in lines] == ["In default environment", "In gale"]
     assert lines[1].state is State.FAIL and lines[0].state is not State.FAIL
     assert headline(view).state is State.FAIL
-    assert any("gale" in each.heading for each in sayings(view) if each.state is State.FAIL)
+    assert any("gale" in each.heading for each in verdict_lines(view) if each.state is State.FAIL)

@@ -4,7 +4,7 @@ from calm.checks.finding import State
 from calm.files import Place
 from calm.tui.live import judge, judge_fully
 from calm.tui.verdict_pane import VerdictPane
-from calm.tui.verdict_text import sayings, why
+from calm.tui.verdict_text import verdict_lines, why
 from tests.tui.conftest import MOORING
 
 WEAK = MOORING.replace("breaking_load: 20 kN", "breaking_load: 4 kN")
@@ -12,7 +12,7 @@ WEAK = MOORING.replace("breaking_load: 20 kN", "breaking_load: 4 kN")
 
 def said_here(pane):
     """What the line of the verdict that is chosen says."""
-    return pane._said[pane._chosen].text
+    return pane._lines[pane._chosen].text
 
 
 def test_a_row_has_all_that_was_found_of_it_the_gravest_first():
@@ -93,7 +93,7 @@ def test_unknown_figures_lead_to_one_row_after_the_other(drive, small):
         ]
         assert len(places) > 1
         await driver.press("f6")
-        lines = len(list(sayings(driver.view)))
+        lines = len(list(verdict_lines(driver.view)))
         for _ in range(lines):  # the first such line is of one row alone
             if "depth_rating of logger, deep logger" in said_here(driver.app.focused):
                 break

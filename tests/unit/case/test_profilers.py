@@ -109,7 +109,7 @@ def test_stops_that_cannot_be_are_refused(tmp_path, where, told):
 
 def test_a_profiler_in_the_line_is_refused(tmp_path):
     change = ("  - {use: rel, label: release}", "  - {use: mmp}\n  - {use: rel, label: release}")
-    with pytest.raises(InputError, match="a profiler rides on a wire"):
+    with pytest.raises(InputError, match="a profiler must be among the `clamps`"):
         mooring(tmp_path, change=change)
 
 
