@@ -143,7 +143,7 @@ def test_time_and_number_of_profiles(tmp_path):
     assert (travel.distance, travel.time, travel.profiles) == (1375.0, 5500.0, 72)
     slow = mooring(tmp_path, change=("speed: 0.25 m/s", "speed: 0.05 m/s")).solve()
     told = [each.message for each in profiler.judge(slow) if each.state == "warn"]
-    assert told == ["A profile of MMP takes 7 h 38 min; its time limit allows 6 h 24 min."]
+    assert told == ["A profile of MMP takes 7 h 38 min; the limit is 6 h 24 min."]
 
 
 def test_drag_along_a_leaning_wire(tmp_path):
