@@ -186,7 +186,9 @@ def of_a_line(water: Water, point: SolverPart) -> Callable[[Sequence[Line]], Var
 
 
 def of_a_net(net: Design, point: SolverPart) -> Callable[[Sequence[Line]], Varied]:
-    """Return a function that solves variants of a net, and observes the top of a piece or a clamp."""
+    """Return a function that solves variants of a net, and observes the top of a piece or a
+    clamp.
+    """
 
     def near(lines: Sequence[Line]) -> Varied:
         legs, nodes = net_legs(net.with_lines(lines).legs), len(nodes_of(net.file.legs))

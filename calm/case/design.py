@@ -92,7 +92,9 @@ class Design:
     origin: Origin | None = field(default=None, repr=False, compare=False)
 
     def __reduce__(self) -> tuple[type[Design], tuple[object, ...]]:
-        """Pickle the fields and the line at its cut lengths; all other attributes are recomputed."""
+        """Pickle the fields and the line at its cut lengths; all other attributes are
+        recomputed.
+        """
         legs = vars(self).get("legs", ())
         known = tuple(leg.line for leg in legs if "line" in vars(leg))
         lines = known if known and len(known) == len(legs) else self.lines
@@ -215,7 +217,9 @@ class Design:
         return Design(self.file, lines=tuple(lines), given_water=water or self.water, near=near)
 
     def with_length(self, index: int, length: float) -> Design:
-        """Return a copy of the design with another unstretched length [m] of one piece of the file."""
+        """Return a copy of the design with another unstretched length [m] of one piece of
+        the file.
+        """
         number, lines = leg_numbers(self.file)[index], [leg.line for leg in self.legs]
         own = index - self.legs[number].keys.first
         lines[number] = lines[number].with_length(own, length)

@@ -1,4 +1,6 @@
-"""Explanation of a mooring's equilibrium: contribution of each drag, and effect of changed inputs."""
+"""Explanation of a mooring's equilibrium: contribution of each drag, and effect of changed
+inputs.
+"""
 
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field, replace

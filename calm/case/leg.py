@@ -1,4 +1,6 @@
-"""A leg of a design: its pieces from the upper to the lower end, and the supports of the two ends."""
+"""A leg of a design: its pieces from the upper to the lower end, and the supports of the
+two ends.
+"""
 
 from __future__ import annotations
 
@@ -55,7 +57,9 @@ class Leg:
     given_water: Water | None = field(default=None, repr=False, compare=False)
 
     def __reduce__(self) -> tuple[type[Leg], tuple[object, ...]]:
-        """Pickle the fields and the line at its cut lengths; all other attributes are recomputed."""
+        """Pickle the fields and the line at its cut lengths; all other attributes are
+        recomputed.
+        """
         known = vars(self)
         line, water = (known.get(name, known[f"given_{name}"]) for name in ("line", "water"))
         return Leg, (self.file, self.for_surface, self.memory, line, water)
@@ -227,7 +231,9 @@ class Leg:
             )
 
     def _refuse_a_heap(self, solution: Solution) -> None:
-        """Raise NoEquilibrium if a piece other than chain of a sub-surface line lies on the seabed."""
+        """Raise NoEquilibrium if a piece other than chain of a sub-surface line lies on the
+        seabed.
+        """
         if solution.surface:
             return
         pieces = self.file.pieces
@@ -236,7 +242,9 @@ class Leg:
                 raise self.heaped(pieces[lying].label)
 
     def heaped(self, label: str) -> NoEquilibrium:
-        """Return the exception for a sub-surface line with a piece other than chain on the seabed."""
+        """Return the exception for a sub-surface line with a piece other than chain on the
+        seabed.
+        """
         lift, length = standing_lift(self.line, self.water), np.cumsum(self.line.length)
         height = self.water.depth - self.line.anchor_height
         net_lift = float(np.interp(height, length, np.cumsum(lift)))

@@ -198,7 +198,9 @@ class LegResult:
 
     @property
     def other_used_buoyancy(self) -> float:
-        """Used fraction of buoyancy in another equilibrium at the surface; NaN if none was found."""
+        """Used fraction of buoyancy in another equilibrium at the surface; NaN if none was
+        found.
+        """
         afloat = self.other is not None and self.other.used_buoyancy < 1.0
         return self.other.used_buoyancy if self.other is not None and afloat else nan
 

@@ -216,7 +216,9 @@ class NodeFigures:
 
 
 def leaning_of(vector: Floats) -> Floats:
-    """Return the angle of vectors (..., 3) from the upward vertical [degrees]; 0 for a zero vector."""
+    """Return the angle of vectors (..., 3) from the upward vertical [degrees]; 0 for a zero
+    vector.
+    """
     horizontal = np.hypot(vector[..., 0], vector[..., 1])
     tilt: Floats = np.degrees(np.arctan2(horizontal, vector[..., 2]))
     return np.where((horizontal > 0) | (vector[..., 2] != 0), tilt, 0.0)

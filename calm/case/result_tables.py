@@ -399,7 +399,9 @@ class ComponentRow:
 
 @dataclass(frozen=True, slots=True)
 class ClampRow:
-    """One clamped instrument of a solved line: a row of `Clamps`, where the values are described."""
+    """One clamped instrument of a solved line: a row of `Clamps`, where the values are
+    described.
+    """
 
     prefix: ClassVar[str] = "clamp_"
 
@@ -754,7 +756,9 @@ NET_ENDS: Mapping[str, type[Any]] = {"anchors": EndLoad, "held": EndLoad, "nodes
 
 
 def _free(line: Any) -> float:
-    """Return 1 for a line with a free upper end, NaN for a leg whose upper end is held or joined."""
+    """Return 1 for a line with a free upper end, NaN for a leg whose upper end is held or
+    joined.
+    """
     legs = line.file.legs
     return 1.0 if not legs or legs[0].top.free else nan
 

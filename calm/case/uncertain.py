@@ -196,7 +196,9 @@ def uncertain(
 def _figures(
     leg: Leg, draws: Sequence[Draw]
 ) -> list[tuple[Floats, tuple[float, float]] | NoEquilibrium]:
-    """Compute values (5, p + m) of the pieces and clamps and values of the anchor, for each draw."""
+    """Compute values (5, p + m) of the pieces and clamps and values of the anchor, for each
+    draw.
+    """
     figures: list[tuple[Floats, tuple[float, float]] | NoEquilibrium] = []
     for one in drawn(leg, draws):
         try:

@@ -260,7 +260,9 @@ def watch_circle_radius(length: float, height: float) -> float:
 
 
 def doubted_depth(depth: float) -> str:
-    """Return the advice to check the water depth, for a line that is far too long for this depth."""
+    """Return the advice to check the water depth, for a line that is far too long for this
+    depth.
+    """
     return f" The water is {depth:.1f} m deep: check `depth` and its unit (m, ft)."
 
 

@@ -119,7 +119,9 @@ def _recorded(rising: Rising, place: FreePlace, cuts: Cuts, settings: Settings) 
 
 
 def _tangles(solution: Solution) -> tuple[int, ...]:
-    """Find the pieces that are partly upside down, and the pieces without length under compression."""
+    """Find the pieces that are partly upside down, and the pieces without length under
+    compression.
+    """
     line, piece = solution.line, solution.element_piece
     first, last = solution.piece_nodes.T
     pushed = (solution.force[first] + solution.force[last])[:, 2] < 0.0

@@ -71,7 +71,9 @@ class Rising:
         return not (np.ptp(self.water.u) or np.ptp(self.water.v))
 
     def flow(self, velocity: Floats) -> Water:
-        """Return the flow relative to a line that moves at a velocity (3,) over the ground [m/s]."""
+        """Return the flow relative to a line that moves at a velocity (3,) over the ground
+        [m/s].
+        """
         east, north, up = velocity
         water = self.water
         return replace(water, u=water.u - east, v=water.v - north, w=water.w - up)

@@ -169,7 +169,9 @@ def row_of(net: NetProblem, i: int, k: int) -> int:
 
 
 def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, column: int) -> None:
-    """Add a multiple of the results of a leg's march to the residual, or to a column of its slopes."""
+    """Add a multiple of the results of a leg's march to the residual, or to a column of its
+    slopes.
+    """
     for k in range(OUT):
         row = row_of(net, i, k)
         if row < 0:

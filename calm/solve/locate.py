@@ -473,7 +473,9 @@ def surfaced_root(search: Search, unknown: Unknown, lower: int) -> Root:
 
 
 def slack_at_rest(search: Search, unknown: Unknown) -> bool:
-    """Return whether the line in still water stays too deep even with the smallest used buoyancy."""
+    """Return whether the line in still water stays too deep even with the smallest used
+    buoyancy.
+    """
     assert unknown.sought != BELOW
     least = search.problem.surfacing[unknown.sought].least
     share = min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)

@@ -122,7 +122,9 @@ class _Lumps:
         return place
 
     def settle(self) -> None:
-        """Release all lumps and stop them at every peak of their kinetic energy, until they rest."""
+        """Release all lumps and stop them at every peak of their kinetic energy, until they
+        rest.
+        """
         a, b = self.springs.T
         mass = np.zeros(len(self.place))
         for ends in (a, b):

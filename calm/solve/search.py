@@ -89,7 +89,9 @@ class Referee(NamedTuple):
 
 
 def find_shape(search: Search, referee: Referee) -> FoundShape:
-    """Search for a shape clear of the seabed and for a shape with a touchdown, the likelier first."""
+    """Search for a shape clear of the seabed and for a shape with a touchdown, the likelier
+    first.
+    """
     problem = search.problem
     limits = problem.limits
     may_land = problem.course.landing < len(problem.course.stages)

@@ -258,7 +258,9 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
 
 
 def _upwards(water: Water, depth: float, low: float, span: float, shallowest: float) -> list[float]:
-    """Return the depths to try, from below. In uniform water the miss is the distance to the root."""
+    """Return the depths to try, from below. In uniform water the miss is the distance to
+    the root.
+    """
     if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
         steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()
         return steps
