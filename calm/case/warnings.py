@@ -169,7 +169,6 @@ def _published(strains: list[float]) -> str:
 
 
 def _percent(share: float) -> str:
-    """Format a share with two digits."""
     return f"{100 * share:.2g}" if share < 0.995 else f"{100 * share:.0f}"
 
 

@@ -66,13 +66,13 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
                 None,
                 "No piece has `role: release`, so it is unknown what frees the line from the "
                 "anchor.",
-                "Set `role: release` on the release.",
+                "Mark the release with `role: release`.",
             )
         return
     piece = pieces[release]
     if _NO_RELEASE.search(_words(piece.use, piece.component.name)):
         message = f"{piece.label} has `role: release`, but its name suggests another component."
-        yield unknown(piece, message, "Set `role: release` on the release only.")
+        yield unknown(piece, message, "Mark only the release with `role: release`.")
         return
     above = [part.component for part in every_part(pieces[: release + 1])]
     if not _floats(pieces[: release + 1]):
@@ -227,7 +227,7 @@ def metals(handling: Handling) -> Iterator[Verdict]:
                 f"{base.label} ({base.component.material}) corrodes in contact with {noble.label} "
                 f"({noble.component.material}), which is {volts:.2f} V nobler in sea water."
             )
-            remedy = "Insulate one from the other and set `insulated: true`, or fit an anode."
+            remedy = "Insulate one from the other (`insulated: true`), or fit an anode."
             yield at_most(base, volts, GREATEST_DIFFERENCE, message, remedy, State.WARN)
 
 

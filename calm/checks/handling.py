@@ -54,7 +54,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         yield unknown(
             None,
             "The line has no release, so nothing surfaces after a break.",
-            "Set `role: release` on the release.",
+            "Mark the release with `role: release`.",
         )
         return
     if not handling.backup:

@@ -166,7 +166,7 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
                 f"{piece.label} is cut to length under {say('load', piece.measured_load)}, "
                 f"more than {what} ({say('load', bears)})."
             )
-            remedy = "Check the `load` of its `length_at`: ropes are measured under a small load."
+            remedy = "Check the load of its `length_at`: ropes are measured under a small load."
             yield verdict_on(piece, State.WARN, message, remedy)
 
 
@@ -219,7 +219,7 @@ def fish_bite(result: LegResult) -> Iterator[Verdict]:
                 f"{piece.label} begins at {say('depth', highest)}; rope above "
                 f"{say('depth', limit)} is exposed to fish bite."
             )
-            remedy = "Use jacketed wire above that depth, or set `fishbite_depth` for the site."
+            remedy = "Use jacketed wire above that depth, or set the `fishbite_depth` of the site."
             source = cited(result.file, "fishbite_depth")
             yield at_least(piece, highest, limit, message, remedy, State.WARN, source)
 

@@ -8,6 +8,7 @@ from math import ceil, pi
 
 from calm.case import Result
 from calm.checks.arrangement import unlike_metals
+from calm.checks.finding import grouped_by
 from calm.checks.inventory import InventoryItem
 from calm.deck.deck_items import DeckItem, Order
 from calm.errors import NoEquilibrium
@@ -307,9 +308,7 @@ def shipped_of(
         for piece in file.pieces
         for part in parts_of([piece])
     }
-    groups: dict[str, list[InventoryItem]] = {}
-    for item in inventory:
-        groups.setdefault(item.use, []).append(item)
+    groups = grouped_by(inventory, lambda item: item.use)
     return tuple(_shipped_component(use, group, components) for use, group in groups.items())
 
 

@@ -50,7 +50,7 @@ class DrawnCase:
 
 @dataclass(frozen=True)
 class Label:
-    """A label beside the line: a part, its text, and its depth as text.
+    """A label next to the line: a part, its text, and its depth as text.
 
     `at` is its depth and its positions east and north [m]; None for a cable. `tag` is the mark and
     the number of its open finding.
@@ -110,7 +110,7 @@ def elevation(
     beside = width - flow - _SYMBOLS
     room = beside - min(_longest(listed), max(beside - span / upright, _LEAST_LABELS))
     scale = max(upright, span / max(room, 1.0))
-    if depth / scale < _LEAST * tall:  # too wide to have the labels beside it
+    if depth / scale < _LEAST * tall:  # too wide for labels next to it
         listed, flow, room = [], _LEFT, width - _LEFT - 8.0
         scale = max((depth + rise) / tall, span / room)
     sea = _ABOVE + rise / scale

@@ -31,7 +31,7 @@ class Equipment(definition.Model):
         "day on which its battery is empty, e.g. 2027-06-30", "2028-01-31"
     )
     termination: Text | None = optional(
-        "how the ends of a cable are made, e.g. swaged sockets", "swaged sockets"
+        "end fittings of a cable, e.g. swaged sockets", "swaged sockets"
     )
     planned_depth: Annotated[float | None, definition.LENGTH] = optional(
         "planned depth in still water; by default the depth in its label",
@@ -76,9 +76,7 @@ MOST_PIECES = 10_000
 """Most pieces of a line, after assemblies and counts are expanded."""
 
 
-Label = Annotated[
-    Text, described("name of the piece in results; the id when there is none", "top float")
-]
+Label = Annotated[Text, described("name of the piece in results; by default its id", "top float")]
 
 
 class ClampKeys(Equipment):
@@ -147,7 +145,7 @@ def check_counted(item: SourceMapping, count: int, items: int | None) -> None:
         elif _is_list(serials) and (twice := _numbers_twice(serials)):
             item.refuse((*place, "serial"), f"`serial` lists {shown(twice)} twice")
         if isinstance(data, dict) and "planned_depth" in data and count > 1:
-            message = f"`planned_depth` is of one piece; this item counts {count}: list them"
+            message = f"`planned_depth` is for single pieces; this item has a `count` of {count}"
             item.refuse((*place, "planned_depth"), message, key=True)
 
 

@@ -144,7 +144,7 @@ class LineReader:
         length: float | None
         load = 0.0
         if isinstance(component, Profiler):
-            message = "a profiler rides on a wire: give it among the `clamps` of that"
+            message = "a profiler must be among the `clamps` of its wire"
             item.refuse(("use",), message)
         if not isinstance(component, Flexible):
             length = component.length
@@ -156,7 +156,10 @@ class LineReader:
             need = "a cable or chain needs it"
             length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
         if "length_at" in item.data and not isinstance(component, Flexible):
-            message = "`length_at` is for cables and chains; this is as long as its definition says"
+            message = (
+                "`length_at` is for cables and chains; the length of this piece is that of "
+                "its definition"
+            )
             item.refuse(("length_at",), message, key=True)
         elif "length" in item.data and "length_at" in item.data:
             message = "gives both `length` and `length_at`, which exclude each other"
@@ -234,7 +237,7 @@ class LineReader:
             if entry is None or entry.section.data.get("kind") != "profiler":
                 at = self._quantity(clamp, "at", LENGTH, "the distance from the top of the piece")
             elif "at" in clamp.data:
-                message = "a profiler has no place of its own: it travels `between` two stops"
+                message = "a profiler has no `at`: it travels `between` two stops"
                 clamp.refuse(("at",), message, key=True)
             if at is not None and length is not None and at > length:
                 message = f"`at: {shown(clamp.data['at'])}` is beyond the piece, {length:g} m long"

@@ -22,6 +22,7 @@ from calm.report.open_items import (
     percent_text,
     short,
     where_text,
+    without_asides,
 )
 from calm.report.page_one import (
     SignedMooring,
@@ -122,7 +123,7 @@ def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
         failed = [one for one in used if one.state is State.FAIL]
         lead = governing(failed) if failed else worst
     title, use = RULES[lead.rule].title.lower(), percent_text(lead.utilisation)
-    told = f"{title}, {lead.component or 'whole line'}, {use} %"
+    told = f"{title}, {lead.component or 'whole line'}, {use}\u00a0%"
     return MatrixCell(governing(used).utilisation, state, told)
 
 
@@ -221,7 +222,7 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
         words("Where, case", lambda one: short(where_text(one), 36), 1.1),
         number("Over\n100 %", lambda one: _over(groups[one.rule])
                if one is told[one.rule][0] else None),
-        words("Remedy", lambda one: Cell(detail=short(advice(one), 90)), 1.5),
+        words("Remedy", lambda one: Cell(detail=without_asides(advice(one))), 1.5),
         aside="per rule, the finding with the largest use, and a more severe one below it; over "
         "100 %: number of findings in all environments",
         ruled=False,

@@ -16,6 +16,7 @@ from calm.checks.finding import (
     State,
     by_rule,
     governing,
+    grouped_by,
     told_of_rule,
 )
 from calm.checks.inventory import InventoryItem, total_of
@@ -39,7 +40,6 @@ from calm.report.blocks import (
     table_of,
     words,
 )
-from calm.report.check_tables import grouped
 from calm.report.load_cases import LOAD, length_text, load_text
 from calm.report.open_items import (
     advice,
@@ -169,7 +169,7 @@ def _launch(assessment: Assessment) -> Table:
          _limit(assessment, "launch-speed")),
         ("with twice and half the drag",
          f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
-        ("Tension at the anchor during descent", LOAD.say(launch.anchor_tension), ""),
+        ("Anchor tension in descent", LOAD.say(launch.anchor_tension), ""),
         (f"Largest tension, {label}", LOAD.say(float(np.nanmax(tension))), _limit_of(loaded)),
     ]  # fmt: skip
     if most is not None and most.utilisation is not None and most.component != label:
@@ -221,15 +221,16 @@ _MOST_BREAKS = 10
 def _breaks(assessment: Assessment) -> Table:
     """Tabulate the net buoyancy after the most critical break of each section, and after a loss."""
     parts = {piece.index: piece for piece in assessment.file.pieces}
-    groups: dict[str, list[Break]] = {}
-    part = "the top"
-    for one in assessment.backup:
+    section = {None: "the top"}
+
+    def section_of(one: Break) -> str:
         piece = parts.get(one.break_after)
         if piece is None or piece.component.role in ("line", "float", "release"):
-            part = one.label
-        groups.setdefault(part, []).append(one)
+            section[None] = one.label
+        return section[None]
+
     rows: list[tuple[str, Break | Loss]] = []
-    for name, breaks in groups.items():
+    for name, breaks in grouped_by(assessment.backup, section_of).items():
         judged = [one for one in breaks if one.judged]
         if judged:
             worst = min(judged, key=lambda one: one.margin - one.required)
@@ -310,7 +311,7 @@ def _inventory(signed: SignedMooring) -> Table:
 
     return table_of(
         "Inventory",
-        grouped(items, lambda one: one.use),
+        grouped_by(items, lambda one: one.use).values(),
         number("Pieces", lambda group: sum(one.items for one in group)),
         words("Component", name, 1.6),
         words(

@@ -4,7 +4,6 @@ A mooring without failures takes at most `MOST_LINES` lines of 80 characters. Se
 appear as a matrix of maximum utilisations.
 """
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from math import ceil
@@ -33,6 +32,7 @@ from calm.report.open_items import (
     open_items,
     percent_text,
     short,
+    without_asides,
 )
 from calm.report.page_one import case_columns, shown_cases
 
@@ -222,8 +222,8 @@ def _where(finding: Finding) -> str:
 
 
 def _in_short(item: OpenItem) -> OpenItem:
-    """An item without sources in brackets."""
-    text = re.sub(r" \((?:[^()]|\([^()]*\)){30,}\)", "", item.text.replace("\u00a0", " "))
+    """An item without long passages in brackets."""
+    text = without_asides(item.text.replace("\u00a0", " "))
     return replace(item, head=item.head.replace("\u00a0", " "), text=text)
 
 

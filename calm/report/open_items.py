@@ -17,12 +17,13 @@ from calm.checks.finding import (
     State,
     conclusion_of,
     governing,
+    grouped_by,
     percent_used,
     worst_of,
 )
 from calm.quantities import QUANTITIES
 from calm.report.blocks import OpenItem, Span
-from calm.report.check_tables import grouped, joined, named_components
+from calm.report.check_tables import joined, named_components
 
 OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED)
 """States that count as open, in the order of the list."""
@@ -40,6 +41,11 @@ def plain(text: str) -> str:
     text = re.sub(r"`([^`]*)`", lambda key: key[1].replace("_", " ").replace(":", ""), text)
     text = re.sub(r"(?<![\w-])-(?=\d)", "−", text)
     return re.sub(r"(?<=\d) (?=(?:m/s|mm|m|kN|N|kg|s|min|kn|kgf|lbf|ft)\b|%)", "\u00a0", text)
+
+
+def without_asides(text: str) -> str:
+    """Remove sources and other long passages in brackets."""
+    return re.sub(r" \((?:[^()]|\([^()]*\)){30,}\)", "", text)
 
 
 def short(text: str, most: int) -> str:
@@ -102,7 +108,7 @@ def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[
     for state in OPEN:
         those = [one for one in every if one.state is state]
         if state in (State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED):
-            groups = grouped(those, cause)
+            groups = [*grouped_by(those, cause).values()]
         else:
             groups = joined(those)
         found += sorted(groups, key=lambda group: governing(group).rank)
@@ -177,7 +183,8 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
     if worst.missing is not None:
         return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} missing"
     if worst.state is State.ESTIMATED:
-        return f"{_capital(short(named_components(_once(group)), 90))}: passes by an estimate"
+        passes = "passes" if len(labels) == 1 else "pass"
+        return f"{_capital(short(named_components(_once(group)), 90))}: {passes} by an estimate"
     use = "" if worst.utilisation is None else f": {percent_text(worst.utilisation)}\u00a0%"
     if worst.state is State.NOT_JUDGED:
         use = " is not judged"
@@ -271,7 +278,7 @@ def verdict_sentence(assessment: Assessment) -> str:
         for one in map(governing, groups)
         if (one.utilisation or 0.0) > 1.0 and one.rule not in failing
     ]
-    beyond = f" Over 100 % without failing: {', '.join(dict.fromkeys(over))}." if over else ""
+    beyond = f" Over 100\u00a0% without failure: {', '.join(dict.fromkeys(over))}." if over else ""
     return f"{_capital(', '.join(filter(None, said)))}.{beyond}"
 
 

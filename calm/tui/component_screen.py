@@ -39,10 +39,9 @@ class ComponentScreen(dialogs.Form[Defined]):
         & #kind-fields { height: auto; }
         & .above { text-style: bold; text-wrap: nowrap; text-overflow: ellipsis; }
         & #outcome { width: 2fr; padding: 1 1 0 1; border-left: vkey $panel; }
-        & Field > .field-title { width: 20; }
+        & Field > Input { margin-left: 20; }
     }
     ComponentScreen.-narrow #outcome { width: 28; }
-    ComponentScreen.-narrow Field > .field-title { width: 20; }
     ComponentScreen.-narrow Field > Input { width: 16; }
     """
 
@@ -100,7 +99,6 @@ class ComponentScreen(dialogs.Form[Defined]):
         await self._show_fields()
 
     def _given(self) -> Defined:
-        """Return the id and the typed texts; an empty text deletes a key."""
         texts = self.texts
         id = texts.pop("id", self._component)
         return id, texts if self._begun else {"kind": self._kind, **texts}

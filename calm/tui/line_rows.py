@@ -123,7 +123,6 @@ def _row(spot: Place, item: LineItem, found: Sequence[FoundRow], index: Index | 
 
 
 def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
-    """Return the written length, or the computed length of a `fit`."""
     if values.get("length") == "fit" and found and found[0].length is not None:
         return f"fit: {QUANTITIES['length'].say(found[0].length)}"
     return length_text(values)

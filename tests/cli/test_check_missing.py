@@ -125,7 +125,7 @@ def test_a_key_without_a_value_stays_unknown(calm, lacking, folder):
     ("words", "says"),
     [
         (("-o", "x.yaml"), "-o is the file of --missing"),
-        (("--missing", "--json", "-"), "--missing is printed in place of the findings"),
+        (("--missing", "--json", "-"), "--missing replaces the findings"),
         (("--missing", "-o", "m.yaml"), "m.yaml would overwrite the file that is read"),
     ],
 )

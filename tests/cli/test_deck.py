@@ -338,7 +338,7 @@ def test_usage(calm, folder, write_mooring):
     (folder / "file").write_text("")
     (folder / "tow.yaml").write_text("tow: {speed: 2 m/s, toward: 0}\nline: [{use: shackle-13}]\n")
     for words, complaint in (
-        (("m.yaml",), "output"),
+        (("m.yaml",), "needs -o path"),
         (("m.yaml", "-o", "out", "--page", "a5"), "a5"),
         (("m.yaml", "-o", "file"), "is not a folder"),
         (("tow.yaml", "-o", "out"), "calm deck is for moorings; these are tows: tow.yaml"),

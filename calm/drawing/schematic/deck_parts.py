@@ -16,7 +16,7 @@ from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
 
 Cells = Callable[[Sequence[DeckItem], tuple[str, str]], tuple[str, ...]]
-"""The figures beside some items, by these and by their cut length, or place, and stretched one."""
+"""Function that returns the values next to items, given their cut and stretched length."""
 
 
 def parts_of_deck(
@@ -40,15 +40,15 @@ def parts_of(
     *,
     surface: bool,
 ) -> tuple[ShownPart, ...]:
-    """The parts listed, down a line or a leg, whose top is at the `surface` or below it.
+    """Return the parts of a line or a leg from its top, which may be at the `surface`.
 
-    Connectors that follow one another make one junction, except those that stand apart. The labels
-    of a part are those of all that it stands for.
+    Consecutive connectors form one junction, unless they are listed separately. A part has the
+    labels of all items that it represents.
 
     Parameters
     ----------
     every : all of the line, among which a label is a person's own or not
-    cells : the figures beside the items of a part
+    cells : values next to the items of a part
     """
     own = _own_labels(every)
     codes = {one.serial: " · ".join(one.code_lines) for one in file.releases}
@@ -115,7 +115,7 @@ def _piece(
         lengths = "" if first.is_rigid else row.lengths, ""
     else:
         lengths = _number_text("length", first.cut_length), _number_text("length", first.stretched)
-    row_beside = TextRow(
+    connector_row = TextRow(
         label,
         " · ".join(filter(None, words)),
         cells([*row.items, *row.floats, *row.between], lengths),
@@ -123,7 +123,7 @@ def _piece(
     )
     return ShownPart(
         sign,
-        (row_beside,),
+        (connector_row,),
         labels=tuple(one.label for one in (*row.items, *row.floats, *row.between)),
         cable=cable,
         length=first.cut_length if first.cut_length is not None else nan,

@@ -109,22 +109,22 @@ def test_stops_that_cannot_be_are_refused(tmp_path, where, told):
 
 def test_a_profiler_in_the_line_is_refused(tmp_path):
     change = ("  - {use: rel, label: release}", "  - {use: mmp}\n  - {use: rel, label: release}")
-    with pytest.raises(InputError, match="a profiler rides on a wire"):
+    with pytest.raises(InputError, match="a profiler must be among the `clamps`"):
         mooring(tmp_path, change=change)
 
 
 @pytest.mark.parametrize(
     ("change", "state", "told"),
     [
-        (("7500 N", "3300 N"), "fail", "which needs 2224 N to travel on it"),
-        (("drive_force: 50 N", "drive_force: 5 N"), "fail", "its drive gives 5 N"),
+        (("7500 N", "3300 N"), "fail", "the profiler needs 2.22 kN to travel"),
+        (("drive_force: 50 N", "drive_force: 5 N"), "fail", "its drive force is 5 N"),
         (("drive_force: 50 N, ", ""), "unknown", "The drive force of"),
-        (("diameter: 8 mm", "diameter: 14 mm"), "warn", "wire is 14.0 mm thick"),
+        (("diameter: 8 mm", "diameter: 14 mm"), "warn", "wire has a diameter of 14.0 mm"),
         (
             ("      - {use: bumper, at: 1380", "      - {use: bumper, at: 600 m}\n"
              "      - {use: bumper, at: 1380"),
             "fail",
-            "bumper obstructs MMP, 600 m along the wire",
+            "bumper blocks MMP, 600 m down the wire",
         ),
     ],
 )  # fmt: skip
@@ -161,7 +161,7 @@ def test_drag_along_a_leaning_wire(tmp_path):
 def test_each_rule_is_judged_at_both_stops_and_where_the_wire_leans_most(tmp_path):
     names = [each.name for each in check(mooring(tmp_path, TURNING)).stands[0].situations]
     assert "MMP at its lower stop" in names
-    assert "MMP where its wire leans most" in names
+    assert "MMP at its largest wire angle" in names
     assert [each for each in names if "MMP" in each] == names[2:4]
 
 

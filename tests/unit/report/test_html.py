@@ -94,7 +94,7 @@ def test_every_part_of_the_report_is_there(section):
         "Accuracy of these values", "Launch, anchor last", "Recovery, after release",
         "Breaks and losses", "Inventory", "Limits used", "Environments", "Not covered",
         "Mooring file", "SHA-256 of the inputs", "waves", "snap loads", "fatigue",
-        "creep, corrosion", "transients of the launch", "hauling and lifts",
+        "creep, corrosion", "transients of the launch", "hauling and lifting",
     ):  # fmt: skip
         assert heading in page.text, heading
     drawing = next(block for block in section.parts[1].blocks if isinstance(block, Table))
