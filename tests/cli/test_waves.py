@@ -299,7 +299,7 @@ def test_a_report_has_the_life_and_its_pictures(calm, buoy, tmp_path):
         ("{spectrum: sea.csv, significant_height: 2 m}", "leave them out"),
         ("{scatter: none.csv}", "no such file"),
         ("{scatter: bad.csv}", "not numbers"),
-        ("{scatter: seas.csv, spectrum: ochi-hubble}", "periods of its own"),
+        ("{scatter: seas.csv, spectrum: ochi-hubble}", "defines its own periods"),
     ],
 )
 def test_seas_of_the_file_that_cannot_be(calm, buoy, tmp_path, waves, message):

@@ -62,7 +62,7 @@ def test_headings_are_read_as_those_of_files():
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
-        ("depth m,speed m/s,direction deg\n0,1,90\n", "does not say which way"),
+        ("depth m,speed m/s,direction deg\n0,1,90\n", "has an ambiguous sense"),
         ("level,fast,way\n0,1,90\n", "no column is called `level`"),
         ("depth m,u m/s,v m/s,w m/s\n0,1,1,0.1\n", "the current has an upward speed `w`"),
         ("0,1\n5,2\n", "there is no column"),

@@ -50,15 +50,15 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     design = model.ImportedDesign("a list", path.stem, [], None, notes=[_NOTE])
     design.water = _water(sheets, design, path)
     problems: list[str] = []
-    said = list[model.Remark]()
+    remarks = list[model.Remark]()
     headings = None
-    if chosen := _headed(sheets, hidden, columns, said):
+    if chosen := _headed(sheets, hidden, columns, remarks):
         sheet, cells, headings = chosen
         problems += headings.problems
-        said += _unit_remarks(headings)
+        remarks += _unit_remarks(headings)
         weighed = {"buoyancy", "weight"} & headings.columns.keys()
         rows = rows_of(
-            cells, headings, problems, design.dropped, said,
+            cells, headings, problems, design.dropped, remarks,
             bare=lambda name: bool(library) and (not weighed or key_of(name) in library),
         )  # fmt: skip
         weights_as_buoyancy(rows, design.guessed)
@@ -76,11 +76,11 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     rows = _from_the_top(rows, path, design)
     if headings and "depth" in headings.columns and not _go_down(rows):
         heading = headings.columns["depth"].heading
-        said.append(model.Remark(f"column {heading}", "does not grow down the line: left out"))
+        remarks.append(model.Remark(f"column {heading}", "does not grow down the line: left out"))
         for row in rows:
             row.figures.pop("depth", None)
     design.items = _items(rows)
-    design.guessed += said
+    design.guessed += remarks
     if problems := [*problems, *(each for row in rows for each in row.problems)]:
         raise refused(path, *problems)
     design.in_kilograms = headings is None or any(
@@ -91,7 +91,7 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
 
 def _headed(
     sheets: Mapping[str, SheetRows], hidden: Mapping[str, str], columns: Mapping[str, str],
-    said: list[model.Remark],
+    remarks: list[model.Remark],
 ) -> tuple[str, SheetRows, ListHeadings] | None:  # fmt: skip
     """Return the name, the cells and the headings of the longest sheet with headings; a visible
     sheet is preferred.
@@ -110,9 +110,11 @@ def _headed(
     if others:
         what = f"taken of {len(found)} with headings; not read: "
         what += ", ".join(f"`{name}`" for name, *_ in others)
-        said.append(model.Remark(f"sheet `{taken}`", what))
+        remarks.append(model.Remark(f"sheet `{taken}`", what))
     if taken in hidden:
-        said.append(model.Remark(f"sheet `{taken}`", f"{hidden[taken]} hidden, read all the same"))
+        remarks.append(
+            model.Remark(f"sheet `{taken}`", f"{hidden[taken]} hidden, read all the same")
+        )
     return found[0]
 
 
