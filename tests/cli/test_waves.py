@@ -295,7 +295,7 @@ def test_a_report_has_the_life_and_its_pictures(calm, buoy, tmp_path):
         ("{significant_heigth: 2 m, peak_period: 4 s}", "significant_height"),
         ("{significant_height: 2 m, peak_period: 6 s, spectrum: jonswop}", "mean `jonswap`"),
         ("{significant_height: 2 m, peak_period: 6 s, gamma: 30}", "at most 10"),
-        ("{significant_height: 2 m, peak_period: 6 s, spectrum: ochi-hubble}", "no period"),
+        ("{significant_height: 2 m, peak_period: 6 s, spectrum: ochi-hubble}", "remove the period"),
         ("{spectrum: sea.csv, significant_height: 2 m}", "leave them out"),
         ("{scatter: none.csv}", "no such file"),
         ("{scatter: bad.csv}", "not numbers"),
