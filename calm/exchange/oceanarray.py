@@ -257,7 +257,7 @@ class _Parts:
             if self.catalogue.entry(name) is not None:
                 return self._entry(name, name), ""
         if found := instrument and Index(self.catalogue).search(instrument):
-            guess = f"the first that `calm catalog search {instrument}` finds"
+            guess = f"the first that `calm catalog list {instrument}` finds"
             return self._entry(instrument, found[0].id), guess
         return None
 

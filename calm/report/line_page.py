@@ -5,13 +5,12 @@ from math import inf
 from typing import Any, Literal
 
 from calm.case.leg_result import LegResult
-from calm.checks.finding import Finding, State
+from calm.case.result_tables import ComponentRow, run_of
+from calm.checks.finding import Finding, State, grouped_by
 from calm.drawing.check_figures import PieceBar, load_chart
 from calm.drawing.line_picture import alike, together
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Block, Cell, Figure, Table, number, table_of, words
-from calm.report.check_tables import grouped
-from calm.report.drawing_page import run_of
 from calm.report.load_cases import (
     LOAD,
     LoadCase,
@@ -42,8 +41,8 @@ def line_page(signed: SignedMooring) -> Iterator[Block]:
     ]  # fmt: skip
     title = f"Tension and capacity, {unit}"
     aside = (
-        "by item; black: standing, grey: launch; tick: capacity, dotted: in the launch; "
-        "▲ beyond the scale; ? not known"
+        "by item; black: moored, grey: launch; tick: capacity, dotted: capacity in the launch; "
+        "▲ beyond the scale; ? unknown"
     )
     yield Figure(title, load_chart(title, points, (508.0, 130.0)), aside=aside)
     if hardware:
@@ -69,7 +68,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
             and last.row.use == one.row.use
             and alike(last.row.label, one.row.label)
         )
-        if same and one.row.role in ("float", "line"):
+        if same and _floats(one.row):
             groups[-1].append(one)
         else:
             groups.append([one])
@@ -90,10 +89,10 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         groups,
         number("No.", lambda group: run_of([str(one.number) for one in group])),
         words("Item", lambda group: together([one.row.label for one in group])),
-        number(f"Largest tension {unit}", standing(case)),
-        number(f"Least {unit}", lambda group: None if group[0].row.role in passes
+        number(f"Tension\n{unit}", standing(case)),
+        number(f"Mini-\nmum {unit}", lambda group: None if group[0].row.role in passes
                else load_text(min(one.least for one in group))),
-        number("Largest tilt °", lambda group: None if group[0].row.role == "anchor"
+        number("Tilt\n°", lambda group: None if group[0].row.role == "anchor"
                else QUANTITIES["tilt"].format(max(one.tilt for one in group))),
         number(f"Capa-\ncity {unit}", standing(lambda one: capacity_text(one.standing))),
         words("Use", standing(lambda one: _bar(one.standing)), 0.45),
@@ -103,14 +102,20 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         number("Use %", falling(lambda one: _use(one.launch))),
         number(f"Rise {unit}", lambda group: _force(
             max((one.rise_tension or 0.0 for one in group), default=None))),
-        note="Capacity: the lesser of the working load and the breaking load over its safety "
-        "factor; in the launch by the factors there. – no load is judged, ? no published load, "
-        "≈ estimated, ○ accepted. The case stands behind the tension. Of equal pieces: tension, "
-        "capacity and use of the one that is used most, in the launch of the one that is used most "
-        "there; least, tilt and rise of all.",
-        aside="envelope of all load cases",
+        note="Capacity is the smaller of the working load and the breaking load over its safety "
+        "factor, with the factors of the launch there. – no load is judged, ? no published load, "
+        "≈ estimated, ○ accepted. The code of the case follows the tension. Equal pieces share a "
+        "row, with the tension, capacity and use of the most used one, and the minimum, tilt and "
+        "rise of all.",
+        aside="envelope of all load cases: largest tension and tilt, minimum tension",
         ruled=False,
     )  # fmt: skip
+
+
+def _floats(row: ComponentRow) -> bool:
+    """Whether a piece is a float, or a chain or cable with floats."""
+    parts = (row.part, *row.part.clamps)
+    return any(part.component.role == "float" for part in parts)
 
 
 _Show = Callable[[PieceEnvelope], object]
@@ -153,7 +158,7 @@ def _use(finding: Finding | None) -> Cell | None:
 
 def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
     """A row of each type, with the pieces that are used most in equilibrium and in the launch."""
-    groups = grouped(loads, lambda one: one.row.use)
+    groups = grouped_by(loads, lambda one: one.row.use).values()
     rows = [(_most_used(group), _most_used(group, "launch"), len(group)) for group in groups]
     unit = LOAD.display_unit
     launched = any(row[1].launch_tension for row in rows)
@@ -172,12 +177,12 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
         rows,
         words("Type", lambda row: row[0].row.part.component.name or row[0].row.use, 1.2),
         number("Pieces", 2),
-        words("Most used standing", lambda row: named(row[0])),
+        words("Most used, moored", lambda row: named(row[0])),
         number(f"Largest\ntension {unit}", lambda row: load_text(row[0].tension)),
         number(f"Capa-\ncity {unit}", lambda row: capacity_text(row[0].standing)),
         number("Use %", lambda row: _use(row[0].standing)),
         *(launch if launched else ()),
-        aside="a row a type; the pieces that govern",
+        aside="one row per type, for the governing pieces",
         ruled=False,
     )
 
@@ -189,7 +194,7 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
     ]
     if not rows:
         return
-    anchors = grouped(rows, lambda row: row[1].file.pieces[-1].label)
+    anchors = grouped_by(rows, lambda row: row[1].file.pieces[-1].label).values()
     if len(anchors) > 1 or len(rows) > 12:
         rows = [max(group, key=lambda row: row[1].anchor_load.required_weight) for group in anchors]
     checks, angle = signed.assessment.file.checks, QUANTITIES["angle"].format
@@ -225,6 +230,6 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
         number("Sliding use %", sliding),
         note=f"Required: {factor:g} (V + H / {first.anchor_load.friction:.3g}). Uplift: V against "
         f"weight / {factor:g}. Sliding: H against {first.anchor_load.friction:.3g} "
-        f"(weight / {factor:g} − V). The soil is not judged.",
+        f"(weight / {factor:g} − V). Soil strength is not checked.",
         ruled=False,
     )  # fmt: skip

@@ -45,7 +45,7 @@ def test_what_a_person_reads(calm, ranges):
     done = calm("locate", ranges())
     assert done.code == 0
     assert "48° 18.000′ N" in done.out
-    assert "Not used, they do not fit the others: line 7." in done.out
+    assert "Rejected as outliers: line 7." in done.out
     assert done.err == ""
 
 

@@ -221,7 +221,7 @@ def test_items_are_causes_and_not_findings(tmp_path):
     places = [order.index(item.state) for item in items if item.state in order]
     assert places == sorted(places)
     heads = [item.head for item in items]
-    assert "Meter 500 m, meter 900 m, meter 1500 m: estimated." in heads
+    assert "Meter 500 m, meter 900 m, meter 1500 m: pass by an estimate." in heads
     assert len(items) < len([one for one in assessment.every_finding()
                              if one.state is not State.PASS])  # fmt: skip
 
@@ -234,8 +234,8 @@ def test_the_sentence_names_what_is_beyond_its_limit_without_failing(assessments
 
 
 def test_keys_of_a_file_are_words_on_paper():
-    told = plain("It bears 12345 N; give its `working_load`, -3 m at most.")
-    assert told == "It bears 12.35\u00a0kN; give its working load, −3\u00a0m at most."
+    told = plain("Load is 12.35 kN; set its `working_load`, -3 m at most.")
+    assert told == "Load is 12.35\u00a0kN; set its working load, −3\u00a0m at most."
 
 
 def test_cases_have_codes_and_still_water_comes_last():
@@ -291,7 +291,7 @@ def test_many_moorings_have_a_matrix_and_a_page_each(assessments):
     for section, page in zip(sections, pages, strict=True):
         assert section.name in first.text
         assert page.text.startswith(f"M-2026-17 rev. B {section.name}")
-        assert "Over 100 of judged" in page.text and "Approved" in page.text
+        assert "Over 100 %" in page.text and "Approved" in page.text
     assert first.grey and all(page.grey for page in pages)
 
 
@@ -299,14 +299,14 @@ def test_a_cell_of_the_matrix_is_black_where_a_mooring_fails(assessments, tmp_pa
     failing = judged(unaccepting("tidal-adcp.yaml", tmp_path), "ebb")
     report = check_report([short_section(failing), short_section(assessments("compact-adcp"))])
     tables = [block for block in report.front[0].blocks if isinstance(block, Table)]
-    (matrix,) = [table for table in tables if table.title == "Greatest use, %"]
+    (matrix,) = [table for table in tables if table.title == "Largest use, %"]
     heads = [column.heading for column in matrix.columns]
     assert heads == ["Mooring", "Water\nm", "E1", "E2", "Launch"]
     first, second = matrix.rows
     assert first[2].tone == first[3].tone == "fail"
     assert int(first[2].text.lstrip(">")) > 100
     assert second[2].tone == "" and second[3].text == "–"
-    (governs,) = [table for table in tables if table.title == "What governs"]
+    (governs,) = [table for table in tables if table.title == "Governing checks"]
     assert governs.rows[0][2].text.startswith("E1: excursion")
     assert governs.rows[1][2].text == "none"
 
