@@ -19,7 +19,7 @@ import numpy as np
 from calm.assemble import assemble_water
 from calm.case.leg import Leg
 from calm.case.leg_result import LegResult
-from calm.case.memory import Forgetful, Memory
+from calm.case.memory import Memory, NoMemory
 from calm.case.parts import Origin, OtherEnvironment
 from calm.case.profilers import ProfilerTravel, profilers_of
 from calm.case.result_tables import (
@@ -85,7 +85,7 @@ class Design:
 
     file: MooringFile
     for_surface: bool | None = None
-    memory: Memory = field(default_factory=Forgetful, repr=False, compare=False)
+    memory: Memory = field(default_factory=NoMemory, repr=False, compare=False)
     lines: tuple[Line, ...] | None = field(default=None, repr=False, compare=False)
     given_water: Water | None = field(default=None, repr=False, compare=False)
     near: NetSolution | None = field(default=None, repr=False, compare=False)
@@ -255,7 +255,7 @@ class Design:
         return (self.leg.equilibrium(self.water),)
 
     @cached_property
-    def meant(self) -> tuple[Leg, ...]:
+    def typed_legs(self) -> tuple[Leg, ...]:
         """Legs with `for_surface` set: a leg counts as a surface leg if it floats at the surface in
         still water.
         """
@@ -310,7 +310,7 @@ class Design:
 def solved_alone(leg: Leg) -> LegResult:
     """Solve a leg alone, with its profilers at all positions; raises NoEquilibrium."""
     solution = leg.equilibrium()
-    still = leg.still_beside(solution)
+    still = leg.still_counterpart(solution)
     return LegResult(leg=leg, solution=solution, still=still, profilers=profilers_of(leg))
 
 

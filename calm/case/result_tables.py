@@ -118,7 +118,6 @@ class ColumnTable(Columnar, Generic[Row]):
         return cls(**whole)
 
     def __repr__(self) -> str:
-        """Summary with the number of rows and the labels at both ends."""
         shown = self.label if len(self) < 6 else [*self.label[:3], "…", self.label[-1]]
         return f"{type(self).__name__}({len(self)} rows: {', '.join(shown)})"
 
@@ -591,7 +590,6 @@ class Shape:
         return [*every] if output is None else shown_in(every, output)
 
     def __repr__(self) -> str:
-        """Summary with the number of nodes."""
         return f"Shape({len(self.depth)} nodes)"
 
     def to_dict(self) -> dict[str, list[float]]:

@@ -64,15 +64,14 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         if not reaches_the_surface(leg):
             yield unknown(
                 None,
-                "No piece has `role: release`, so it is unknown what frees the line from the "
-                "anchor.",
-                "Set `role: release` on the release.",
+                "No piece has `role: release`; the release of the line is unknown.",
+                "Mark the release with `role: release`.",
             )
         return
     piece = pieces[release]
     if _NO_RELEASE.search(_words(piece.use, piece.component.name)):
         message = f"{piece.label} has `role: release`, but its name suggests another component."
-        yield unknown(piece, message, "Set `role: release` on the release only.")
+        yield unknown(piece, message, "Mark only the release with `role: release`.")
         return
     above = [part.component for part in every_part(pieces[: release + 1])]
     if not _floats(pieces[: release + 1]):
@@ -221,13 +220,13 @@ def metals(handling: Handling) -> Iterator[Verdict]:
     """
     warned: set[str] = set()
     for base, noble, volts in unlike_metals(handling.leg.file.pieces):
-        if base.label not in warned and not (_is_insulated(base) or _is_insulated(noble)):
+        if base.label not in warned:
             warned.add(base.label)
             message = (
                 f"{base.label} ({base.component.material}) corrodes in contact with {noble.label} "
                 f"({noble.component.material}), which is {volts:.2f} V nobler in sea water."
             )
-            remedy = "Insulate one from the other and set `insulated: true`, or fit an anode."
+            remedy = "Insulate one from the other (`insulated: true`), or fit an anode."
             yield at_most(base, volts, GREATEST_DIFFERENCE, message, remedy, State.WARN)
 
 
@@ -237,9 +236,9 @@ def _is_insulated(part: Piece | Clamp) -> bool:
 
 
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
-    """Yield adjoining dissimilar metals: the less noble, the more noble, their potential [V].
+    """Yield dissimilar metals that touch: the less noble, the more noble, their potential [V].
 
-    Pairs with an `insulated` part are included, because the insulation still has to be fitted.
+    A part that is `insulated` touches nothing.
     """
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
@@ -247,6 +246,8 @@ def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piec
         if not any(word in said for word in _INSULATED):
             pairs += [(piece, clamp) for clamp in piece.clamps]
     for one, other in pairs:
+        if _is_insulated(one) or _is_insulated(other):
+            continue
         first, second = (potential_of(part.component.material) for part in (one, other))
         if first is None or second is None or abs(first - second) <= GREATEST_DIFFERENCE:
             continue

@@ -21,6 +21,7 @@ from calm.checks.finding import (
     Verdict,
     conclusion_of,
     governing,
+    grouped_by,
     worst_state,
 )
 from calm.checks.inventory import InventoryItem
@@ -157,10 +158,8 @@ class Assessment:
     def accepted_findings(self) -> list[Finding]:
         """Return the governing accepted finding of each rule and component."""
         every = (*(one for stand in self.stands for one in stand.accepted), *self.findings)
-        found: dict[tuple[str, str | None], list[Finding]] = {}
-        for finding in every:
-            if finding.accept is not None:
-                found.setdefault((finding.rule, finding.component), []).append(finding)
+        accepted = (one for one in every if one.accept is not None)
+        found = grouped_by(accepted, lambda one: (one.rule, one.component))
         return [governing(each) for each in found.values()]
 
     def tighter_findings(self) -> Iterator[Finding]:

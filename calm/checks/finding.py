@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property, partial
 from math import ceil, inf, isfinite
-from typing import Any, Literal
+from operator import attrgetter
+from typing import Any, Literal, TypeVar
 
 from calm.files import Accept, LinePart, Place
 from calm.files.definition import EstimatedFigure
 from calm.files.rule_texts import RULES as RULE_TEXTS
+
+_Item = TypeVar("_Item")
+_Key = TypeVar("_Key", bound=Hashable)
 
 AS_GIVEN = "as given"
 """The situation of a mooring in its environment, with nothing changed."""
@@ -393,12 +397,17 @@ class Finding(Verdict):
         return () if self.place is None else (self.place,)
 
 
+def grouped_by(items: Iterable[_Item], key: Callable[[_Item], _Key]) -> dict[_Key, list[_Item]]:
+    """Group items by a key, in the order in which the keys first occur."""
+    groups: dict[_Key, list[_Item]] = {}
+    for item in items:
+        groups.setdefault(key(item), []).append(item)
+    return groups
+
+
 def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
-    """The findings of each rule, in the order in which these come."""
-    found: dict[str, list[Finding]] = {}
-    for finding in findings:
-        found.setdefault(finding.rule, []).append(finding)
-    return found
+    """Group findings by rule, in the order in which the rules first occur."""
+    return grouped_by(findings, attrgetter("rule"))
 
 
 def worst_of(findings: Iterable[Finding]) -> Finding:

@@ -182,7 +182,7 @@ class LegGraph:
         ]
         for piece in held:
             message = f"No release lies between {piece.label} and an anchor that holds it."
-            yield unknown(piece, message, "Set `role: release` on the release.")
+            yield unknown(piece, message, "Mark the release with `role: release`.")
         if not held and self.opened:
             number, at = min(self.opened)
             one = self.chains[number][at]

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from calm.checks.assessment import MISSING
-from calm.checks.finding import Finding, MissingFigure, State, Verdict, rule
+from calm.checks.finding import Finding, MissingFigure, State, Verdict, grouped_by, rule
 from calm.files import Clamp, Piece
 from calm.files.rule_texts import RULES
 
@@ -66,10 +66,12 @@ def gathered(
     ----------
     parts : pieces and clamps of the line by their labels
     """
-    found: dict[tuple[str, str], list[Finding]] = {}
-    for one in lacking:
-        assert one.lacks is not None
-        found.setdefault((parts[one.lacks.label].use, one.lacks.quantity), []).append(one)
+
+    def value(finding: Finding) -> tuple[str, str]:
+        assert finding.lacks is not None
+        return parts[finding.lacks.label].use, finding.lacks.quantity
+
+    found = grouped_by(lacking, value)
     for (use, quantity), group in found.items():
         component = next(parts[one.lacks.label].component for one in group if one.lacks)
         figure = MissingFigure(

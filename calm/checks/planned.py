@@ -51,7 +51,7 @@ def _judge(handling: Handling) -> Iterator[Verdict]:
     parts, found = _judged(handling.result)
     if not parts:
         message = "No piece or clamp has a planned depth."
-        remedy = "Set `planned_depth`, or put the depth in the label, such as `meter 200 m`."
+        remedy = "Set a `planned_depth`, or put the depth in the label, such as `meter 200 m`."
         yield verdict_on(None, State.NOT_JUDGED, message, remedy)
     elif _off_alike(handling.result, parts, found):
         yield _all_alike(handling.result, parts, min(found, key=lambda one: one.rank))

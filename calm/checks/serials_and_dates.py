@@ -55,8 +55,8 @@ def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
     """Yield serial numbers that are used for more than one item of a component."""
     items: dict[tuple[str, str], list[Part]] = defaultdict(list)
     for part in parts:
-        if part.serial is not None:
-            items[part.use, part.serial].append(part)
+        for serial in part.serials:
+            items[part.use, serial].append(part)
     for (use, serial), found in items.items():
         # items of a count and parts of an assembly share their serial number
         alone = {(one.place.item, one.place.clamp) for one in found}

@@ -42,7 +42,7 @@ FOULED, STRUMMING, DEPLOYED = "fouling", "strumming", "as deployed"
 _SUFFIXES = {
     AS_GIVEN: "", STRUMMING: "s", FOULED: "g", HIGH: "h", LOW: "l", DEPLOYED: "d",
 }  # fmt: skip
-_AT_STOP, _AT_LEAN = "at its lower stop", "where its wire leans most"
+_AT_STOP, _AT_LEAN = "at its lower stop", "at its largest wire angle"
 
 
 def case_of(environment: int, situation: str) -> str:

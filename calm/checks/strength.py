@@ -275,7 +275,7 @@ def _words(
     return (
         f"Minimum tension in {part.label} is {say('load', least)}; "
         f"a {name} needs {say('load', limit)} to stay taut.",
-        "Add buoyancy or remove weight above it; `slack: allowed` exempts a piece.",
+        "Add buoyancy or remove weight above it, or allow it to be slack (`slack: allowed`).",
     )
 
 

@@ -111,7 +111,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
     given, checks = leg.file.environment.waves, leg.file.checks
     if given is None or given.scatter is None:
         message = "A fatigue life needs a wave climate, not a single sea state."
-        remedy = "Set `waves: {scatter: FILE}`: sea states with their shares of time."
+        remedy = "Set `scatter` under `waves`: sea states with their shares of time."
         yield verdict_on(None, State.NOT_JUDGED, message, remedy)
         return
     limit = checks.fatigue_factor * checks.service_time
@@ -120,7 +120,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
         piece = leg.file.pieces[one.index]
         if one.unknown is not None:
             message = f"The fatigue life of {one.label} is unknown: {one.unknown}."
-            yield unknown(piece, message, "Set its `fatigue: {curve: NAME}` and its loads.")
+            yield unknown(piece, message, "Set the `curve` of its `fatigue`, and its loads.")
         elif one.life is not None and one.life_low is not None and one.life_high is not None:
             message = (
                 f"The fatigue life of {one.label} is {_years(one.life)} ({_years(one.life_low)} "

@@ -89,8 +89,8 @@ def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
     """Show all values of components with their sources, and derived values.
 
     Derived values are the net force in water, and Kn and Kt, the drag at 1 m/s.
-    Entries for the same item from different sources are shown side by side, the
-    one to use first.
+    Entries for the same item from different sources are shown side by side, the recommended one
+    first.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 from calm.cli import options
 from calm.cli.judging import Drawing, DrawnSection, drawn_section, judge, load_ahead
-from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate, show
+from calm.cli.outputs import ExitCode, OutputPath, Outputs, gravest, narrate, save, show
 from calm.cli.reading import DesignFile, names_of_files, read_designs
 from calm.errors import InputError, Problem, UsageError
 
@@ -59,7 +59,7 @@ def check(
         all that do not pass, and those with a utilisation of at least one half.
     report
         Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder:
-        six pages or more for one mooring, a matrix and a page each for several.
+        five pages or more for one mooring, a matrix and a page each for several.
     page
         Page size of the report.
     full
@@ -198,7 +198,9 @@ def _check_missing(
     if output is not None and not missing:
         raise UsageError("-o is the file of --missing; for the findings, use --json or --report")
     if missing and any(other):
-        raise UsageError("--missing is printed in place of the findings: leave out the others")
+        raise UsageError(
+            "--missing replaces the findings and cannot be combined with other outputs"
+        )
     if output is not None:
         from calm.report.folder import check_destination
 
@@ -210,7 +212,6 @@ def _check_missing(
 def _write_missing(
     assessments: Sequence[Assessment], paths: Sequence[Path], output: Path | None
 ) -> None:
-    from calm.report.folder import write_file
     from calm.report.missing_block import definition_places, missing_block
 
     found = [one for each in assessments for one in each.all_findings()]
@@ -220,8 +221,7 @@ def _write_missing(
     if output is None:
         show(block)
     else:
-        write_file(output, block.encode())
-        narrate(f"{output} written")
+        save(output, block.encode())
 
 
 def _answer(
@@ -255,8 +255,8 @@ def _answer(
     from calm.report.html import page
 
     report = check_report([each.section for each in drawings])
-    with ThreadPoolExecutor(1) as beside:
-        pdf = beside.submit(printed, report, paper, leaves=[each.pdf for each in drawings])
+    with ThreadPoolExecutor(1) as pool:
+        pdf = pool.submit(printed, report, paper, leaves=[each.pdf for each in drawings])
         outputs.write_answer(document, check_part(assessments))
         texts = {
             "report.html": page(report, [each.html for each in drawings]),

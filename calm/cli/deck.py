@@ -142,12 +142,13 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
 
 
 def _plan(deck: Deck) -> dict[str, Any]:
-    """The plan of the anchor drop, or why there is none."""
-
     if deck.result.several:
         return {"status": "net", "message": "The drop of a net of legs is not solved."}
     if deck.plan is None:
-        return {"status": str(deck.order), "message": "The anchor goes first: it is not dropped."}
+        return {
+            "status": str(deck.order),
+            "message": "There is no anchor drop if the anchor is deployed first.",
+        }
     if isinstance(deck.plan, NoEquilibrium):
         return {"name": deck.file.name, **deck.plan.to_dict()}
     return deck.plan.to_dict()
@@ -162,7 +163,7 @@ def _missing_characters(deck: Deck) -> tuple[str, ...]:
         return ()
     where = dict.fromkeys(place for text, place in _texts(deck) if lacking([text]))
     named = ", ".join(f"{sign} (U+{ord(sign):04X})" for sign in signs)
-    return (f"The font of the sheets lacks {named}, which shows as �: in {', '.join(where)}",)
+    return (f"The font of the sheets has no {named}, printed as �: in {', '.join(where)}",)
 
 
 def _texts(deck: Deck) -> Iterator[tuple[str, str]]:

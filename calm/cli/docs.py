@@ -24,7 +24,7 @@ _LINK = re.compile(r"!?\[([^\]]*)\]\([^)]*\)|[`*]|<!--.*?-->")
 def docs(*words: str, open_: Annotated[bool, Parameter(name="--open")] = False) -> ExitCode:
     """Print where a page of the manual is on this machine, open it, or list pages by words.
 
-    The path printed is that of the page's text; `--open` shows the page of the
+    CALM prints the path of the page's text; `--open` shows the page of the
     built site in a browser, without a network. Words that are not the name of a
     page list the pages that contain them, the most relevant first, each with a
     line of its text.
@@ -32,8 +32,8 @@ def docs(*words: str, open_: Annotated[bool, Parameter(name="--open")] = False) 
     Parameters
     ----------
     words
-        The name of a page, with or without its book (batch, reference/batch, how-to), or
-        words to look for.
+        Name of the page, with or without its part of the manual (batch, reference/batch, how-to),
+        or words to search for.
     open_
         Open the page in a browser.
 
@@ -115,7 +115,6 @@ def _context(text: str, wanted: Sequence[re.Pattern[str]]) -> str:
 
 
 def _pages(folder: Path, suffix: str) -> dict[str, Path]:
-    """The pages of a folder, by book and name."""
     return {
         path.relative_to(folder).with_suffix("").as_posix(): path
         for path in sorted(folder.rglob(f"*{suffix}"))

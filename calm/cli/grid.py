@@ -92,6 +92,7 @@ def grid(
         flags=flags, report=narrate, show=narrate_card,
     )  # fmt: skip
     record.write(output, lambda each: progress(each, "blocks of times"))
+    narrate(f"{output} written")
     if report is not None:
         write_pages(report, "grid", grid_report(output, record))
     outputs.write_answer(lambda: grid_document(record), grid_part(record.fields))

@@ -47,7 +47,7 @@ _EPILOGUE = """Examples:
 Exit codes: 0 done, 1 a check found something, 2 bad input or usage,
 3 no equilibrium, 70 internal error, 130 interrupted."""
 
-_SELDOM = 100_000
+_GC_THRESHOLD = 100_000
 """Number of new objects between collections of reference cycles. Python's default of 700 costs a
 command a tenth of its time, because all imported objects are scanned repeatedly.
 """
@@ -161,7 +161,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     prepare()
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # searching for plugins takes time
     if arguments is None:
-        gc.set_threshold(_SELDOM)
+        gc.set_threshold(_GC_THRESHOLD)
         atexit.register(gc.freeze)  # remaining objects need no final collection
         if not sys.warnoptions:
             warnings.simplefilter("ignore")  # warnings of libraries for programmers

@@ -36,7 +36,7 @@ Declination = Annotated[
     str | None,
     Parameter(
         help="Magnetic declination, such as 12.5 deg, positive to the east; applied to "
-        "currents that the record says are relative to magnetic north.",
+        "currents that the record marks as relative to magnetic north.",
         allow_leading_hyphen=True,
     ),
 ]

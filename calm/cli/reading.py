@@ -57,7 +57,7 @@ def read_designs(
     command: str = "calm check",
     meanwhile: Callable[[], object] | None = None,
 ) -> tuple[list[DesignFile], list[Path]]:
-    """Every mooring in every environment, and which of the files are tows, which a command leaves.
+    """Read every mooring in every environment; also return the files that are tows.
 
     Parameters
     ----------
@@ -147,7 +147,6 @@ def _cut_alike(moorings: Sequence[Design]) -> tuple[Design, ...]:
 def _load(
     task: tuple[Path, Sequence[str] | None, Sequence[Path]],
 ) -> list[Design] | tuple[Problem, ...]:
-    """Read a file and return its designs or its problems."""
     from calm.case.design import load_in
 
     try:

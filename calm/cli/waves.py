@@ -56,15 +56,15 @@ def waves(
     gamma
         Peak enhancement factor of jonswap.
     swell
-        Significant height of a swell under the sea of --hs, running the same way.
+        Significant height of a swell under the sea of --hs, travelling in the same direction.
     swell_tp
         Peak period of the swell.
     toward
-        Direction the waves run, clockwise from north; 90 deg by default.
+        Direction in which the waves travel, clockwise from north; 90 deg by default.
     scatter
         A CSV file of seas: significant_wave_height[m],peak_period[s],share.
     duration
-        Time over which the greatest and the least tension are sought; 3 h by default.
+        Duration for the most probable maximum and minimum tension; 3 h by default.
     report
         A folder for waves.html and waves.pdf, with pictures of the tension.
 
@@ -146,7 +146,7 @@ def _sea_states(
         if name in given and not given[name] > 0.0
     ]
     if 0.0 < given["duration"] < 60.0:
-        complaints.append("--duration: a minute at least, for some waves to pass")
+        complaints.append("--duration must be at least one minute")
     if not 1.0 <= gamma <= 10.0:
         complaints.append("--gamma must be from 1, a fully developed sea, to 10")
     named, path = spectrum in sea_states.SPECTRA, Path(spectrum)
@@ -158,13 +158,13 @@ def _sea_states(
     chosen = [options.option(name) for name, each in waves.items() if each is not None]
     swells = [name for name in ("--swell", "--swell-tp") if name in chosen]
     if len(swells) == 1:
-        complaints.append("--swell, --swell-tp: a swell has both a height and a period")
+        complaints.append("--swell and --swell-tp must be used together")
     if scatter is not None and (chosen or not named):
         complaints.append(
-            f"--scatter: gives heights and periods; leave {', '.join(chosen) or 'the file'} out"
+            f"--scatter contains heights and periods; leave out {', '.join(chosen) or 'the file'}"
         )
     elif scatter is None and path.is_file() and not named and chosen:
-        complaints.append(f"{', '.join(chosen)}: a measured spectrum has its own")
+        complaints.append(f"{', '.join(chosen)}: a measured spectrum has its own height and period")
     elif scatter is None and named and (chosen or spectrum != "bretschneider"):
         needs = ["--hs", *(["--tp"] if spectrum not in sea_states.OF_HEIGHT else [])]
         if missing := [name for name in needs if name not in chosen]:

@@ -90,7 +90,8 @@ class Lifts:
     ----------
     deployment : lifts in the order over the side
     recovery : lifts from the top of the line down to the release
-    unknown : labels of the pieces of unknown mass in air, any of which may be the heaviest lift
+    unknown : labels of all pieces and clamps of unknown mass in air, any of which may belong to the
+        heaviest lift
     """
 
     deployment: tuple[Lift, ...]
@@ -330,7 +331,7 @@ def lifts_of(
         down += _stages(leg[::step], weights)
     for leg in by_leg:
         up += [*_stages([one for one in leg if one.index in rising][::-1], weights)][::-1]
-    unknown = tuple(one.label for one in pieces if _is_lifted(one) and one.lift_mass is None)
+    unknown = tuple(one.label for one in inventory if one.dry_mass is None)
     return Lifts(tuple(down), tuple(up), unknown)
 
 

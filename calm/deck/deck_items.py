@@ -33,10 +33,10 @@ class DeckItem:
     depth, height : depth and height above the seabed of a clamp, or of the upper end of a piece [m]
     tilt : tilt from the vertical [degrees]
     tension : maximum tension in a piece [N]; None for a clamp
-    serial : serial number as designed
+    serial : serial number as designed, or those of its items
     deployed_serial, remark : as deployed; the serial number defaults to that of the design
-    apart : whether connecting hardware has a row of its own, because it governs a check or has an
-        open finding
+    apart : whether connecting hardware is drawn in a row of its own, because it governs a check or
+        has an open finding
     """
 
     part: Piece | Clamp
@@ -66,6 +66,11 @@ class DeckItem:
         return self.part.component.name or self.part.use
 
     @property
+    def serials(self) -> tuple[str, ...]:
+        """Serial numbers as designed."""
+        return self.part.serials
+
+    @property
     def planned_depth(self) -> float | None:
         """Depth planned in still water [m]; None without a plan."""
         return self.part.planned_depth
@@ -89,7 +94,7 @@ class DeckItem:
     @property
     def is_joint(self) -> bool:
         """Whether the item is hardware that only connects pieces, without data of its own."""
-        return self.is_connector and not self._is_told_of and not self.apart
+        return self.is_connector and not self._is_told_of
 
     @property
     def is_connector(self) -> bool:
@@ -187,15 +192,22 @@ def hardware_text(joints: Iterable[DeckItem]) -> str:
     return ", ".join(f"{n} × {name}" if n > 1 else name for name, n in counts.items())
 
 
-def rows_on_paper(items: Sequence[DeckItem]) -> tuple[DeckRow, ...]:
-    """The rows in which items that follow one another are listed, in their order."""
+def rows_on_paper(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
+    """The rows in which items that follow one another are listed or drawn, in their order.
+
+    In a drawing, hardware that stands apart has a row of its own.
+    """
+
+    def is_joint(one: DeckItem) -> bool:
+        return one.is_joint and not (drawn and one.apart)
+
     rows: list[DeckRow] = []
-    for _, group in groupby(items, key=lambda one: one.is_joint or one.kind):
+    for _, group in groupby(items, key=lambda one: is_joint(one) or one.kind):
         run = tuple(group)
         last = rows[-1] if rows else None
         if last is None:
             rows.append(DeckRow(run))
-        elif run[0].is_joint:
+        elif is_joint(run[0]):
             rows[-1] = replace(last, after=(*last.after, *run))
         elif last.first.kind == run[0].kind and not last.ends:
             rows[-1] = DeckRow((*last.items, *run), last.floats, last.joints)
@@ -263,17 +275,17 @@ SHOWN_USE = 0.4999
 def deck_items_of(result: AnyResult, apart: Collection[str] = ()) -> tuple[DeckItem, ...]:
     """Down the line to the anchor, or each leg, the clamps of a piece after it, down that piece.
 
-    Connecting hardware with a label in `apart` has a row of its own.
+    Connecting hardware with a label in `apart` is drawn in a row of its own.
     """
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}
+    serials = deployed.serials if deployed else {}
     seabeds = [leg.water.depth for leg in result.legs]
     own = leg_numbers(result.file)
     found: list[DeckItem] = []
     for row, clamps in rows_down(result):
         bottom = seabeds[own[row.index]]
-        found.append(_deck_item(row, row, items, bottom))
-        found += (_deck_item(row, clamp, items, bottom) for clamp in clamps)
+        found += (_deck_item(row, one, items, serials, bottom) for one in (row, *clamps))
     return tuple(
         replace(one, apart=True) if one.is_connector and one.label in apart else one
         for one in found
@@ -284,6 +296,7 @@ def _deck_item(
     piece: ComponentRow,
     row: ComponentRow | ClampRow,
     items: Mapping[str, DeployedItem],
+    serials: Mapping[str, Sequence[str]],
     bottom: float,
 ) -> DeckItem:
     part = row.part
@@ -292,7 +305,7 @@ def _deck_item(
     depth, _, _ = row.upper
     return DeckItem(
         part=part, index=piece.index, serial=part.serial, remark=item.remark if item else None,
-        deployed_serial=(item.serial if item else None) or part.serial,
+        deployed_serial=", ".join(serials.get(part.label, ())) or part.serial,
         on=None if clamp is None else piece.label,
         at=None if clamp is None else clamp.at,
         of_length=None if clamp is None else piece.cut_length,

@@ -446,7 +446,6 @@ class Axes:
 
 
 def _path(x: Floats, y: Floats) -> str:
-    """Path of straight lines through points, interrupted at NaN."""
     parts: list[str] = []
     last: tuple[float, float] | None = None
     for here in zip(x.tolist(), y.tolist(), strict=True):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 import re
+import unicodedata
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, zip_longest
@@ -42,7 +43,7 @@ _HEAD = re.compile(r"^(?=[^ \n#])(?:([\w.-]+): *(?:#.*)?$)?", re.MULTILINE | re.
 class Assembly(Definition):
     """Pieces that are always used together; `parts` are items as in the `line` of a mooring."""
 
-    kind: Literal["assembly"] = Field(description="which kind of component it is")
+    kind: Literal["assembly"] = Field(description="kind of the component")
     parts: tuple[dict[str, Any], ...] = described(
         "pieces as in `line`, from the top",
         [{"use": "glass-17in", "count": 2}, {"use": "chain-13", "length": "1 m"}],
@@ -120,7 +121,6 @@ class Catalogue:
         return next(islice(self._of(id), 1, None), None)
 
     def _of(self, id: str) -> Iterator[CatalogueEntry]:
-        """Return the definitions of an id, the nearest first."""
         return (level[id] for level in self.levels if id in level)
 
     def _all(self) -> dict[str, CatalogueEntry]:
@@ -376,6 +376,17 @@ def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple
     return (definition if isinstance(definition, Component) else None), tuple(problems)
 
 
+_LETTERS = str.maketrans(
+    {"ø": "o", "æ": "ae", "œ": "oe", "đ": "d", "ð": "d", "þ": "th", "ł": "l", "ı": "i", "⁄": "-"}
+)
+"""Letters, and the sign of fractions, that have no decomposition into ASCII."""
+
+
 def tidy_id(text: str) -> str:
-    """Return a text as an id: lower-case letters, digits and hyphens."""
-    return re.sub(r"[^a-z0-9]+", "-", text.casefold()).strip("-")
+    """Return a text as an id: lower-case letters, digits and hyphens; letters lose their accents.
+
+    ``Bøye 1½"`` becomes ``boye-1-1-2``.
+    """
+    decomposed = unicodedata.normalize("NFKD", re.sub(r"(?<=\d)(?=[¼-¾⅐-⅞])", " ", text).casefold())
+    plain = re.sub(r"[\u0300-\u036f]", "", decomposed).translate(_LETTERS)
+    return re.sub(r"[^a-z0-9]+", "-", plain).strip("-")

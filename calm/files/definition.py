@@ -292,16 +292,19 @@ class Definition(Model):
     note: Text | None = optional("any remark", "galvanised; inspect after each cruise")
     source: Text | None = optional("source of the figures", "data sheet of the manufacturer, 2026")
     sources: dict[str, Text] | None = optional(
-        "source of each figure that is not from `source`, by field",
+        "sources of the values that are not from `source`, by key",
         {"breaking_load": "test of 2025"},
     )
     searched: tuple[str, ...] | None = optional(
-        "fields that were searched for and that no source gives", ["breaking_load"]
+        "keys for which no source was found", ["breaking_load"]
     )
-    prefer: Text | None = optional(
-        "id of the definition of the same product to use instead of this one", "sbe37"
-    )
+    prefer: Text | None = optional("id of the better documented entry of the same product", "sbe37")
     date: Text | None = optional("day, e.g. 2026-11-20", "2026-11-20")
+    items: Annotated[int | None, Field(ge=1)] = optional(
+        "number of equal items it consists of, each with its own serial number, such as two "
+        "releases in parallel",
+        2,
+    )
     depth_rating: PositiveLength = optional("maximum depth of use", "2000 m")
     working_load: PositiveForce = optional("load it may carry in use, e.g. 20 kN", "20 kN")
     breaking_load: PositiveForce = optional("load at which it breaks, e.g. 40 kN", "40 kN")
@@ -322,7 +325,7 @@ class Definition(Model):
     warn_tilt: Annotated[float | None, TILT] = optional("tilt that causes a warning", "15 deg")
     estimate: Annotated[tuple[EstimatedFigure, ...] | None, BeforeValidator(_listed)] = Field(
         default=None,
-        description="estimates of figures that are not given, for the rules that need them",
+        description="estimates of unpublished values, for the design check",
         json_schema_extra=_alone_or_listed,
         examples=[
             {

@@ -236,17 +236,17 @@ class EnvironmentKeys(TowEnvironmentKeys):
     )
     depth: Annotated[float, _WATER_DEPTH] = described("water depth, e.g. 1100 m", "1100 m")
     maximum_speed: Annotated[float, QuantityField("speed", above=0)] = described(
-        "a faster current is an error", "3 m/s", default=_MAXIMUM_SPEED
+        "speed above which a current is an error", "3 m/s", default=_MAXIMUM_SPEED
     )
     depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = optional(
         "water depth at low and at high water, e.g. [98 m, 104 m]", ["98 m", "104 m"]
     )
     fouling: Fouling | None = optional(
-        "growth on everything from the surface down, for the design check",
+        "biofouling from the surface downwards, for the design check",
         {"depth": "50 m", "thickness": "20 mm"},
     )
     seabed: SeabedGiven | None = optional(
-        "how the seabed slopes below the anchors", {"slope": "3 deg", "toward": "120 deg"}
+        "slope of the seabed below the anchors", {"slope": "3 deg", "toward": "120 deg"}
     )
     waves: WaveKeys | None = optional(
         "one sea state, or a table of sea states, for the design check",
@@ -346,8 +346,8 @@ def _tide_doubts(levels: tuple[float, float]) -> list[str]:
     if (between := levels[1] - levels[0]) <= GREATEST_TIDE:
         return []
     return [
-        f"`depth_range` spans {between:g} m, and the largest tides 17 m: was it cm, or are these "
-        "not low and high water?"
+        f"`depth_range` spans {between:g} m, but the largest tides are 17 m: are these the depths "
+        "at low and at high water, and is the unit right?"
     ]
 
 

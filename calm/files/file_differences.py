@@ -222,7 +222,6 @@ def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, Com
 
 
 def _fields(part: Any) -> dict[str, Any]:
-    """Return the fields of a model or a dataclass by name."""
     if isinstance(part, BaseModel):
         return dict(part)
     return {field.name: getattr(part, field.name) for field in fields(part)}
@@ -351,7 +350,6 @@ def align(before: Sequence[Known], after: Sequence[Known]) -> Alignment:
 
 
 def _places(parts: Sequence[Known]) -> dict[str, int]:
-    """Return the index of each unique label."""
     places: dict[str, list[int]] = defaultdict(list)
     for place, part in enumerate(parts):
         places[part.label].append(place)

@@ -249,7 +249,6 @@ class MooringReader:
 
 
 def _child(section: SourceMapping, key: str) -> SourceMapping | None:
-    """Return the mapping under a key; None if there is none."""
     return section.child(key) if isinstance(section.data.get(key), dict) else None
 
 
@@ -260,7 +259,6 @@ def _in_order(problems: list[Problem], path: str) -> list[Problem]:
 
 
 def _check_tow(pieces: Sequence[Piece], top: SourceMapping) -> None:
-    """Check that a tow has no anchor."""
     for piece in pieces:
         if isinstance(piece.component, Anchor):
             message = f"anchor `{piece.use}` in a tow; its line ends in the towed body"

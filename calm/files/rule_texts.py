@@ -156,13 +156,13 @@ RULES = {
     "anchor-uplift": RuleText("Anchor uplift", "load",
         "V",
         "weight in water / 1.5",
-        "The vertical part of that rule: V ≤ weight in water / 1.5",
+        "Dewey's rule, vertical part: V ≤ weight in water / 1.5",
         figures=("weight", "density")),
     "anchor-sliding": RuleText("Anchor sliding", "load",
         "H",
         "friction × (weight in water / 1.5 − V)",
-        "The horizontal part of that rule: H ≤ friction (weight in water / 1.5 - V), friction 0.6 "
-        "of a deadweight",
+        "Dewey's rule, horizontal part: H ≤ friction (weight in water / 1.5 - V), with a friction "
+        "coefficient of 0.6 for a deadweight",
         figures=("weight", "density")),
     "slack": RuleText("Minimum tension", "load",
         "minimum tension of the wires and ropes above the release that are off the seabed, if the "

@@ -332,7 +332,6 @@ def _example(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
 
 
 def _flow(value: object) -> str:
-    """Return a value as YAML on one line."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{key}: {_flow(each)}" for key, each in value.items()) + "}"
     return f"[{', '.join(map(_flow, value))}]" if isinstance(value, list) else str(value)

@@ -64,7 +64,12 @@ ALIKE_HOURS = 1.0
 LEAST_SPREAD = 0.02
 """Least deviation of a current about its mean [m/s]."""
 CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
-"""Default correlation time [h] and correlation depth [m] of the current."""
+"""Initial correlation time [h] and correlation depth [m] of the current."""
+HOURS = (4.0, 16.0)
+"""Limits of the estimated correlation time [h]."""
+WIDER = 2.0
+METERS_ALIKE = 0.02
+"""Error common to all meters of a record, as a share of the speed."""
 
 STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
 """Number of stretches with separate errors in knockdown, their correlation length as a share of the
@@ -188,6 +193,7 @@ class ErrorScales:
 
     flag: Mapping[int, float]
     share: float = SHARE
+    tide: float = common_unknowns.TIDE
     hours: float = CURRENT_HOURS
     reach: float = CURRENT_REACH
 
@@ -217,7 +223,11 @@ class CurrentSmoother:
         spread = np.sqrt(0.5 * np.nanvar(flow, axis=1).sum(axis=0))
         self.spread = np.maximum(self._along(place, spread), LEAST_SPREAD)
         flags = np.unique(one.flag[np.isfinite(one.u)])
-        self.scales = ErrorScales({f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()})
+        usual = {f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()}
+        self._most_tide = (
+            common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
+        )
+        self.scales = ErrorScales(usual, tide=self._most_tide)
         self.levels = np.where(np.isfinite(one.level_depth), one.level_depth, place)
         self.knot_depth = self.knots.at(self.levels)
         self.state = np.zeros((len(one.time), self.columns.count))
@@ -344,8 +354,7 @@ class CurrentSmoother:
         alike = np.exp(-apart / scales.reach) * np.outer(self.spread, self.spread)
         steady[at.current, at.current] = np.kron(np.eye(2), alike)
         steady[at.share, at.share] = self._stretches[2]
-        tide = common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
-        steady[at.tide, at.tide] = tide**2
+        steady[at.tide, at.tide] = scales.tide**2
         first = steady.copy()
         first[at.factor, at.factor] = self.common_covariance[: len(self.names), : len(self.names)]
         first[at.stays, at.stays] = np.diag(self.first)
@@ -395,11 +404,18 @@ class CurrentSmoother:
         """Error variances (n, k) of the current components [m²/s²]."""
         one = self.measured
         table = np.array([self.scales.flag.get(f, FLAGGED[4]) for f in range(256)])
-        speed = np.nan_to_num(np.hypot(one.u, one.v))
+        u, v = self.at_levels
+        speed = np.hypot(u, v)
         noise: Floats = (METER[0] ** 2 + (METER[1] * speed) ** 2) * table[
             one.flag.astype(np.uint8)
         ] ** 2
         return noise
+
+    @property
+    def at_levels(self) -> tuple[Floats, Floats]:
+        """Estimated currents (n, k), u and v, at the levels [m/s]."""
+        u, v = self.currents(self.state[:, self.columns.current])
+        return u @ self.knots.level.T, v @ self.knots.level.T
 
     # --- iterations
 
@@ -450,6 +466,9 @@ class CurrentSmoother:
         self.common_covariance = np.linalg.inv(law.normal(law.fixed) / alike + before)
         value = self.common_covariance @ (pulls.sum(axis=0) / alike)
         self.factor = np.clip(value[: len(self.names)], -FURTHEST, FURTHEST)
+        # drag times the square of the speed fits the pressures
+        drag = 2.0 * METERS_ALIKE * np.array([name.endswith("_drag") for name in self.names])
+        self.common_covariance[: len(drag), : len(drag)] += np.outer(drag, drag)
 
     def _grown(self, step: float) -> float:
         """Return the error share of the line after a step of its logarithm.
@@ -474,7 +493,9 @@ class CurrentSmoother:
         wide = np.empty((count, law.read.shape[1]))
         stay = np.zeros_like(self.stepped)
         alike = np.linalg.inv(self._stretches[2])
-        share = np.zeros(count)
+        precise = np.linalg.inv(law.steady[at.current, at.current])
+        noise_share: list[float] = []
+        share, tide = np.zeros(count), np.zeros(count)
         for each in smoothed(law):
             t, spread = each.time, each.covariance
             now[t] = each.mean
@@ -484,8 +505,11 @@ class CurrentSmoother:
             flow = slope[t][:, at.current]
             curved[t] = np.einsum("pq,pq->p", flow @ spread[at.current, at.current], flow)
             if t + 1 < count:
-                stay[t + 1] = each.moved[at.stays]
+                stay[t + 1] = each.moved[at.stays, at.stays].diagonal()
+                part = np.trace(precise @ each.moved[at.current, at.current]) / len(precise)
+                noise_share.append(part / (1.0 - law.fade[t + 1, 0] ** 2))
             z = each.mean[at.share]
+            tide[t] = each.mean[at.tide][0] ** 2 + spread[at.tide, at.tide][0, 0]
             share[t] = z @ alike @ z + np.sum(alike * spread[at.share, at.share])
             if t == 0:
                 begun = each.mean[at.stays] ** 2 + spread.diagonal()[at.stays]
@@ -512,6 +536,10 @@ class CurrentSmoother:
         if turn >= SETTLED:
             grown = self._grown(float(0.5 * np.log(share.mean() / STRETCHES)))
             self.scales = replace(self.scales, share=grown)
+        if turn >= 2 and count > 1:
+            hours = float(np.clip(self.scales.hours / np.mean(noise_share), *HOURS))
+            usual = min(float(np.sqrt(tide.mean())), self._most_tide)
+            self.scales = replace(self.scales, hours=hours, tide=usual)
         if turn >= 1:
             self.first = self._heavy(begun)
             self.stepped = 0.5 * (self.usual + np.maximum(stay, 0.0))
@@ -585,9 +613,7 @@ class CurrentSmoother:
     def current_factor(self) -> Floats:
         """Ratio (n,) of the estimated currents to the measured currents."""
         one = self.measured
-        u, v = (
-            each @ self.knots.level.T for each in self.currents(self.state[:, self.columns.current])
-        )
+        u, v = self.at_levels
         along, own = u * one.u + v * one.v, one.u**2 + one.v**2
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.asarray(np.nansum(along, axis=1) / np.nansum(own, axis=1), np.float64)
@@ -620,6 +646,9 @@ class CurrentSmoother:
         """
         one, at, count = self.measured, self.columns, len(times)
         law, _ = self.law(self.depth, sensors=False)
+        wide = law.steady.copy()
+        wide[at.current, at.current] *= WIDER**2
+        law = replace(law, steady=wide, first=law.first + wide - law.steady)
         flow = slice(0, at.current.stop)
         now, spread = np.empty((count, flow.stop)), np.empty((count, flow.stop, flow.stop))
         row = {int(t): i for i, t in enumerate(times)}

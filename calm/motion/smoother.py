@@ -75,7 +75,7 @@ class Smoothed:
     ----------
     time : index of the time
     mean, covariance : (q,), (q, q) of the state
-    moved : (q,) mean square of the noise of each state after this time; 0 at the last time
+    moved : (q, q) mean products of the state noise after this time; 0 at the last time
     """
 
     time: int
@@ -126,13 +126,11 @@ def smoothed(law: StateSpace) -> Iterator[Smoothed]:
         block = [*_filter(law, start, min(start + BLOCK, count), *known)]
         for time in range(start + len(block) - 1, start - 1, -1):
             one = block[time - start]
-            moved = np.zeros(len(pull))
+            moved = np.zeros_like(hold)
             if time + 1 < count:
                 added = law.added(time + 1)
-                across = added @ hold
-                moved = (
-                    (added @ pull) ** 2 + added.diagonal() - np.einsum("ij,ij->i", across, added)
-                )
+                pushed = added @ pull
+                moved = np.outer(pushed, pushed) + added - added @ hold @ added
                 fade = law.fade[time + 1]
                 pull, hold = fade * pull, fade[:, None] * hold * fade
             # (1 - gain seen)' of later times, plus the information of this time

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.checks.finding import State
+from calm.checks.finding import State, grouped_by
 from calm.drawing.graph import Axes, Graph, LegendEntry, Scale, Stroke, covering, to_one_scale
 from calm.drop import DropPlan
 from calm.drop.fall_record import DepthReached
@@ -21,7 +21,6 @@ from calm.physics.line import Floats
 from calm.quantities import QUANTITIES, bearing_text, duration, say
 from calm.report import blocks
 from calm.report.blocks import Cell, Figure, Prose, ReportPart, Table, number, quantity, table_of
-from calm.report.check_tables import grouped
 from calm.report.provenance import degrees_text, position_text
 from calm.units import KNOT
 
@@ -142,8 +141,8 @@ def _depths_table(plan: DropPlan) -> list[Table]:
         if each.part.component.role != "float" or each.beyond or each.greatest > each.rest + _DEEPER
     ]
     # components of equal rating share a row; those that sink below their rating are separate
-    runs = grouped(listed, lambda one: one.label if one.beyond else (one.part.use, one.rating))
-    rows = [(max(run, key=lambda one: one.greatest), run) for run in runs]
+    runs = grouped_by(listed, lambda one: one.label if one.beyond else (one.part.use, one.rating))
+    rows = [(max(run, key=lambda one: one.greatest), run) for run in runs.values()]
     depth = QUANTITIES["depth"]
 
     def label(row: tuple[DepthReached, Sequence[DepthReached]]) -> str:

@@ -16,12 +16,12 @@ from calm.checks.finding import (
 )
 from calm.report.blocks import Block, Cell, Field, Prose, Span, number, table_of, words
 from calm.report.open_items import (
+    FIGURE_FIELDS,
     advice,
-    figure_text,
-    limit_text,
     percent_text,
     short,
     where_text,
+    without_asides,
 )
 from calm.report.page_one import (
     SignedMooring,
@@ -122,7 +122,7 @@ def _cell(findings: Sequence[Finding], lacking: bool) -> MatrixCell:
         failed = [one for one in used if one.state is State.FAIL]
         lead = governing(failed) if failed else worst
     title, use = RULES[lead.rule].title.lower(), percent_text(lead.utilisation)
-    told = f"{title}, {lead.component or 'whole line'}, {use} %"
+    told = f"{title}, {lead.component or 'whole line'}, {use}\u00a0%"
     return MatrixCell(governing(used).utilisation, state, told)
 
 
@@ -215,13 +215,11 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
         [one for name in order for one in told[name]],
         words("", lambda one: Cell(state=one.state), 0.0),
         words("Rule", lambda one: RULES[one.rule].title, 1.0),
-        number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
-        number("Found", lambda one: figure_text(one)),
-        words("Limit", lambda one: limit_text(one) or "–", 0.0),
+        *FIGURE_FIELDS,
         words("Where, case", lambda one: short(where_text(one), 36), 1.1),
         number("Over\n100 %", lambda one: _over(groups[one.rule])
                if one is told[one.rule][0] else None),
-        words("Remedy", lambda one: Cell(detail=short(advice(one), 90)), 1.5),
+        words("Remedy", lambda one: Cell(detail=without_asides(advice(one))), 1.5),
         aside="per rule, the finding with the largest use, and a more severe one below it; over "
         "100 %: number of findings in all environments",
         ruled=False,

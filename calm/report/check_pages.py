@@ -16,6 +16,7 @@ from calm.checks.finding import (
     State,
     by_rule,
     governing,
+    grouped_by,
     told_of_rule,
 )
 from calm.checks.inventory import InventoryItem, total_of
@@ -39,9 +40,9 @@ from calm.report.blocks import (
     table_of,
     words,
 )
-from calm.report.check_tables import grouped
 from calm.report.load_cases import LOAD, length_text, load_text
 from calm.report.open_items import (
+    FIGURE_FIELDS,
     advice,
     figure_text,
     limit_text,
@@ -96,10 +97,7 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         words("", lambda row: Cell(state=row[0].state), 0.0),
         words("Rule", lambda row: Cell(
             RULES[row[0].rule].title, f"({row[1]})" if row[1] > 1 else "", goes_on=True), 1.2),
-        number("Use %", lambda row: Cell(percent_text(row[0].utilisation), strong=True)),
-        number("Found", lambda row: figure_text(row[0])),
-        words("Limit", lambda row: limit_text(row[0]) or "–", 0.0),
-        words("Where, case", lambda row: where_text(row[0]), 0.9),
+        *blocks.of_first(*FIGURE_FIELDS, words("Where, case", where_text, 0.9)),
         words("Basis of the limit; remedy", basis, 2.2),
         note=f"These {len(rows)} rows summarise {len(findings)} findings ({counted}); the files of "
         "this report list them.",
@@ -169,7 +167,7 @@ def _launch(assessment: Assessment) -> Table:
          _limit(assessment, "launch-speed")),
         ("with twice and half the drag",
          f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
-        ("Tension at the anchor during descent", LOAD.say(launch.anchor_tension), ""),
+        ("Anchor tension in descent", LOAD.say(launch.anchor_tension), ""),
         (f"Largest tension, {label}", LOAD.say(float(np.nanmax(tension))), _limit_of(loaded)),
     ]  # fmt: skip
     if most is not None and most.utilisation is not None and most.component != label:
@@ -221,15 +219,16 @@ _MOST_BREAKS = 10
 def _breaks(assessment: Assessment) -> Table:
     """Tabulate the net buoyancy after the most critical break of each section, and after a loss."""
     parts = {piece.index: piece for piece in assessment.file.pieces}
-    groups: dict[str, list[Break]] = {}
-    part = "the top"
-    for one in assessment.backup:
+    section = {None: "the top"}
+
+    def section_of(one: Break) -> str:
         piece = parts.get(one.break_after)
         if piece is None or piece.component.role in ("line", "float", "release"):
-            part = one.label
-        groups.setdefault(part, []).append(one)
+            section[None] = one.label
+        return section[None]
+
     rows: list[tuple[str, Break | Loss]] = []
-    for name, breaks in groups.items():
+    for name, breaks in grouped_by(assessment.backup, section_of).items():
         judged = [one for one in breaks if one.judged]
         if judged:
             worst = min(judged, key=lambda one: one.margin - one.required)
@@ -303,22 +302,21 @@ def _inventory(signed: SignedMooring) -> Table:
             missing = total_of(items).missing_masses
             return Cell(detail=f"{missing} without mass" if missing else "")
         known = _runs(numbers[one.label] for one in group if one.label in numbers)
-        text = ", ".join(known[:8]) + (f" and {len(known) - 8} more" if len(known) > 8 else "")
-        return Cell(detail=text)
+        return Cell(detail=", ".join(known))
 
     def name(group: Sequence[InventoryItem]) -> str:
         return "Total" if group is items else group[0].name or group[0].use
 
     return table_of(
         "Inventory",
-        grouped(items, lambda one: one.use),
-        number("Pieces", len),
+        grouped_by(items, lambda one: one.use).values(),
+        number("Pieces", lambda group: sum(one.items for one in group)),
         words("Component", name, 1.6),
         words(
             "Catalogue", lambda group: None if group is items else Cell(detail=group[0].use), 0.9
         ),
-        number("Cut length\nm", length),
-        number("Mass in\nair kg", mass),
+        number(f"Cut length\n{QUANTITIES['length'].display_unit}", length),
+        number(f"Mass in\nair {QUANTITIES['dry_mass'].display_unit}", mass),
         number(f"Weight in\nwater {unit}", weight),
         words("Items", places, 1.0),
         sums=[items],

@@ -11,6 +11,7 @@ from calm.deck.hardware import LENGTH_ERROR, Cut, Mark, all_shipped
 from calm.quantities import QUANTITIES, say
 from calm.report import blocks
 from calm.report.blocks import Cell, Field, Note, ReportPart, number, quantity, table_of, words
+from calm.report.check_tables import named
 from calm.report.sheet import leg_titles
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
@@ -170,8 +171,8 @@ def lifts_part(deck: Deck) -> ReportPart:
             f"{say('wet_weight', heaviest.weight)} in water."
         )
     if unknown:
-        shown = ", ".join(unknown[:6]) + (" …" if len(unknown) > 6 else "")
-        said.append(f"This is a lower bound: the mass in air of {shown} is unknown.")
+        told = named(unknown, len(unknown))
+        said.append(f"This is a lower bound: the mass in air of {told} is unknown.")
     greatest = max(deck.lifts.deployment, key=lambda one: one.hanging or 0.0, default=None)
     if greatest is not None and (greatest.hanging or 0.0) > 0.0:
         said.append(

@@ -181,14 +181,14 @@ def _piece(row: DeckRow) -> Cell:
 
 def _releases(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
     """Tabulate the releases with their codes, and checks with boxes or room to write."""
-    releases = deck.file.releases
-    known = {release.serial for release in releases}
-    rows = [(Cell(one.serial or ""), "\n".join(one.code_lines)) for one in releases]
-    rows += [
-        (Cell(one.serial or "", one.label), "")
-        for one in deck.parts
-        if one.role == "release" and (one.serial is None or one.serial not in known)
-    ]
+    codes = {one.serial: "\n".join(one.code_lines) for one in deck.file.releases}
+    rows = []
+    for part in deck.parts:
+        if part.role == "release":
+            items = max(part.part.component.items or 1, len(part.serials))
+            for serial in (*part.serials, *[""] * items)[:items]:
+                rows.append((Cell(serial, part.label), codes.pop(serial, "")))
+    rows += [(Cell(serial or ""), text) for serial, text in codes.items()]
     table = table_of(
         "Releases",
         rows,

@@ -5,13 +5,12 @@ from math import inf
 from typing import Any, Literal
 
 from calm.case.leg_result import LegResult
-from calm.case.result_tables import run_of
-from calm.checks.finding import Finding, State
+from calm.case.result_tables import ComponentRow, run_of
+from calm.checks.finding import Finding, State, grouped_by
 from calm.drawing.check_figures import PieceBar, load_chart
 from calm.drawing.line_picture import alike, together
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Block, Cell, Figure, Table, number, table_of, words
-from calm.report.check_tables import grouped
 from calm.report.load_cases import (
     LOAD,
     LoadCase,
@@ -69,7 +68,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
             and last.row.use == one.row.use
             and alike(last.row.label, one.row.label)
         )
-        if same and one.row.role in ("float", "line"):
+        if same and _floats(one.row):
             groups[-1].append(one)
         else:
             groups.append([one])
@@ -90,10 +89,10 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         groups,
         number("No.", lambda group: run_of([str(one.number) for one in group])),
         words("Item", lambda group: together([one.row.label for one in group])),
-        number(f"Largest tension {unit}", standing(case)),
+        number(f"Tension\n{unit}", standing(case)),
         number(f"Mini-\nmum {unit}", lambda group: None if group[0].row.role in passes
                else load_text(min(one.least for one in group))),
-        number("Largest tilt °", lambda group: None if group[0].row.role == "anchor"
+        number("Tilt\n°", lambda group: None if group[0].row.role == "anchor"
                else QUANTITIES["tilt"].format(max(one.tilt for one in group))),
         number(f"Capa-\ncity {unit}", standing(lambda one: capacity_text(one.standing))),
         words("Use", standing(lambda one: _bar(one.standing)), 0.45),
@@ -108,9 +107,15 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         "≈ estimated, ○ accepted. The code of the case follows the tension. Equal pieces share a "
         "row, with the tension, capacity and use of the most used one, and the minimum, tilt and "
         "rise of all.",
-        aside="envelope of all load cases",
+        aside="envelope of all load cases: largest tension and tilt, minimum tension",
         ruled=False,
     )  # fmt: skip
+
+
+def _floats(row: ComponentRow) -> bool:
+    """Whether a piece is a float, or a chain or cable with floats."""
+    parts = (row.part, *row.part.clamps)
+    return any(part.component.role == "float" for part in parts)
 
 
 _Show = Callable[[PieceEnvelope], object]
@@ -153,7 +158,7 @@ def _use(finding: Finding | None) -> Cell | None:
 
 def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
     """A row of each type, with the pieces that are used most in equilibrium and in the launch."""
-    groups = grouped(loads, lambda one: one.row.use)
+    groups = grouped_by(loads, lambda one: one.row.use).values()
     rows = [(_most_used(group), _most_used(group, "launch"), len(group)) for group in groups]
     unit = LOAD.display_unit
     launched = any(row[1].launch_tension for row in rows)
@@ -189,7 +194,7 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
     ]
     if not rows:
         return
-    anchors = grouped(rows, lambda row: row[1].file.pieces[-1].label)
+    anchors = grouped_by(rows, lambda row: row[1].file.pieces[-1].label).values()
     if len(anchors) > 1 or len(rows) > 12:
         rows = [max(group, key=lambda row: row[1].anchor_load.required_weight) for group in anchors]
     checks, angle = signed.assessment.file.checks, QUANTITIES["angle"].format

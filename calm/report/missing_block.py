@@ -7,11 +7,11 @@ from pathlib import Path
 from textwrap import wrap
 
 from calm.checks.assess import RULES
-from calm.checks.finding import Finding, MissingFigure
+from calm.checks.finding import Finding, MissingFigure, grouped_by
 from calm.checks.missing import alternatives
 from calm.files.components import KINDS
 from calm.files.yaml_document import read_document
-from calm.report.check_tables import grouped, named
+from calm.report.check_tables import named
 
 _HEAD = """\
 # Values that calm check needs and the components lack. Write each value with its unit after its
@@ -58,19 +58,16 @@ def missing_block(findings: Iterable[Finding], places: Places) -> str:
         return "# The mooring has no equilibrium, so its missing values are unknown.\n"
     if not figures:
         return "# No component lacks a value.\n"
-    ids = grouped(figures, lambda one: one.component_id)
-    lines = [
-        f"#\n# {text}" for text in _how_to_use([group[0].component_id for group in ids], places)
-    ]
+    ids = grouped_by(figures, lambda one: one.component_id)
+    lines = [f"#\n# {text}" for text in _how_to_use(ids, places)]
     lines += [] if "" in places else ["components:"]
-    for of_component in ids:
+    for id, of_component in ids.items():
         labels = named(label for one in of_component for label in one.pieces)
-        id = of_component[0].component_id
         plain = id if re.fullmatch(r"[A-Za-z][\w.-]*", id) else json.dumps(id, ensure_ascii=False)
         own = f"defined in {' and '.join(places[id])}" if id in places else ""
         told = "; ".join(filter(None, (labels if labels != id else "", own)))
         lines.append(f"  {plain}:{f'  # {told}' if told else ''}")
-        for same in grouped(of_component, lambda one: one.quantity):
+        for same in grouped_by(of_component, lambda one: one.quantity).values():
             lines += _key(same)
     return _HEAD + "\n".join(lines) + "\n"
 
@@ -99,7 +96,8 @@ def _key(same: Sequence[MissingFigure]) -> list[str]:
     meaning = (field.description or "").partition(", e.g.")[0]
     instead = "".join(f", or `{key}`" for key in alternatives(first.quantity)[1:])
     rules = dict.fromkeys(RULES[rule].title.lower() for one in same for rule in one.needed_by)
-    lines = [f"    {first.quantity}:  # e.g. {field.examples[0]}: {meaning}{instead}"]
+    example = next(iter(field.examples or ()), "")
+    lines = [f"    {first.quantity}:  # e.g. {example}: {meaning}{instead}"]
     notes = [f"needed for {', '.join(rules)}"]
     notes += dict.fromkeys(str(one.class_estimate) for one in same if one.class_estimate)
     for text in notes:

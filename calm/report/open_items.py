@@ -17,18 +17,19 @@ from calm.checks.finding import (
     State,
     conclusion_of,
     governing,
+    grouped_by,
     percent_used,
     worst_of,
 )
 from calm.quantities import QUANTITIES
-from calm.report.blocks import OpenItem, Span
-from calm.report.check_tables import grouped, joined, named_components
+from calm.report.blocks import Cell, OpenItem, Span, number, words
+from calm.report.check_tables import joined, named_components
 
 OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED)
 """States that count as open, in the order of the list."""
 
-_DIFFERENCES = ("planned-depth", "as-deployed")
-"""Rules whose values are differences, which their messages explain."""
+_EXPLAINED = ("planned-depth", "as-deployed", "reserve", "freeboard")
+"""Rules whose messages explain their values: differences and shares."""
 
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
@@ -40,6 +41,11 @@ def plain(text: str) -> str:
     text = re.sub(r"`([^`]*)`", lambda key: key[1].replace("_", " ").replace(":", ""), text)
     text = re.sub(r"(?<![\w-])-(?=\d)", "−", text)
     return re.sub(r"(?<=\d) (?=(?:m/s|mm|m|kN|N|kg|s|min|kn|kgf|lbf|ft)\b|%)", "\u00a0", text)
+
+
+def without_asides(text: str) -> str:
+    """Remove sources and other long passages in brackets."""
+    return re.sub(r" \((?:[^()]|\([^()]*\)){30,}\)", "", text)
 
 
 def short(text: str, most: int) -> str:
@@ -68,6 +74,14 @@ def percent_text(utilisation: float | None) -> str:
         return "–"
     percent = percent_used(utilisation)
     return ">999" if not isfinite(percent) or percent > 999.0 else f"{percent:.0f}"
+
+
+FIGURE_FIELDS = (
+    number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
+    number("Found", figure_text),
+    words("Limit", lambda one: limit_text(one) or "–", 0.0),
+)
+"""Columns of findings: utilisation, value and limit."""
 
 
 def where_text(finding: Finding) -> str:
@@ -102,7 +116,7 @@ def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[
     for state in OPEN:
         those = [one for one in every if one.state is state]
         if state in (State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED):
-            groups = grouped(those, cause)
+            groups = [*grouped_by(those, cause).values()]
         else:
             groups = joined(those)
         found += sorted(groups, key=lambda group: governing(group).rank)
@@ -175,9 +189,11 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
     labels = list(dict.fromkeys(one.component or "" for one in group))
     of = f", {short(named_components(_once(group)), 90)}" if labels != [""] else ""
     if worst.missing is not None:
-        return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} missing"
+        lack = "missing" if worst.missing.class_estimate is None else "estimate too low"
+        return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} {lack}"
     if worst.state is State.ESTIMATED:
-        return f"{_capital(short(named_components(_once(group)), 90))}: passes by an estimate"
+        passes = "passes" if len(labels) == 1 else "pass"
+        return f"{_capital(short(named_components(_once(group)), 90))}: {passes} by an estimate"
     use = "" if worst.utilisation is None else f": {percent_text(worst.utilisation)}\u00a0%"
     if worst.state is State.NOT_JUDGED:
         use = " is not judged"
@@ -206,7 +222,7 @@ def _told(group: Sequence[Finding], worst: Finding) -> str:
             f"{one.quantity.replace('_', ' ')} is {one.bounds_text}" for one in worst.estimates
         )
         return f"{figures} Estimate: {'; '.join(titles)}. Obtain the manufacturer’s value."
-    if figures and worst.rule not in _DIFFERENCES:
+    if figures and worst.rule not in _EXPLAINED:
         return f"{figures} {worst.remedy or ''}"
     return f"{worst.message} {worst.remedy or ''}"
 
@@ -271,7 +287,7 @@ def verdict_sentence(assessment: Assessment) -> str:
         for one in map(governing, groups)
         if (one.utilisation or 0.0) > 1.0 and one.rule not in failing
     ]
-    beyond = f" Over 100 % without failing: {', '.join(dict.fromkeys(over))}." if over else ""
+    beyond = f" Over 100\u00a0% without failure: {', '.join(dict.fromkeys(over))}." if over else ""
     return f"{_capital(', '.join(filter(None, said)))}.{beyond}"
 
 

@@ -108,8 +108,8 @@ def _ends(uncertain: Uncertain) -> Table:
         ("depth of the top", QUANTITIES["depth"], uncertain.depth_top[:, 0]),
         ("knockdown", QUANTITIES["knockdown"], uncertain.knockdown[:, 0]),
         ("excursion of the top", QUANTITIES["offset"], uncertain.offset[:, 0]),
-        ("pull on the anchor", QUANTITIES["tension"], uncertain.anchor_tension),
-        ("weight needed", QUANTITIES["required_weight"], uncertain.required_weight),
+        ("anchor load", QUANTITIES["tension"], uncertain.anchor_tension),
+        ("anchor weight required", QUANTITIES["required_weight"], uncertain.required_weight),
     ]
     return table_of(
         "",

@@ -113,7 +113,7 @@ def _recorded(rising: Rising, place: FreePlace, cuts: Cuts, settings: Settings) 
     closure = float(np.linalg.norm(loads_of(solution).sum(axis=0))) / rising.weight
     if not closure <= LARGEST_CLOSURE:
         raise Status.NOT_CONVERGED.because(
-            f"The loads on the moving line do not cancel: they are {closure:.1e} off."
+            f"The loads on the moving line do not balance (relative error {closure:.1e})."
         )
     return FreeMotion(place.velocity, replace(solution, closure=closure), _tangles(solution))
 

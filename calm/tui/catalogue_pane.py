@@ -131,7 +131,7 @@ class ComponentList(TableCells, can_focus=False):
 Purpose = Literal["below", "above", "clamp", "replace"]
 """Purpose of the search."""
 
-_WHAT_FOR = {
+_TITLES = {
     "below": "Add below",
     "above": "Add above",
     "clamp": "Clamp on",
@@ -201,7 +201,6 @@ class CataloguePane(Vertical):
                 self._search_again()
 
     def _search_again(self) -> None:
-        """Repeat the search, keeping the cursor on the same component."""
         chosen = self.listing.chosen
         self._search()
         ids = [each.id for each in self.listing.rows]
@@ -226,7 +225,7 @@ class CataloguePane(Vertical):
     def retitle(self, target: str) -> None:
         """Show the row next to which the component will be added."""
         self._target = target
-        text = f"{_WHAT_FOR[self.purpose]} {target}" if target else "The top of the line"
+        text = f"{_TITLES[self.purpose]} {target}" if target else "The top of the line"
         if self._by is not None:
             text += f"   sorted by {self._by}"
         self.query_one("#catalogue-title", Static).update(text, layout=False)
@@ -309,8 +308,6 @@ class CataloguePane(Vertical):
         self.search.action_select_all()
 
     def _ask(self, chosen: Listed, form_field: FormField) -> None:
-        """Ask for the length or the position, and for a label."""
-
         def take(texts: dict[str, str]) -> None:
             long, towed = texts.pop("length", ""), self.workspace.session.draft.is_tow
             keys = length_values(long, towed=towed) if long else {}

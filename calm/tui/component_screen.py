@@ -99,7 +99,6 @@ class ComponentScreen(dialogs.Form[Defined]):
         await self._show_fields()
 
     def _given(self) -> Defined:
-        """Return the id and the typed texts; an empty text deletes a key."""
         texts = self.texts
         id = texts.pop("id", self._component)
         return id, texts if self._begun else {"kind": self._kind, **texts}

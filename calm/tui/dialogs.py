@@ -258,7 +258,6 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
 
     @on(DescendantFocus)
     def _note(self) -> None:
-        """Show the full description of the focused field."""
         for field in self.fields:
             if field.input.has_focus:
                 reading = field.reading if field.input.value else Reading("")

@@ -16,7 +16,7 @@ from calm.tui.key_table import bindings
 from calm.tui.line_rows import ColumnFilling, LineCell, table_rows
 from calm.tui.line_table import EDITABLE, Column, LineSearch, LineTable
 from calm.tui.mooring_sheet import equipment_changes, equipment_sheet
-from calm.tui.names import Named, namings
+from calm.tui.names import Named, references_to
 from calm.tui.verdict_text import VerdictLine, why
 from calm.tui.workspace import Workspace
 
@@ -76,7 +76,6 @@ class LinePane(LineSearch):
         return is_made
 
     def _show_edited(self, spot: Place | None = None, message: str = "") -> None:
-        """Show the edited draft and have it judged."""
         self.show_draft(spot)
         self.workspace.tell("; ".join([*filter(None, [message]), *self.session.followed]))
         self.workspace.edited()
@@ -124,7 +123,6 @@ class LinePane(LineSearch):
         self.workspace.tell("There are no findings")
 
     def _found_of(self, spot: Place) -> list[VerdictLine]:
-        """Return the current findings of a row, the most severe first."""
         view = self.workspace.view
         return why(view, spot) if view is not None and self.workspace.is_fresh else []
 
@@ -202,7 +200,7 @@ class LinePane(LineSearch):
     def action_duplicate(self) -> None:
         """Duplicate the chosen rows."""
         chosen = self._chosen_of_a_kind()
-        named = [each for spot in chosen for each in namings(self.session.draft, spot)]
+        named = [each for spot in chosen for each in references_to(self.session.draft, spot)]
 
         def duplicate(also: Sequence[Named] = ()) -> None:
             self.attempt(lambda: self.session.duplicate(chosen, also))

@@ -123,7 +123,6 @@ def _row(spot: Place, item: LineItem, found: Sequence[FoundRow], index: Index | 
 
 
 def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
-    """Return the written length, or the computed length of a `fit`."""
     if values.get("length") == "fit" and found and found[0].length is not None:
         return f"fit: {QUANTITIES['length'].say(found[0].length)}"
     return length_text(values)
@@ -146,7 +145,6 @@ def _summary_texts(found: Sequence[FoundRow]) -> dict[str, str]:
 
 
 _NO_COUNT = "Clamps cannot have a count; duplicate the clamp instead"
-_NO_SERIAL = "is an assembly: only its parts have serial numbers"
 _NO_LENGTH = "The component determines the length"
 
 
@@ -169,8 +167,6 @@ class LineCell:
     def refused(self) -> str:
         """Reason why the value cannot be edited, or ""."""
         listed = self.listed
-        if self.column == "serial" and listed is not None and listed.kind == "assembly":
-            return _NO_SERIAL
         if self.spot.is_clamp:
             return _NO_COUNT if self.column == "count" else ""
         is_rigid = listed is not None and listed.kind not in components.FLEXIBLE_KINDS

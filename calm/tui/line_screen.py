@@ -75,22 +75,22 @@ class LineScreen(screen.DraftScreen):
     def show_draft(self) -> None:
         """Show the current draft."""
         self.line.show_draft()
-        self._show_beside()
+        self._show_side_panes()
         self.show_title()
 
     def show_view(self) -> None:
         """Show the last view; values of an earlier draft are dimmed."""
         if self.workspace.is_fresh or self.workspace.is_old:
             self.line.show_rows()
-        self._show_beside()
+        self._show_side_panes()
         self.show_title()
 
     def show_catalogue(self) -> None:
         """Use the catalogue that was loaded."""
         self.line.show_rows()
-        self._show_beside()
+        self._show_side_panes()
 
-    def _show_beside(self) -> None:
+    def _show_side_panes(self) -> None:
         """Show catalogue, picture and verdict of the last view, dimmed if out of date."""
         self.catalogue.refresh_index()
         view, fresh = self.workspace.view, self.workspace.is_fresh
@@ -143,7 +143,6 @@ class LineScreen(screen.DraftScreen):
         self.catalogue.open(purpose, self._target(purpose), self._role(purpose), clampable=is_clamp)
 
     def _role(self, purpose: Purpose) -> str:
-        """Return the likely role of a new component, such as a float on top or an anchor."""
         spot, index, items = self.line.table.spot, self.workspace.index, self.session.draft.items
         if spot is None or (purpose == "above" and spot == Place(0)):
             return "" if self.session.draft.is_tow else "float"

@@ -144,7 +144,7 @@ def equipment_changes(
     changed: dict[str, Value | None] = {}
     for key, new in texts.items():
         if new != texts_of_equipment(values, key):
-            several = key == "serial" and "," in new and "count" in values
+            several = key == "serial" and "," in new
             changed[key] = [one.strip() for one in new.split(",")] if several else new or None
     return changed
 
@@ -156,7 +156,7 @@ def texts_of_equipment(values: Mapping[str, Any], key: str) -> str:
 
 
 def serial_of_equipment(text: str) -> Reading:
-    """Check a serial number, or one for each of a count."""
+    """Check a serial number, or one for each of a count or of a pair."""
     numbers = [" ".join(one.split()) for one in text.split(",")]
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")

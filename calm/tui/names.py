@@ -116,12 +116,12 @@ def _new_reference(
     return None
 
 
-def namings(draft: Draft, place: Place) -> list[Named]:
+def references_to(draft: Draft, place: Place) -> list[Named]:
     """Return the references to this row alone, which could also mean a copy of the row."""
     return [each for each in named_in(draft) if labels_of(draft).get(place) == [each.text]]
 
 
-def widened(draft: Draft, named: Iterable[Named]) -> Draft:
+def with_extended_acceptances(draft: Draft, named: Iterable[Named]) -> Draft:
     """Extend acceptances of a piece to all pieces with the same base name."""
     for each in named:
         if each.location[0] == "checks" and not each.text.endswith("*"):

@@ -40,10 +40,10 @@ class Saving:
         self,
         app: App[Any],
         workspace: Workspace,
-        taken_over: Callable[[str], object],
+        show_replaced_draft: Callable[[str], object],
         leave: Callable[[], object],
     ) -> None:
-        self._taken_over, self._leave = taken_over, leave
+        self._taken_over, self._leave = show_replaced_draft, leave
         self._app, self._workspace, self._session = app, workspace, workspace.session
         self.presence = Presence()
         self._reported: tuple[object] | None = None  # state on the disk that was reported last
@@ -66,7 +66,7 @@ class Saving:
             folder = "" if self._session.file.path is None else f"{self._session.file.path.parent}/"
             self._workspace.tell(f"Not saved: {str(error).replace(folder, '')}", wrong=True)
             return
-        self.presence.say(self._session.file.path)
+        self.presence.announce(self._session.file.path)
         wrong = self._mistake()
         but = "; ".join(filter(None, [lost, wrong]))
         message = f"{self._session.name} saved" + (f", but {but}" if but else "")
@@ -102,9 +102,9 @@ class Saving:
             else:
                 self._write(lambda: self._session.save_as(chosen), then)
 
-        begun = str(begin or path or "")
+        initial = str(begin or path or "")
         fields = [
-            FormField("path", "File", begun, _is_writable, placeholder="e.g. iroise-2026.yaml")
+            FormField("path", "File", initial, _is_writable, placeholder="e.g. iroise-2026.yaml")
         ]
         text = f"Relative to {Path.cwd()}."
         enter(self._app, "Save as", text, fields, take)
@@ -127,7 +127,7 @@ class Saving:
         text = f"{path}{' (write-protected)' if protected else ''}"
         if is_changed and stamp is not None:
             theirs = "load the file from the disk; undo restores your line"
-            answers.append(Answer("t", theirs, self._take_theirs))
+            answers.append(Answer("t", theirs, self._reload))
             title = f"{path.name} was changed by another program"
             text = "The file on the disk differs from your line. "
             text += f"It was written {moment(stamp[0] / 1e9)}."
@@ -151,11 +151,11 @@ class Saving:
                 self._workspace.tell(_GONE, wrong=True)
                 self._workspace.edited()  # keep the draft like every change
         elif not (session.changed or screen.is_typing):
-            self._take_theirs(quietly=not is_new)
+            self._reload(quietly=not is_new)
         elif is_new:
             self._workspace.tell(_CHANGED, wrong=True)
 
-    def _take_theirs(self, *, quietly: bool = False) -> None:
+    def _reload(self, *, quietly: bool = False) -> None:
         try:
             text = self._session.file.read()
         except (CalmError, OSError) as error:

@@ -151,14 +151,15 @@ class KeyBar(Static):
         super().__init__()
         self._actions: list[Action] = []
         self._message = ""
-        self._beside = False
+        self._beside_message = False
 
-    def show_keys(self, actions: Iterable[Action], *, beside: bool = False) -> None:
-        """Show other keys; `beside` a message, which gets the rest of the line, unless it is of a
-        mistake.
+    def show_keys(self, actions: Iterable[Action], *, beside_message: bool = False) -> None:
+        """Show other keys.
+
+        With `beside_message` the keys stay next to a message, unless it reports a mistake.
         """
-        if ((chosen := list(actions)), beside) != (self._actions, self._beside):
-            self._actions, self._beside = chosen, beside
+        if ((chosen := list(actions)), beside_message) != (self._actions, self._beside_message):
+            self._actions, self._beside_message = chosen, beside_message
             self._show()
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
@@ -178,15 +179,15 @@ class KeyBar(Static):
         width = self.content_size.width or 78
         keys = Content(_GAP).join(self._keys(width))
         if self._message:
-            beside = self._beside and not self.has_class("-wrong")
-            room = max(width - keys.cell_length - len(_GAP), 0) if beside else width
+            beside_message = self._beside_message and not self.has_class("-wrong")
+            room = max(width - keys.cell_length - len(_GAP), 0) if beside_message else width
             text = Text(self._message)
             text.truncate(room, overflow="ellipsis")
-            keys = Content.assemble(keys, _GAP, text.plain) if beside else Content(text.plain)
+            message = Content(text.plain)
+            keys = Content.assemble(keys, _GAP, message) if beside_message else message
         self.update(keys, layout=False)
 
     def _keys(self, width: int) -> list[Content]:
-        """The keys for which there is room."""
         parts, used = [], 0
         for action in self._actions:
             pressed = action.keys.split(",")[0]

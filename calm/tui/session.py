@@ -10,7 +10,7 @@ from typing import Any
 from calm.files import Place, editing
 from calm.files.editing import LINE, Draft, History, LineItem, Value, WorkingFile, clamps_of
 from calm.files.yaml_document import Location
-from calm.tui.names import EnvironmentChoice, Named, followed, widened
+from calm.tui.names import EnvironmentChoice, Named, followed, with_extended_acceptances
 
 _OF_THE_ROW = frozenset({"use", "label", "count", "at", "clamps"})
 """Keys of a row that are independent of its component."""
@@ -193,7 +193,7 @@ class Session:
         label = f"duplicate {self._called(chosen)}"
         if items:
             copies = self.draft.copy(items) * times
-            draft = widened(self.draft.paste(items[-1] + 1, copies), also)
+            draft = with_extended_acceptances(self.draft.paste(items[-1] + 1, copies), also)
             self._edit(draft, label, new=_rows_of(draft, items[-1] + 1, len(copies)))
             return Place(items[-1] + 1)
         last, clamps = chosen[-1], self._clamps(chosen) * times
@@ -260,7 +260,6 @@ class Session:
         return self._put_clamps(spot, first, self.copied, label)[-1 if below else 0]
 
     def _clamps(self, chosen: Sequence[Place]) -> tuple[str, ...]:
-        """Return the text of clamps, which may be on different pieces."""
         copied = (self.draft.copy([spot.clamp], clamps_of(spot.item)) for spot in chosen)
         return tuple(text for texts in copied for text in texts)
 
@@ -308,7 +307,6 @@ class Session:
 
 
 def _rows_of(draft: Draft, first: int, count: int) -> list[Place]:
-    """Return the rows of consecutive items."""
     return [
         Place(number, clamp=clamp)
         for number in range(first, first + count)

@@ -201,7 +201,7 @@ class Grid(cell_editor.EditableTable):
             return
         at = cells.cursor + below if rows else 0
         at = min(at, len(rows) - 1) if self.ends_at(at) else at
-        self.change((*rows[:at], self.new_row(at), *rows[at:]), "a row more")
+        self.change((*rows[:at], self.new_row(at), *rows[at:]), "add a row")
         cells.cursor, cells.column = at, 0
         self._new = at
         self._edit()
@@ -210,7 +210,7 @@ class Grid(cell_editor.EditableTable):
         """Delete the row."""
         rows, here = self.cells.rows, self.cells.cursor
         if len(rows) > self.LEAST_ROWS:
-            self.change((*rows[:here], *rows[here + 1 :]), "a row less")
+            self.change((*rows[:here], *rows[here + 1 :]), "delete a row")
 
     # typed text
 
@@ -238,7 +238,7 @@ class Grid(cell_editor.EditableTable):
     def abandoned(self) -> None:
         """Delete an added row that was not filled."""
         if self._before is not None:
-            self.change(self._before, "a row less")
+            self.change(self._before, "delete a row")
             self.cells.cursor -= 1
         self._new, self._before = -1, None
 

@@ -67,7 +67,7 @@ class TextScreen(screen.DraftScreen):
 
     def __init__(self, workspace: Workspace, line: int = 1) -> None:
         super().__init__(workspace)
-        self._line, self._sought = line, ""
+        self._line, self._search_text = line, ""
         self._problems: tuple[Problem, ...] = ()
         self._next = 0
         self._begun = self.session.draft.text
@@ -151,20 +151,20 @@ class TextScreen(screen.DraftScreen):
 
         Without words, repeat the last search.
         """
-        self._sought = words or self._sought
-        if not self._sought:
+        self._search_text = words or self._search_text
+        if not self._search_text:
             self.workspace.tell("Press Ctrl+F to enter search words")
             return
-        area, sought = self.text_area, self._sought.lower()
+        area, search_text = self.text_area, self._search_text.lower()
         lines, (row, column) = area.document.lines, area.selection.end
         for number in range(len(lines) + 1):
             here = (row + number) % len(lines)
-            start = lines[here].lower().find(sought, 0 if number else column)
+            start = lines[here].lower().find(search_text, 0 if number else column)
             if start >= 0:
                 area.move_cursor((here, start), center=True)
-                area.move_cursor((here, start + len(sought)), select=True)
+                area.move_cursor((here, start + len(search_text)), select=True)
                 return
-        self.workspace.tell(f"{self._sought}: not found", wrong=True)
+        self.workspace.tell(f"{self._search_text}: not found", wrong=True)
 
     def action_next_problem(self) -> None:
         """Put the cursor on the next mistake."""

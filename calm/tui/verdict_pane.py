@@ -112,7 +112,6 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
         return 0 <= number < len(self._lines) and bool(self._lines[number].places)
 
     def _follow(self) -> None:
-        """Scroll to the selected line."""
         own = [at for at, number in enumerate(self._numbers) if number == self._chosen]
         top, height = self.scroll_offset.y, max(self.scrollable_content_region.height, 1)
         if own and not top <= own[0] <= own[-1] < top + height:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State
+from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State, grouped_by
 from calm.quantities import say
 from calm.tui.theme import ELLIPSIS
 from calm.tui.workspace import mistakes, place_of
@@ -63,7 +63,6 @@ def headline(view: View | None) -> VerdictLine:
 
 
 def _judged(findings: Sequence[Finding], view: View) -> VerdictLine:
-    """Return the verdict in the wording of `calm check`."""
     from calm.files.pieces import parts_of
     from calm.report.open_items import verdict_of
 
@@ -117,7 +116,6 @@ def _environment(name: str) -> str:
 
 
 def _environment_line(case: MooringInEnvironment, view: View) -> VerdictLine:
-    """Return the verdict of one environment in one line."""
     verdict = _judged((*case.findings, *case.tighter, *case.lacking), view)
     result = case.result
     figures = ""
@@ -215,7 +213,6 @@ def _figure(text: str, heading: str, worst: Finding | None) -> VerdictLine:
 
 
 def _net(result: Result) -> Iterator[VerdictLine]:
-    """Yield the loads on anchors and held ends of a net, and the depths of its nodes."""
     for end in (*result.anchors, *result.held):
         needs = end.required_weight
         needed = "" if needs is None else f", needs {say('required_weight', needs)} in water"
@@ -233,7 +230,7 @@ def _found(
     A rule passes if every component passes; with a missing value its state is unknown.
     """
     from calm.checks.finding import governing
-    from calm.report.check_tables import grouped, named, named_components
+    from calm.report.check_tables import named, named_components
 
     governs = {(one.rule, one.place, one.state): one for one in (*findings, *tighter)}
     listed = dict.fromkeys(governs[one.rule, one.place, one.state] for one in findings)
@@ -247,7 +244,7 @@ def _found(
             text = f"{figure.quantity} of {named(figure.pieces)}, needed by {needed}"
             heading = f"Missing value of {figure.component_id}"
             yield VerdictLine(text, heading, State.UNKNOWN, places=_places([one]))
-    for own in grouped((each for each in unknown if each.missing is None), _title):
+    for own in grouped_by((each for each in unknown if each.missing is None), _title).values():
         text = f"unknown for {named_components(own)}"
         yield VerdictLine(text, _title(own[0]), State.UNKNOWN, places=_places(own))
     met = (State.PASS, State.NOT_JUDGED)
@@ -260,7 +257,9 @@ def _found(
         those = [one for one in (*findings, *tighter) if one.state is state]
         passes = state is State.PASS
         rules = [
-            each for each in grouped(those, _title) if not passes or _title(each[0]) not in other
+            each
+            for each in grouped_by(those, _title).values()
+            if not passes or _title(each[0]) not in other
         ]
         if rules:
             leads = sorted(map(governing, rules), key=lambda one: -(one.utilisation or 0.0))
@@ -269,7 +268,6 @@ def _found(
 
 
 def _used(finding: Finding) -> str:
-    """Return the title of a rule with the use of its finding in percent."""
     from calm.report.open_items import percent_text
 
     used = finding.utilisation
@@ -297,7 +295,6 @@ def _finding_line(finding: Finding) -> VerdictLine:
 
 
 def _places(findings: Iterable[Finding | None]) -> tuple[Place, ...]:
-    """Return the rows concerned by findings, each once."""
     found = (place.row for each in findings if each is not None for place in each.places)
     return tuple(dict.fromkeys(found))
 

@@ -207,7 +207,7 @@ def _read(kind: QuantityRange, text: str) -> float | None:
         return None
 
 
-_TAKE_IT = "Enter accepts"
+_ACCEPT_HINT = "Enter accepts"
 
 
 class FormChoice(Cycle):
@@ -249,7 +249,7 @@ class FormChoice(Cycle):
     def _press(self, event: events.Click) -> None:
         """Show the next form by mouse, or accept by a press on the hint."""
         event.prevent_default()
-        if self.word != self._given and event.x >= self.render().cell_len - len(_TAKE_IT):
+        if self.word != self._given and event.x >= self.render().cell_len - len(_ACCEPT_HINT):
             self.action_take()
         else:
             self.action_turn(1)
@@ -261,7 +261,7 @@ class FormChoice(Cycle):
     @property
     def hint(self) -> str:
         """Hint how to accept the form shown, if it is not the current form."""
-        return _TAKE_IT if self.word != self._given else super().hint
+        return _ACCEPT_HINT if self.word != self._given else super().hint
 
 
 class ProfileGrid(Grid):
@@ -363,7 +363,6 @@ def fields_of_water(towed: bool, grid: Callable[..., ProfileGrid]) -> Iterator[W
 
 
 def _density(form_field: FormField, grid: Callable[..., ProfileGrid]) -> Iterator[Widget]:
-    """Yield the widgets of density, temperature and salinity, each a constant or a table."""
     of_sea_water = {each.key: each for each in form_of(SeaWaterKeys, "density.")}
     for place, (kind, _, _) in _CONSTANTS.items():
         id, is_inner = "-".join(place), len(place) > 1
@@ -375,7 +374,6 @@ def _density(form_field: FormField, grid: Callable[..., ProfileGrid]) -> Iterato
 
 
 def _fields(fields: Iterable[FormField]) -> Iterator[Widget]:
-    """Yield fields; fields of a nested model are indented below its name."""
     for each in fields:
         if each.above:
             yield Static(each.above, classes="above", markup=False)

@@ -117,7 +117,6 @@ class WaterScreen(screen.DraftScreen):
         self.show_title()
 
     def _show_notes(self, problems: Sequence[Problem]) -> None:
-        """Show mistakes, and a note if an environment file is in use."""
         file, path = self.environment_file, self.workspace.path
         notes = [Content.styled(_ELSEWHERE.format(file), "$text-warning")] if file else []
         notes += [problem_text(each, path) for each in problems]
@@ -169,7 +168,7 @@ class WaterScreen(screen.DraftScreen):
     def replaced(self) -> None:
         """Show another draft; discard typed text and values of replaced forms."""
         self._left.clear()
-        self.drop_typing()
+        self.discard_typing()
         self.show_draft()
 
     # changes
@@ -211,7 +210,7 @@ class WaterScreen(screen.DraftScreen):
             self._take(field, reading.text)
         return True
 
-    def drop_typing(self) -> None:
+    def discard_typing(self) -> None:
         """Discard typed text that is not in the draft."""
         for field in self.query(Field):
             field.reset(field.begun)
@@ -318,7 +317,7 @@ class WaterScreen(screen.DraftScreen):
     def action_next_environment(self) -> None:
         """Show the next environment, and solve the line in it."""
         if self.settle():
-            self._stand_in(self.session.standing.next_environment)
+            self._environment_file_in_use(self.session.standing.next_environment)
 
     def action_new_environment(self) -> None:
         """Add a named environment with the current of the one shown."""
@@ -333,7 +332,7 @@ class WaterScreen(screen.DraftScreen):
             place = ("environments", name, "current")
             if self.change(lambda _: water.draft.put_at(place, current), f"environment {name}"):
                 note = "" if known else "Filled with a typical current; replace it with your own"
-                self._stand_in(name)
+                self._environment_file_in_use(name)
                 self.workspace.tell(note)
 
         if self.settle():
@@ -349,13 +348,13 @@ class WaterScreen(screen.DraftScreen):
         if name is None:
             self.workspace.tell("The default environment cannot be removed; F5 goes to a named one")
             return
-        self.drop_typing()
+        self.discard_typing()
         if self.change(lambda water: water.draft.put_at(water.place, None), f"drop {name}"):
-            self._stand_in(None)
+            self._environment_file_in_use(None)
 
-    def _stand_in(self, name: str | None) -> None:
+    def _environment_file_in_use(self, name: str | None) -> None:
         before, self.session.standing.environment = self.environment_file, name
-        self.drop_typing()
+        self.discard_typing()
         self.show_draft()
         self.workspace.tell(f"The line is no longer solved in {before}" if before else "")
         self.workspace.edited()
@@ -427,7 +426,7 @@ class WaterScreen(screen.DraftScreen):
         if self.settle():
             super().action_undo()
         else:
-            self.drop_typing()
+            self.discard_typing()
             self.show_draft()
 
     def action_back(self) -> None:
@@ -437,6 +436,5 @@ class WaterScreen(screen.DraftScreen):
 
 
 def _place(part: DOMNode | None) -> Place:
-    """Return the path of the key that a widget of the form edits."""
     name = part.id if part else None
     return tuple((name or "").removesuffix("-form").removesuffix("-table").split("-"))

@@ -36,9 +36,9 @@ _POWER = 1 / 7
 
 PRESETS: Mapping[str, Callable[[float], float]] = {
     "uniform, 0.5 m/s": lambda share: 0.5,
-    "tidal stream, 1 m/s, falling by the 1/7 power of the height above the bed":
+    "tidal stream, 1 m/s, falling by the 1/7 power of the height above the seabed":
         lambda share: (1.0 - share) ** _POWER,
-    "linear shear, 0.8 m/s at the surface to nothing at the bed":
+    "linear shear, 0.8 m/s at the surface to zero at the seabed":
         lambda share: 0.8 * (1.0 - share),
     "boundary current, 1.2 m/s at the surface, decaying by e in a fifth of the depth":
         lambda share: 0.05 + 1.15 * exp(-share / 0.2),
@@ -186,7 +186,7 @@ def previewed(columns: Sequence[str], rows: Rows) -> str:
 def _as_written(number: int, row: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:
     if len(row) != len(columns):
         many = f"{len(row)} value{'s' * (len(row) != 1)}"
-        raise NoRows(f"row {number} has {many}, and the table {len(columns)} columns")
+        raise NoRows(f"row {number} has {many}; the table has {len(columns)} columns")
     readings = [check_of(column)(value) for column, value in zip(columns, row, strict=True)]
     for value, reading in zip(row, readings, strict=True):
         if not reading.is_good:
@@ -224,7 +224,7 @@ def _by_name(
     if isinstance(table, profile_tables.DepthTable):
         return {"depth": table.depth, next(iter(names - {"depth"})): table.value}
     if "w" not in names and any(table.w):
-        raise UnknownColumns("the current has an upward speed `w`, but the table no column `w`")
+        raise UnknownColumns("the current has an upward speed `w`, but the table has no column `w`")
     flows = [speed_and_direction(*uv) for uv in zip(table.u, table.v, strict=True)]
     return {
         "depth": table.depth,

@@ -118,7 +118,7 @@ def test_a_component_is_a_label_or_a_pattern_of_labels(calm, accepting, componen
         ("{rule: tilt}", "17:7", "`reason` is missing"),
         ("{reason: x}", "17:7", "`rule` is missing"),
         ("{rule: tilt, reason: ' '}", "17:28", "`reason` is blank"),
-        ("{rule: tilt, reason: x, until: 2027-02-30}", "17:38", "not a day of the calendar"),
+        ("{rule: tilt, reason: x, until: 2027-02-30}", "17:38", "not a date"),
         ("{rule: tilt, reason: x, until: 30.6.2027}", "17:38", "write it as 2027-06-30"),
         ("{rule: tilt, reason: x, untill: 2027-06-30}", "17:31", "did you mean `until`?"),
         ("{rule: tilt, reason: x, date: 2027-06-30, until: 2027-06-29}", "17:7", "before its"),

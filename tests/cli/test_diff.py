@@ -145,7 +145,7 @@ def test_the_mistakes_of_both_files_at_once(calm, broken, write_mooring, folder)
     ("words", "complaint"),
     [
         (("m.yaml",), "m.yaml has no `deployed:` to compare its design with"),
-        (("m.yaml", "tow.yaml"), "a mooring is not compared with a tow"),
+        (("m.yaml", "tow.yaml"), "a mooring cannot be compared with a tow"),
         (("tow.yaml",), "tow.yaml is a tow; give the file to compare it with"),
         (("m.yaml", "none.yaml"), "none.yaml"),
     ],

@@ -107,6 +107,7 @@ def test_mistakes_of_all_files_are_told_and_shared_ones_once(calm, write_mooring
 def test_files_are_written_beside_the_table(calm, write_mooring, folder):
     done = calm("run", write_mooring(), "-o", "r.json", "-o", "r.csv", "-o", "r.svg")
     assert done.code == 0
+    assert done.err == "r.json written\nr.csv written\nr.svg written\n"
     assert "\nAnchor " in done.out and "horizontal" in done.out
     assert json.loads((folder / "r.json").read_text())["name"] == "Test"
     rows = list(csv.DictReader(io.StringIO((folder / "r.csv").read_text(encoding="utf-8"))))

@@ -387,7 +387,7 @@ def test_work_that_cannot_be_kept_is_told_at_the_end(drive, small, monkeypatch):
     async def story(driver):
         await rename(driver)
         monkeypatch.setattr(os, "replace", refuse)
-        driver.app.keep_at_the_end()
+        driver.app.save_copy_on_exit()
         assert "No space left" in driver.app.not_kept
 
     drive(story, small)

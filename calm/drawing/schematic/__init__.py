@@ -160,20 +160,20 @@ def column_of(
 
 
 class TextLine(NamedTuple):
-    """A line of text next to a part, a second text `beside` at distance `at`, and values."""
+    """A line of text next to a part, a second text `side_text` at distance `at`, and values."""
 
     text: str
     colour: str = INK
     bold: bool = False
-    beside: str = ""
+    side_text: str = ""
     at: float = 0.0
     cells: tuple[str, ...] = ()
 
     @property
     def width(self) -> float:
         """Width of the line of text."""
-        beside = self.at + text_width(self.beside, FONT) if self.beside else 0.0
-        return max(text_width(self.text, FONT, bold=self.bold), beside)
+        side_text = self.at + text_width(self.side_text, FONT) if self.side_text else 0.0
+        return max(text_width(self.text, FONT, bold=self.bold), side_text)
 
 
 @dataclass(frozen=True)
@@ -321,7 +321,7 @@ def _draw_texts(page: Pen, one: PlacedPart, column: LineColumn, left: float) -> 
     ]
     for line, y in zip(one.lines, levels, strict=True):
         page.letters(start, y, line.text, size=FONT, colour=line.colour, bold=line.bold)
-        page.letters(start + line.at, y, line.beside, size=FONT, colour=SOFT)
+        page.letters(start + line.at, y, line.side_text, size=FONT, colour=SOFT)
     for line, y in zip(one.lines, levels, strict=True):
         for text, right in zip(line.cells, column.rights, strict=False):
             page.letters(left + right, y, text, size=FONT, anchor="end")

@@ -188,8 +188,6 @@ def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
 
 
 def _row(figure: SymbolFigure, count: int) -> SymbolFigure:
-    """Stack copies of a figure vertically."""
-
     def draw(pen: Pen) -> None:
         for number in range(count):
             figure.draw(pen.group(0.0, (number - (count - 1) / 2) * figure.height))
@@ -215,7 +213,6 @@ def _pack(sign: Sign) -> SymbolFigure:
 
 
 def _wheels(count: int) -> SymbolFigure:
-    """Draw railway wheels or rotors, stacked on their rod."""
     height = count * _WHEEL + 8.0
 
     def draw(pen: Pen) -> None:

@@ -46,16 +46,16 @@ _NEED = ("float", "release", "anchor", "instrument")
 
 
 def elevation(
-    result: AnyResult, width: int, height: int, beside: Sequence[Shape] = ()
+    result: AnyResult, width: int, height: int, overlays: Sequence[Shape] = ()
 ) -> list[Text]:
     """Draw a line in the vertical plane of its excursion or its tow.
 
     Distances are from the anchor towards the free end, or from the ship backward; their scale
     differs from that of the depths. The line in still water is dotted. From a width of 50 cells,
-    the names of parts are shown. The shapes `beside` a mooring, from other environments or designs,
+    the names of parts are shown. The shapes `overlays`, from other environments or designs,
     are dashed.
     """
-    side = line_picture.elevation_of(result, beside)
+    side = line_picture.elevation_of(result, overlays)
     moored = not result.towed
     if moored:  # the seabed of a mooring is the foot of the picture
         held = [line.y.min() for line in side.lines] if result.several else []
@@ -68,7 +68,7 @@ def elevation(
     across, down = _span(side), (side.top, side.bottom)
     unit = f"m to {bearing_text(bearing_of(*plane_of(result)))}" if moored else "m behind"
     caption, size = _caption(result), (width, height)
-    frame = scaled_frame(size, caption, across, down, unit, "m", seabed=seabed, beside=room)
+    frame = scaled_frame(size, caption, across, down, unit, "m", seabed=seabed, margin=room)
     if side.surface and side.top <= 0.0 <= side.bottom:
         frame.line([(across[0], 0.0), (across[1], 0.0)], SURFACE)
     draw_picture(frame, side)
@@ -90,7 +90,6 @@ def draw_picture(frame: canvas.PlotFrame, picture: LinePicture) -> None:
 
 
 def _caption(result: AnyResult) -> str:
-    """Describe depth and offset of the end in words."""
     if result.several:
         return _distance(result)
     (leg,) = result.legs
@@ -104,7 +103,6 @@ def _caption(result: AnyResult) -> str:
 
 
 def _distance(result: AnyResult) -> str:
-    """Describe offset and direction of the end, or the number of legs of a net."""
     if result.several:
         return f"net of {len(result.legs)} legs"
     (leg,) = result.legs
@@ -244,7 +242,7 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
 
     Depths are on the same rows as in an `elevation` of the same height.
     """
-    beside = 6 if width >= _DEGREES_FROM else 2
+    margin = 6 if width >= _DEGREES_FROM else 2
     depths, u, v = line_picture.current_between(water, 0.0, water.depth)
     speeds = np.hypot(u, v)
     fastest = float(speeds.max())
@@ -252,7 +250,7 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
     frame = scaled_frame(
         (width, height), "current, m/s" if fastest > 0.0 else "still water", across,
         (0.0, water.depth), "" if header_rows(height) else "m/s", seabed=water.depth,
-        beside=beside, per_tick=_COLUMNS_PER_TICK,
+        margin=margin, per_tick=_COLUMNS_PER_TICK,
     )  # fmt: skip
     frame.line([(0.0, 0.0), (across[1], 0.0)], SURFACE)
     frame.line(zip(speeds.tolist(), depths.tolist(), strict=True), _STYLE)
@@ -261,8 +259,8 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
         east, north = (float(np.interp(value, depths, each)) for each in (u, v))
         if hypot(east, north) > 0.0:
             arrow = _ARROWS[round(np.degrees(np.arctan2(east, north)) / 45.0) % 8]
-            arrow = f"{bearing_text(bearing_of(east, north))}{arrow}" if beside > 2 else arrow
-            frame.canvas.text(width - beside + 1, row, arrow, _STYLE)
+            arrow = f"{bearing_text(bearing_of(east, north))}{arrow}" if margin > 2 else arrow
+            frame.canvas.text(width - margin + 1, row, arrow, _STYLE)
     return frame.canvas.rows()
 
 
@@ -270,12 +268,12 @@ _LEAST_RANGE = 1.0  # metres
 _MARGIN = 0.06
 
 
-def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = ()) -> list[Text]:
+def plan(result: AnyResult, width: int, height: int, overlays: Sequence[Shape] = ()) -> list[Text]:
     """Draw a line from above, with its anchor or the ship at zero.
 
-    Other shapes `beside` it, from other environments or designs, are dashed.
+    The shapes `overlays`, from other environments or designs, are dashed.
     """
-    shapes = [*(leg.shape for leg in result.legs), *beside]
+    shapes = [*(leg.shape for leg in result.legs), *overlays]
     rows = height - header_rows(height) - 2
     west, east = _range([0.0, *_ends(each.x for each in shapes)])
     south, north = _range([0.0, *_ends(each.y for each in shapes)])
@@ -292,7 +290,7 @@ def plan(result: AnyResult, width: int, height: int, beside: Sequence[Shape] = (
     frame = scaled_frame((width, height), title, across, down, "m east", "m E")
     frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)
     frame.line([(0.0, bottom), (0.0, top)], STILL, dash=1, gap=3)
-    draw_picture(frame, line_picture.plan_of(result, beside))
+    draw_picture(frame, line_picture.plan_of(result, overlays))
     frame.canvas.text(frame.column, frame.row, "N", AXIS)
     return frame.canvas.rows()
 

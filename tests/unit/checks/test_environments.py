@@ -61,7 +61,10 @@ def test_usual_environments_pass(tmp_path: Path, changes: dict[str, object]) -> 
         ({"way": 1.571}, "`toward` is 1.57 degrees throughout"),
         ({"way": 1.571, "column": "from"}, "`from` is 1.57 degrees throughout"),
         ({"density": "1100 kg/m^3"}, "1100 kg/m^3 is that of brine"),
-        ({"density": "{temperature: 35 degC, salinity: 8}"}, "temperature and salinity exchanged"),
+        (
+            {"density": "{temperature: 35 degC, salinity: 8}"},
+            "are temperature and salinity exchanged",
+        ),
         ({"more": "depth_range: [800 m, 1200 m]"}, "`depth_range` spans 400 m"),
         ({"more": "wind: {speed: 108 m/s, toward: 90 deg}"}, "stronger than any at sea"),
         # a decimal point too far left at two levels of the storm, found by its name or its maximum

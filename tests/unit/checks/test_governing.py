@@ -145,5 +145,5 @@ def test_an_accepted_failure_passes_by_acceptance(tmp_path: Path) -> None:
 
 
 def test_a_load_is_refused_where_no_tension_is_judged(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="`load` is a tension, and `tilt` judges none"):
+    with pytest.raises(InputError, match="`load` is a tension, but the rule `tilt` does not"):
         _accepting(tmp_path, "{rule: tilt, reason: tried, load: 1 kN}")

@@ -55,7 +55,8 @@ def test_mean_covariance_and_steps_are_those_of_the_whole_law(monkeypatch, block
         if one.time + 1 < TIMES:
             both = slice(at.start, at.stop + q)
             step = np.hstack([-np.diag(given.fade[one.time + 1]), np.eye(q)])
-            square = (step @ mean[both]) ** 2 + np.diag(step @ left[both, both] @ step.T)
+            noise = step @ mean[both]
+            square = np.outer(noise, noise) + step @ left[both, both] @ step.T
             assert one.moved == pytest.approx(square)
         else:
             assert (one.moved == 0.0).all()

@@ -16,6 +16,7 @@ import calm.report.html
 from calm.checks.finding import State
 from calm.drawing.picture import set_apart
 from calm.errors import UsageError
+from calm.report.blocks import Table
 from calm.report.check_report import check_report, mooring_section
 from calm.report.open_items import percent_text
 from calm.report.provenance import input_hash
@@ -93,10 +94,12 @@ def test_every_part_of_the_report_is_there(section):
         "Accuracy of these values", "Launch, anchor last", "Recovery, after release",
         "Breaks and losses", "Inventory", "Limits used", "Environments", "Not covered",
         "Mooring file", "SHA-256 of the inputs", "waves", "snap loads", "fatigue",
-        "creep, corrosion", "transients of the launch", "hauling and lifts",
+        "creep, corrosion", "transients of the launch", "hauling and lifting",
     ):  # fmt: skip
         assert heading in page.text, heading
-    rows = len(section.parts[1].blocks[-1].rows)
+    drawing = next(block for block in section.parts[1].blocks if isinstance(block, Table))
+    assert drawing.title == "Mooring drawing"
+    rows = len(drawing.rows)
     assert page.elements.count("svg") == 2 + rows
 
 

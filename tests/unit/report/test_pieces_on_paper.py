@@ -4,14 +4,22 @@ import re
 
 import pytest
 
+import calm
 from calm.checks.finding import State, governing
+from calm.deck import deck_of
+from calm.quantities import show_in
 from calm.report.blocks import Beside, Table
 from calm.report.check_matrix import mooring_page
-from calm.report.check_pages import checks_page, handling_page
+from calm.report.check_pages import basis_page, checks_page, handling_page
 from calm.report.check_report import signed_mooring
+from calm.report.deck_lists import lifts_part
+from calm.report.deck_logs import deployment_part, recovery_part
+from calm.report.drawing_page import drawing_pages
 from calm.report.line_page import line_page
 from calm.report.load_cases import piece_loads
-from calm.report.open_items import limit_text, percent_text
+from calm.report.open_items import limit_text, percent_text, verdict_sentence
+from calm.report.page_one import page_one
+from calm.report.sheet import table_of_line
 from tests.judged import judged
 
 # the swivel governs the launch, although the releases below it bear the largest tension
@@ -168,3 +176,92 @@ def test_equal_floats_share_a_row_of_their_extremes(signed):
     assert row[4] == f"{max(one.tilt for one in chains):.1f}"
     assert row[8] == f"{max(one.launch_tension for one in chains) / 1000.0:.2f}"
     assert row[11] == f"{max(one.rise_tension for one in chains) / 1000.0:.2f}"
+
+
+def test_planned_and_still_water_depths_have_a_column_each(signed):
+    drawing = table(drawing_pages(signed), "Mooring drawing")
+    heads = [column.heading for column in drawing.columns]
+    assert heads[5:9] == ["Depth m\nplanned", "\nstill", "\ncase 1", "\ncase 1s"]
+    rows = {row[2].text or row[2].detail: [cell.text or cell.detail for cell in row[5:9]]
+            for row in drawing.rows}  # fmt: skip
+    assert rows["meter 900 m"] == ["900.0", "898.3", "903.1", "906.2"]
+    assert {row[0] for name, row in rows.items() if "shackle" in name} == {""}
+
+
+def test_without_plans_there_is_no_such_column(tmp_path):
+    path = tmp_path / "m.yaml"
+    text = re.sub(r"label: (CTD|meter|glass|top float) \d+ m", r"label: \1", _SLOPE)
+    path.write_text(text.replace("top_depth: 150 m", "top_depth: 151 m"), encoding="utf-8")
+    drawing = table(drawing_pages(signed_mooring(judged(path))), "Mooring drawing")
+    assert [column.heading for column in drawing.columns][5:7] == ["Depth m\nstill", "\ncase 1"]
+
+
+def test_what_governs_or_is_open_is_drawn_and_marked_in_a_row_of_its_own(signed):
+    drawing = table(drawing_pages(signed), "Mooring drawing")
+    rows = {cell.text: (number.text, cell.detail) for _, number, cell, *_ in drawing.rows}
+    assert rows["lower swivel"] == ("27", "Miller swivel C212")
+    number, words = rows["back-up glass chain 1–3"]
+    assert number == "19–25" and "swivel" not in words and "with 4 × 13 shackle" in words
+    labels = re.findall(r">([^<>]+)</text>", mooring_picture(signed))
+    assert "lower swivel ≈1" in labels and "back-up glass chain 1–3" in labels
+
+
+def mooring_picture(signed):
+    beside = next(block for block in page_one(signed) if isinstance(block, Beside))
+    return beside.left[0].svg
+
+
+def test_pieces_have_one_number_in_every_document(signed):
+    deck = deck_of([calm.load(signed.assessment.file.path)])
+    numbers = deck.numbers
+    assert numbers["top float 150 m"] == "1" and numbers["CTD 700 m"] == "11b"
+    assert numbers["lower swivel"] == "27" and numbers["anchor"] == "36"
+    shown = {}
+    for part in (deployment_part(deck), lifts_part(deck), recovery_part(deck)):
+        for one in tables_of(part.blocks):
+            if one.columns[0].heading == "no.":
+                for row in one.rows:
+                    shown.setdefault(row[1].text, set()).add(row[0].text)
+    for row in table_of_line(deck.result).rows:
+        shown.setdefault(row[1].text, set()).add(row[0].text)
+    for label in ("top float 150 m", "wire 2", "meter 900 m", "releases pair", "CTD 700 m"):
+        first = {re.split("[–,]", one)[0] for one in shown[label]}
+        assert first == {numbers[label]}, label
+    inventory = table(handling_page(signed), "Inventory")
+    items = {row[2].detail: row[6].detail for row in inventory.rows if row[2] is not None}
+    assert items["swivel-miller-c212"] == "3, 27" and items["sbe37"] == "5a, 11a–11b, 17a"
+    assert items["glass-17in"].startswith("7a–7d, 13a–13d")
+
+
+def test_depths_stand_under_the_unit_chosen(signed):
+    show_in({"length": "ft"})
+    try:
+        top = signed.standing[0].depth
+        cases = table(page_one(signed), "Load cases")
+        assert cases.columns[2].heading == "Top depth\nft"
+        assert cases.rows[0][2].text == f"{top / 0.3048:.0f}"
+        drawing = table(drawing_pages(signed), "Mooring drawing")
+        assert drawing.columns[5].heading == "Depth ft\nplanned"
+        inventory = table(handling_page(signed), "Inventory")
+        assert inventory.columns[3].heading == "Cut length\nft"
+    finally:
+        show_in({})
+
+
+def test_shares_among_the_limits_are_in_percent(signed):
+    limits = table(basis_page(signed), "Limits used")
+    values = {row[0].text: row[1].text.replace("\u00a0", " ") for row in limits.rows}
+    assert values["Planned depth limit"] == values["Backup margin"] == "10 %"
+    assert values["Anchor friction"] == "0.6"
+
+
+def test_the_counts_of_findings_name_the_open_items_of_page_one(signed):
+    note = table(checks_page(signed), "Checks in full").note
+    assert "51 not judged (open items: 2)" in note and "(open items: 4)" in note
+    told = verdict_sentence(signed.assessment)
+    assert "four estimated" in told and "two checks" in told
+
+
+def test_the_title_has_the_description_and_the_ship_below(signed):
+    block = next(page_one(signed))
+    assert block.below == ("Upward ADCP at 150 m, four CTDs, two current meters", "RV Trial")
