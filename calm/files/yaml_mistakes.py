@@ -74,6 +74,10 @@ def _mistake(lines: list[str], error: MarkedYAMLError) -> Mistake | None:
     if problem.endswith(("found '}'", "found ']'")):
         return _at(mark, f"`{problem[-2]}` closes nothing")
     if "expected <block end>" in problem:
+        above = _above(lines, mark.line)
+        alike = above is not None and _indent(lines[above]) == _indent(lines[mark.line])
+        if above is not None and alike and re.match(r"\s*[A-Za-z]\w*(?!.*: )", lines[above]):
+            return _without_colon(lines, above)
         where = f"the lines above it, which begin in line {begun.line + 1}"
         return _at(mark, f"is indented neither like nor below {where}")
     return None
@@ -83,20 +87,31 @@ def _colon(lines: list[str], mark: Mark) -> Mistake | None:
     """Return the mistake at a colon where none is allowed: the second of its line, one after a
     line without any, or one in a line that is indented too far.
     """
-    line, above = lines[mark.line], mark.line - 1
+    line = lines[mark.line]
     if key := _KEY.match(line[: mark.column]):
         name, value = key[0].strip(), line[key.end() :].strip()
         return _at(mark, f'a text with a colon must be in quotes: `{name} "{value}"`')
-    while above >= 0 and not _content(lines[above]):
-        above -= 1
-    if above < 0:
+    above = _above(lines, mark.line)
+    if above is None:
         return None
-    before = lines[above]
-    if not _KEY.match(before):
-        column = len(before) - len(before.lstrip()) + 1
-        return above + 1, column, without_colon(_content(before))
+    if not _KEY.match(lines[above]):
+        return _without_colon(lines, above)
     message = f"is indented further than line {above + 1}, which has a value already"
-    return mark.line + 1, len(line) - len(line.lstrip()) + 1, message
+    return mark.line + 1, _indent(line) + 1, message
+
+
+def _without_colon(lines: list[str], number: int) -> Mistake:
+    line = lines[number]
+    return number + 1, _indent(line) + 1, without_colon(_content(line))
+
+
+def _above(lines: list[str], number: int) -> int | None:
+    """Return the number of the next line above that is not empty; None if there is none."""
+    return next((each for each in reversed(range(number)) if _content(lines[each])), None)
+
+
+def _indent(line: str) -> int:
+    return len(line) - len(line.lstrip())
 
 
 def _content(line: str) -> str:
