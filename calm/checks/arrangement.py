@@ -64,8 +64,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         if not reaches_the_surface(leg):
             yield unknown(
                 None,
-                "No piece has `role: release`, so it is unknown what frees the line from the "
-                "anchor.",
+                "No piece has `role: release`; the release of the line is unknown.",
                 "Mark the release with `role: release`.",
             )
         return

@@ -101,7 +101,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
     """
     launch, file = handling.launch, handling.leg.file
     if isinstance(launch, NoEquilibrium):
-        yield _unsolved("descent", launch)
+        yield from _unsolved(handling, "descent", launch)
         return
     times, over = file.checks.launch_working_factor, file.checks.launch_safety_factor
     most = "" if launch.anchor_drag_known else " at most"
@@ -138,7 +138,7 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
     """Judge the speed of the anchor as it meets the seabed."""
     launch = handling.launch
     if isinstance(launch, NoEquilibrium):
-        yield _unsolved("descent", launch)
+        yield from _unsolved(handling, "descent", launch)
         return
     anchor, speed = handling.leg.file.pieces[-1], launch.fall_speed
     slow, fast = (QUANTITIES["speed"].format(one) for one in launch.fall_speed_band)
@@ -170,7 +170,7 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
         return
     rise, limit = handling.recovery, handling.leg.file.checks.minimum_rise_speed
     if isinstance(rise, NoEquilibrium):
-        yield _unsolved("ascent", rise)
+        yield from _unsolved(handling, "ascent", rise)
         return
     lowest = handling.leg.file.pieces[rise.released]
     if rise.time_to_surface == 0.0:
@@ -231,6 +231,10 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
     return verdict_on(lowest, State.PASS, message, value=rise.rise_speed)
 
 
-def _unsolved(motion: str, failure: NoEquilibrium) -> Verdict:
-    message = f"The {motion} of the line has no solution ({failure.status}): {failure.message}"
-    return unknown(None, message, failure.advice)
+def _unsolved(handling: Handling, motion: str, failure: NoEquilibrium) -> Iterator[Verdict]:
+    """Report a motion without a solution; a line without equilibrium is reported by `equilibrium`
+    alone.
+    """
+    if handling.result is not None:
+        message = f"The {motion} of the line has no solution ({failure.status}): {failure.message}"
+        yield unknown(None, message, failure.advice)

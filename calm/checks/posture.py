@@ -288,7 +288,7 @@ def reserve(leg: Leg) -> Iterator[Criterion]:
             )
         return (
             f"{message}; at least {100 * limit:.0f} % is required.",
-            "Use a larger float, a lighter line, or more length.",
+            "Use a larger float, a lighter line, or more length." + _too_long(leg),
         )
 
     source = cited(leg.file, "minimum_reserve")
@@ -318,8 +318,16 @@ def freeboard(result: LegResult) -> Iterator[Verdict]:
         f"Freeboard of the float is {say('freeboard', height)}."
         if height >= 0.0
         else f"The float is {say('depth', -height)} under water.",
-        "Use a larger float.",
+        "Use a larger float." + _too_long(result.leg),
     )
+
+
+def _too_long(leg: Leg) -> str:
+    """Remedy for a float without any key of surface floats: its line may be too long."""
+    top = leg.file.pieces[0].component
+    if any(getattr(top, key, None) is not None for key in AFLOAT_KEYS):
+        return ""
+    return " A line that should stay below the surface is too long for this water: shorten it."
 
 
 @rule("watch-circle")

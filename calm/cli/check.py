@@ -59,7 +59,7 @@ def check(
         all that do not pass, and those with a utilisation of at least one half.
     report
         Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder:
-        six pages or more for one mooring, a matrix and a page each for several.
+        five pages or more for one mooring, a matrix and a page each for several.
     page
         Page size of the report.
     full

@@ -107,9 +107,8 @@ def elevation(
     listed = [*labels[: int((height - _ABOVE) / _NEAREST)]]
     flow = _LEFT + _FLOW
     upright = (depth + rise) / tall
-    room = width - flow - _SYMBOLS - _longest(listed, _WIDEST_LABEL)
-    if span > upright * room:
-        room = width - flow - _SYMBOLS - _longest(listed, _NARROW_LABEL)
+    beside = width - flow - _SYMBOLS
+    room = beside - min(_longest(listed), max(beside - span / upright, _LEAST_LABELS))
     scale = max(upright, span / max(room, 1.0))
     if depth / scale < _LEAST * tall:  # too wide for labels next to it
         listed, flow, room = [], _LEFT, width - _LEFT - 8.0
@@ -166,16 +165,18 @@ _STROKES: dict[str, dict[str, float | str]] = {
 }
 """Strokes of the lines, by the last letter of a code."""
 _HOLLOW = (*BALLS, Symbol.SPHERE, Symbol.FOAM, Symbol.STREAMLINED, Symbol.BUOY)
-_WIDEST_LABEL, _NARROW_LABEL, _FIGURES, _GAP = 140.0, 106.0, 26.0, 6.0
+_FIGURES, _GAP = 26.0, 6.0
+_LEAST_LABELS = 138.0
+"""Width up to which labels have room, however wide the mooring is."""
 _REAL = 0.78
 """Ratio of the actual width of a text to the upper bound given by `text_width`."""
 _MOST_LEVELS = 7
 
 
-def _longest(labels: Sequence[Label], most: float) -> float:
-    """Return the width of the labels, at most `most`, with their depths."""
+def _longest(labels: Sequence[Label]) -> float:
+    """Return the width of the labels with their depths."""
     widths = (text_width(f"{one.text} {one.tag}", FONT, bold=True) for one in labels)
-    return min(_REAL * max(widths, default=0.0), most) + _FIGURES + _GAP
+    return _REAL * max(widths, default=0.0) + _FIGURES + _GAP
 
 
 def _level(place: int, count: int, height: float) -> float:

@@ -95,8 +95,8 @@ class LineReader:
         count = self._count(item)
         entry = self._entry(item)
         definition = self._definition(entry, item, _ITEM_KEYS) if entry else None
-        single = isinstance(definition, Component)
-        item_keys.check_counted(item, count, (definition.items or 1) if single else None)
+        items = (definition.items or 1) if isinstance(definition, Component) else None
+        item_keys.check_counted(item, count, items)
         if entry is None or definition is None:
             self._unknown_kind(item, judged=entry is not None)
             self._clamps(item, None)

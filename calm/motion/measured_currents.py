@@ -64,9 +64,12 @@ ALIKE_HOURS = 1.0
 LEAST_SPREAD = 0.02
 """Least deviation of a current about its mean [m/s]."""
 CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
-"""Default correlation time [h] and correlation depth [m] of the current."""
-HOURS, REACHES = (4.0, 48.0), tuple(np.geomspace(150.0, 2400.0, 17).tolist())
-"""Limits of the estimated correlation time [h], and trial correlation depths [m]."""
+"""Initial correlation time [h] and correlation depth [m] of the current."""
+HOURS = (4.0, 16.0)
+"""Limits of the estimated correlation time [h]."""
+WIDER = 2.0
+METERS_ALIKE = 0.02
+"""Error common to all meters of a record, as a share of the speed."""
 
 STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
 """Number of stretches with separate errors in knockdown, their correlation length as a share of the
@@ -221,8 +224,10 @@ class CurrentSmoother:
         self.spread = np.maximum(self._along(place, spread), LEAST_SPREAD)
         flags = np.unique(one.flag[np.isfinite(one.u)])
         usual = {f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()}
-        self.tide = common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
-        self.scales = ErrorScales(usual, tide=self.tide)
+        self._most_tide = (
+            common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
+        )
+        self.scales = ErrorScales(usual, tide=self._most_tide)
         self.levels = np.where(np.isfinite(one.level_depth), one.level_depth, place)
         self.knot_depth = self.knots.at(self.levels)
         self.state = np.zeros((len(one.time), self.columns.count))
@@ -461,6 +466,9 @@ class CurrentSmoother:
         self.common_covariance = np.linalg.inv(law.normal(law.fixed) / alike + before)
         value = self.common_covariance @ (pulls.sum(axis=0) / alike)
         self.factor = np.clip(value[: len(self.names)], -FURTHEST, FURTHEST)
+        # drag times the square of the speed fits the pressures
+        drag = 2.0 * METERS_ALIKE * np.array([name.endswith("_drag") for name in self.names])
+        self.common_covariance[: len(drag), : len(drag)] += np.outer(drag, drag)
 
     def _grown(self, step: float) -> float:
         """Return the error share of the line after a step of its logarithm.
@@ -474,28 +482,6 @@ class CurrentSmoother:
         whole = float(np.clip(self._longer * step, -0.4, 0.4))
         return float(np.clip(self.scales.share * np.exp(whole), *SHARES))
 
-    def _remember(self, pushed: Floats) -> None:
-        """Update the correlation time and depth of the current.
-
-        Parameters
-        ----------
-        pushed : (2 K, 2 K) mean products of the noise of the currents, as a share of that in a
-            step; those of the prior, if its correlation time and depth are right
-        """
-        count = len(self.spread)
-        both = 0.5 * (pushed[:count, :count] + pushed[count:, count:])
-        found = both / np.outer(self.spread, self.spread)
-        apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
-        best = np.inf
-        for reach in REACHES:
-            alike = np.exp(-apart / reach)
-            size = float(np.trace(np.linalg.solve(alike, found))) / count
-            cost = count * np.log(size) + np.linalg.slogdet(alike)[1]
-            if cost < best:
-                best, ratio, likely = cost, size, reach
-        hours = float(np.clip(self.scales.hours / ratio, *HOURS))
-        self.scales = replace(self.scales, hours=hours, reach=likely)
-
     def _heavy(self, square: Floats) -> Floats:
         """Return initial variances by Student's law, from the expected squares."""
         return np.maximum(self.begin, 0.5 * (self.begin + square))
@@ -507,8 +493,9 @@ class CurrentSmoother:
         wide = np.empty((count, law.read.shape[1]))
         stay = np.zeros_like(self.stepped)
         alike = np.linalg.inv(self._stretches[2])
+        precise = np.linalg.inv(law.steady[at.current, at.current])
+        noise_share: list[float] = []
         share, tide = np.zeros(count), np.zeros(count)
-        pushed = np.zeros((at.current.stop, at.current.stop))
         for each in smoothed(law):
             t, spread = each.time, each.covariance
             now[t] = each.mean
@@ -519,7 +506,8 @@ class CurrentSmoother:
             curved[t] = np.einsum("pq,pq->p", flow @ spread[at.current, at.current], flow)
             if t + 1 < count:
                 stay[t + 1] = each.moved[at.stays, at.stays].diagonal()
-                pushed += each.moved[at.current, at.current] / (1.0 - law.fade[t + 1, 0] ** 2)
+                part = np.trace(precise @ each.moved[at.current, at.current]) / len(precise)
+                noise_share.append(part / (1.0 - law.fade[t + 1, 0] ** 2))
             z = each.mean[at.share]
             tide[t] = each.mean[at.tide][0] ** 2 + spread[at.tide, at.tide][0, 0]
             share[t] = z @ alike @ z + np.sum(alike * spread[at.share, at.share])
@@ -549,8 +537,9 @@ class CurrentSmoother:
             grown = self._grown(float(0.5 * np.log(share.mean() / STRETCHES)))
             self.scales = replace(self.scales, share=grown)
         if turn >= 2 and count > 1:
-            self._remember(pushed / (count - 1))
-            self.scales = replace(self.scales, tide=min(float(np.sqrt(tide.mean())), self.tide))
+            hours = float(np.clip(self.scales.hours / np.mean(noise_share), *HOURS))
+            usual = min(float(np.sqrt(tide.mean())), self._most_tide)
+            self.scales = replace(self.scales, hours=hours, tide=usual)
         if turn >= 1:
             self.first = self._heavy(begun)
             self.stepped = 0.5 * (self.usual + np.maximum(stay, 0.0))
@@ -657,6 +646,9 @@ class CurrentSmoother:
         """
         one, at, count = self.measured, self.columns, len(times)
         law, _ = self.law(self.depth, sensors=False)
+        wide = law.steady.copy()
+        wide[at.current, at.current] *= WIDER**2
+        law = replace(law, steady=wide, first=law.first + wide - law.steady)
         flow = slice(0, at.current.stop)
         now, spread = np.empty((count, flow.stop)), np.empty((count, flow.stop, flow.stop))
         row = {int(t): i for i, t in enumerate(times)}

@@ -208,7 +208,7 @@ def _component_doubts(u: Floats, v: Floats) -> Iterator[str]:
     """Yield missing, equal and zero components of currents (n, k) [m/s]."""
     known = np.isfinite(u) & np.isfinite(v)
     one_alone = int((np.isfinite(u) != np.isfinite(v)).sum())
-    if one_alone:
+    if one_alone >= _FEWEST:
         yield f"{one_alone} of {u.size} currents have one component without the other"
     u, v = u[known], v[known]
     speed = np.hypot(u, v)

@@ -42,6 +42,7 @@ from calm.report.blocks import (
 )
 from calm.report.load_cases import LOAD, length_text, load_text
 from calm.report.open_items import (
+    FIGURE_FIELDS,
     advice,
     figure_text,
     limit_text,
@@ -96,10 +97,7 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         words("", lambda row: Cell(state=row[0].state), 0.0),
         words("Rule", lambda row: Cell(
             RULES[row[0].rule].title, f"({row[1]})" if row[1] > 1 else "", goes_on=True), 1.2),
-        number("Use %", lambda row: Cell(percent_text(row[0].utilisation), strong=True)),
-        number("Found", lambda row: figure_text(row[0])),
-        words("Limit", lambda row: limit_text(row[0]) or "–", 0.0),
-        words("Where, case", lambda row: where_text(row[0]), 0.9),
+        *blocks.of_first(*FIGURE_FIELDS, words("Where, case", where_text, 0.9)),
         words("Basis of the limit; remedy", basis, 2.2),
         note=f"These {len(rows)} rows summarise {len(findings)} findings ({counted}); the files of "
         "this report list them.",
@@ -304,8 +302,7 @@ def _inventory(signed: SignedMooring) -> Table:
             missing = total_of(items).missing_masses
             return Cell(detail=f"{missing} without mass" if missing else "")
         known = _runs(numbers[one.label] for one in group if one.label in numbers)
-        text = ", ".join(known[:8]) + (f" and {len(known) - 8} more" if len(known) > 8 else "")
-        return Cell(detail=text)
+        return Cell(detail=", ".join(known))
 
     def name(group: Sequence[InventoryItem]) -> str:
         return "Total" if group is items else group[0].name or group[0].use
@@ -318,8 +315,8 @@ def _inventory(signed: SignedMooring) -> Table:
         words(
             "Catalogue", lambda group: None if group is items else Cell(detail=group[0].use), 0.9
         ),
-        number("Cut length\nm", length),
-        number("Mass in\nair kg", mass),
+        number(f"Cut length\n{QUANTITIES['length'].display_unit}", length),
+        number(f"Mass in\nair {QUANTITIES['dry_mass'].display_unit}", mass),
         number(f"Weight in\nwater {unit}", weight),
         words("Items", places, 1.0),
         sums=[items],

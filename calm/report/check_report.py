@@ -1,4 +1,4 @@
-"""The report of a design check: six pages of a mooring, or a matrix and a page of each of many."""
+"""The report of a design check: that of one mooring, or a matrix and a page of each of many."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass

@@ -16,10 +16,10 @@ from calm.report.sheet import leg_title
 
 _SHEET = {"a4": 688.0, "letter": 648.0}
 """Room for the rows of a drawing [pt]."""
-_WORDS, _DEPTHS = 314.0, 38.0  # width of the words of a row with the depths, and of a depth
+_WORDS, _DEPTHS = 322.0, 38.0  # width of the words of a row with the depths, and of a depth
 _LINE_HEIGHT = 9.6
-_SET, _WRAPPED = 0.77, 0.83
-"""Width of a printed text over the bound of `text_width`, on one line and on several."""
+_BOLD, _REGULAR, _WRAPPED = 0.70, 0.77, 1.08
+"""Width of letters over the bound of `text_width`, and of several lines over that of one."""
 _SEA_ROW = 16.0
 
 
@@ -155,10 +155,12 @@ def _row(
 
 def _lines(row: TextRow, part: ShownPart, width: float) -> int:
     """Number of lines that the words of a row take in a width."""
-    size = 8.0 if part.junction else 9.0
-    told = text_width(row.label, size, bold=not part.junction)
-    told += text_width(f"  {row.name}", 8.0) if row.name else 0.0
-    return 1 if _SET * told <= width else ceil(_WRAPPED * told / width)
+    if part.junction:
+        told = _REGULAR * text_width(row.label, 8.0)
+    else:
+        told = _BOLD * text_width(row.label, 9.0, bold=True)
+        told += _REGULAR * text_width(f"  {row.name}", 8.0)
+    return 1 if told <= width else ceil(_WRAPPED * told / width)
 
 
 def _broken(

@@ -5,7 +5,7 @@ from math import inf
 from typing import Any, Literal
 
 from calm.case.leg_result import LegResult
-from calm.case.result_tables import run_of
+from calm.case.result_tables import ComponentRow, run_of
 from calm.checks.finding import Finding, State, grouped_by
 from calm.drawing.check_figures import PieceBar, load_chart
 from calm.drawing.line_picture import alike, together
@@ -68,7 +68,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
             and last.row.use == one.row.use
             and alike(last.row.label, one.row.label)
         )
-        if same and one.row.role in ("float", "line"):
+        if same and _floats(one.row):
             groups[-1].append(one)
         else:
             groups.append([one])
@@ -110,6 +110,12 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         aside="envelope of all load cases: largest tension and tilt, minimum tension",
         ruled=False,
     )  # fmt: skip
+
+
+def _floats(row: ComponentRow) -> bool:
+    """Whether a piece is a float, or a chain or cable with floats."""
+    parts = (row.part, *row.part.clamps)
+    return any(part.component.role == "float" for part in parts)
 
 
 _Show = Callable[[PieceEnvelope], object]

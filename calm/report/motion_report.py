@@ -64,8 +64,8 @@ def motion_report(
     shown = [one for one in sensors if any(one is each for each in hidden_first)]
     doubts = blocks.warned(study.remarks) or (Prose((_NOTHING,)),)
     whole = Figure(_WHOLE, overview_figure([*sensors, *bare]))
-    depths = [Figure(_BARE, depth_figure(bare), tall=True)] if bare else []
-    depths.append(Figure(_DEPTHS, depth_figure(shown), tall=True))
+    depths = [Figure(_DEPTHS, depth_figure(shown), tall=True)]
+    depths += [Figure(_BARE, depth_figure(bare), tall=True)] if bare else []
     factors = factors_table(study.factors, study.task.common.datum)
     found = [
         sensors_table(study),
@@ -81,8 +81,8 @@ def motion_report(
         ReportPart("For the methods of a cruise report", (Prose(methods_text(study, series)),)),
         ReportPart("Factors", (factors, Note((_ASSUMED,)))),
         ReportPart("Measured against computed", (*found, how, *marks)),
-        ReportPart("Inputs", (*card_blocks(one.to_dict() for one in cards), *said)),
         ReportPart("Depths", tuple(depths)),
+        ReportPart("Inputs", (*card_blocks(one.to_dict() for one in cards), *said)),
         name=name,
     )
 

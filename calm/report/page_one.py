@@ -6,6 +6,7 @@ from functools import cached_property
 from math import nan
 
 from calm.case.leg_result import LegResult
+from calm.case.result_tables import item_numbers
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import Finding, State, governing_of_each_rule
@@ -36,9 +37,8 @@ from calm.report.blocks import (
 )
 from calm.report.load_cases import LOAD, LoadCase, load_text, worst_of_each_environment
 from calm.report.open_items import (
+    FIGURE_FIELDS,
     draft,
-    figure_text,
-    limit_text,
     open_groups,
     percent_text,
     short,
@@ -61,6 +61,7 @@ TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
 """Height of a page between its head and its foot [pt]."""
 _FIXED, _ROW = 250.0, 12.6
 _LINE = 100  # letters of the verdict
+_PLACE = 15  # letters of a label below a column of the load cases
 _TITLE_LINE, _TITLE_LETTERS = 12.0, 52  # height of a line of the description, and its letters
 _FIGURE_WIDTH, _WIDTH = 281.0, 510.0
 
@@ -184,10 +185,13 @@ def _whole(name: str) -> Quantity:
 
 def _figures() -> tuple[_Figure, ...]:
     depth, metres = QUANTITIES["depth"].format, _whole("depth_rating").format
+    unit = QUANTITIES["depth"].display_unit
     return (
-        _Figure("Top depth\nm", lambda one: one.depth, metres, short="top\nm"),
-        _Figure("Knock-\ndown m", lambda one: one.knockdown, depth, short="knock-\ndown m"),
-        _Figure("Offset\nm", lambda one: one.offset, metres, short="offset\nm"),
+        _Figure(f"Top depth\n{unit}", lambda one: one.depth, metres, short=f"top\n{unit}"),
+        _Figure(
+            f"Knock-\ndown {unit}", lambda one: one.knockdown, depth, short=f"knock-\ndown {unit}"
+        ),
+        _Figure(f"Offset\n{unit}", lambda one: one.offset, metres, short=f"offset\n{unit}"),
         _Figure(
             f"Largest\ntension {LOAD.display_unit}",
             lambda one: one.tension,
@@ -227,7 +231,7 @@ def cases_table(signed: SignedMooring) -> Table:
     cases, note = shown_cases(signed.cases)
 
     def named(case: LoadCase) -> str:
-        return short(case.words, 40) if case.results else f"{case.words}: no equilibrium"
+        return short(case.words, 80) if case.results else f"{case.words}: no equilibrium"
 
     leads = []
     for figure in _figures():
@@ -244,14 +248,15 @@ def cases_table(signed: SignedMooring) -> Table:
         ruled=False,
         aside="governing values in bold, their components in the last row",
     )
-    where = (Cell(detail=_shorter(lead[1])) for _, lead in shown)
+    numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
+
+    def place(label: str) -> str:
+        item = numbers.get(label)
+        return label if len(label) <= _PLACE or item is None else f"item {item}"
+
+    where = (Cell(detail=short(place(lead[1]), _PLACE)) for _, lead in shown)
     row = Cell(), Cell(detail="where"), *where
     return replace(table, rows=(*table.rows, row), totals=1) if shown else table
-
-
-def _shorter(label: str) -> str:
-    """A label of at most 15 characters, with the end that tells equal pieces apart."""
-    return label if len(label) <= 15 else f"{label[:9].rstrip()}…{label[-5:].lstrip()}"
 
 
 def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
@@ -297,9 +302,7 @@ def check_fields(longest: int) -> tuple[blocks.Field, ...]:
         words("", lambda one: Cell(state=one.state), 0.0),
         words("Check", lambda one: RULES[one.rule].title, 1.15),
         words("", lambda one: Cell(bar=min(one.utilisation, 9.99), state=one.state), 1.5),
-        number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
-        number("Found", lambda one: figure_text(one)),
-        words("Limit", limit_text, 0.0),
+        *FIGURE_FIELDS,
         words("Where, case", lambda one: short(where_text(one), longest + 8), 1.3),
     )
 

@@ -39,10 +39,9 @@ class ComponentScreen(dialogs.Form[Defined]):
         & #kind-fields { height: auto; }
         & .above { text-style: bold; text-wrap: nowrap; text-overflow: ellipsis; }
         & #outcome { width: 2fr; padding: 1 1 0 1; border-left: vkey $panel; }
-        & Field > .field-title { width: 20; }
+        & Field > Input { margin-left: 20; }
     }
     ComponentScreen.-narrow #outcome { width: 28; }
-    ComponentScreen.-narrow Field > .field-title { width: 20; }
     ComponentScreen.-narrow Field > Input { width: 16; }
     """
 

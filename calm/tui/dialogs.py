@@ -217,13 +217,11 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
     BINDINGS = key_table.bindings("sheet")
     DEFAULT_CSS = (
         "InputSheet {" + _FRAME + " & Field > Input { width: 1fr; }"
-        " & .field-note { display: none; }"
         " & .above { text-style: bold; margin-top: 1; text-wrap: nowrap;"
         " text-overflow: ellipsis; } & TableField { margin-left: 2; }"
         " &.-wide > Vertical { width: 110; }"
         " & #asked { height: auto; scrollbar-size-vertical: 1; }"
-        " &.-wide .field-note { display: block; } &.-wide Field > Input { width: 24; }"
-        " &.-wide .field-title { width: 22; }"
+        " &.-wide Field > Input { width: 24; margin-left: 22; }"
         "& #sheet-note { height: auto; min-height: 1; color: $text-muted; margin-top: 1; }"
         "& #sheet-note.-wrong { color: $text-error; } }"
     )

@@ -61,10 +61,9 @@ class WaterScreen(screen.DraftScreen):
         & .gone { display: none; }
         & .above { color: $text-muted; }
         & Grid { margin-left: 24; }
-        & Field > .field-title { width: 24; }
-        & Field > Input { width: 20; }
+        & Field > Input { width: 20; margin-left: 24; }
         &.-narrow Grid { margin-left: 0; }
-        &.-narrow Field > .field-title { width: 20; }
+        &.-narrow Field > Input { margin-left: 20; }
     }
     """
 

@@ -7,16 +7,17 @@ import pytest
 import calm
 from calm.checks.finding import State, governing
 from calm.deck import deck_of
+from calm.quantities import show_in
 from calm.report.blocks import Beside, Table
 from calm.report.check_matrix import mooring_page
-from calm.report.check_pages import checks_page, handling_page
+from calm.report.check_pages import basis_page, checks_page, handling_page
 from calm.report.check_report import signed_mooring
 from calm.report.deck_lists import lifts_part
 from calm.report.deck_logs import deployment_part, recovery_part
 from calm.report.drawing_page import drawing_pages
 from calm.report.line_page import line_page
 from calm.report.load_cases import piece_loads
-from calm.report.open_items import limit_text, percent_text
+from calm.report.open_items import limit_text, percent_text, verdict_sentence
 from calm.report.page_one import page_one
 from calm.report.sheet import table_of_line
 from tests.judged import judged
@@ -223,10 +224,44 @@ def test_pieces_have_one_number_in_every_document(signed):
                     shown.setdefault(row[1].text, set()).add(row[0].text)
     for row in table_of_line(deck.result).rows:
         shown.setdefault(row[1].text, set()).add(row[0].text)
-    for label in ("top float 150 m", "wire 2", "lower swivel", "releases pair", "CTD 700 m"):
+    for label in ("top float 150 m", "wire 2", "meter 900 m", "releases pair", "CTD 700 m"):
         first = {re.split("[–,]", one)[0] for one in shown[label]}
         assert first == {numbers[label]}, label
     inventory = table(handling_page(signed), "Inventory")
     items = {row[2].detail: row[6].detail for row in inventory.rows if row[2] is not None}
     assert items["swivel-miller-c212"] == "3, 27" and items["sbe37"] == "5a, 11a–11b, 17a"
     assert items["glass-17in"].startswith("7a–7d, 13a–13d")
+
+
+def test_depths_stand_under_the_unit_chosen(signed):
+    show_in({"length": "ft"})
+    try:
+        top = signed.standing[0].depth
+        cases = table(page_one(signed), "Load cases")
+        assert cases.columns[2].heading == "Top depth\nft"
+        assert cases.rows[0][2].text == f"{top / 0.3048:.0f}"
+        drawing = table(drawing_pages(signed), "Mooring drawing")
+        assert drawing.columns[5].heading == "Depth ft\nplanned"
+        inventory = table(handling_page(signed), "Inventory")
+        assert inventory.columns[3].heading == "Cut length\nft"
+    finally:
+        show_in({})
+
+
+def test_shares_among_the_limits_are_in_percent(signed):
+    limits = table(basis_page(signed), "Limits used")
+    values = {row[0].text: row[1].text.replace("\u00a0", " ") for row in limits.rows}
+    assert values["Planned depth limit"] == values["Backup margin"] == "10 %"
+    assert values["Anchor friction"] == "0.6"
+
+
+def test_the_counts_of_findings_name_the_open_items_of_page_one(signed):
+    note = table(checks_page(signed), "Checks in full").note
+    assert "51 not judged (open items: 2)" in note and "(open items: 4)" in note
+    told = verdict_sentence(signed.assessment)
+    assert "four estimated" in told and "two checks" in told
+
+
+def test_the_title_has_the_description_and_the_ship_below(signed):
+    block = next(page_one(signed))
+    assert block.below == ("Upward ADCP at 150 m, four CTDs, two current meters", "RV Trial")
