@@ -78,7 +78,7 @@ TRIES = {
         start="What causes",
     ),
     "compact-adcp": Try(
-        "The mooring is lifted as a whole. Print the parts list, the logs and the other deck sheets:",
+        "The mooring is lifted as a whole. Print the parts list, the logs and other deck sheets:",
         ("calm deck {file} -o deck",),
     ),
     "depressor-fit-depth": Try(
@@ -219,7 +219,8 @@ def _page(file: Path, name: str, made: dict[str, str | bytes]) -> str:
         f"```text\n{table}\n```",
     ]
     if verdict:
-        parts.append(f"## The verdict\n\n`calm check {file.name}` prints:\n\n```text\n{verdict}\n```")
+        command = f"calm check {file.name}"
+        parts.append(f"## The verdict\n\n`{command}` prints:\n\n```text\n{verdict}\n```")
     parts.append(f"## One thing to try\n\n{tried.why}\n\n```sh\n" + "\n".join(commands) + "\n```")
     parts.append(f"```text\n{outcome}\n```")
     if tried.picture is not None:

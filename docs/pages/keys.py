@@ -12,8 +12,8 @@ Schema = Mapping[str, Any]
 
 HEAD = """# Every key
 
-All keys of a mooring file with examples, from its schema (`calm schema`). [The mooring file](mooring-file.md) explains how the keys work together. Keys in
-bold are required.
+All keys of a mooring file with examples, from its schema (`calm schema`).
+[The mooring file](mooring-file.md) explains how the keys work together. Keys in bold are required.
 
 """
 _QUANTITY = "text with its unit"
