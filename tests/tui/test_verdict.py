@@ -50,7 +50,8 @@ def test_the_anchor_needs_what_the_worst_finding_says(anchor, needs, state):
 
 def test_the_reserve_is_that_of_the_worst_finding():
     told = said(BUOY.replace("buoyancy: 1000 N", "buoyancy: 550 N"))
-    head, below = the(told, "212 N"), the(told, "127 % of ≥ 0.300. Reserve buoyancy of the float is 24 %")
+    head = the(told, "212 N")
+    below = the(told, "127 % of ≥ 0.300. Reserve buoyancy of the float is 24 %")
     assert head.heading == "Reserve" and head.state is below.state is State.WARN
     assert head.text.endswith("61% of the float's buoyancy in use; 76% at worst (strumming)")
     assert below.heading == "Reserve buoyancy (strumming)"
@@ -60,9 +61,9 @@ def test_the_knockdown_is_that_of_the_worst_finding():
     text = without_checks("s1000")
     told = said(text + "checks: {maximum_knockdown: 35 m}\n")
     head = next(each for each in told if each.heading == "Knockdown" and "top at" in each.text)
-    below = next(each for each in told if "The top is knocked down" in each.text)
-    worst = re.search(r"by ([\d.]+ m)", below.text)[1]
-    assert re.match(r"\d+ % of ≤ 35.0 m\. The top", below.text)
+    below = next(each for each in told if "Knockdown of the top is" in each.text)
+    worst = re.search(r"is ([\d.]+ m)", below.text)[1]
+    assert re.match(r"\d+ % of ≤ 35.0 m\. Knockdown", below.text)
     assert head.text.endswith(f"; {worst} at worst (strumming)") and head.state is below.state
 
 
