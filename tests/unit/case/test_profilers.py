@@ -117,7 +117,7 @@ def test_a_profiler_in_the_line_is_refused(tmp_path):
     ("change", "state", "told"),
     [
         (("7500 N", "3300 N"), "fail", "the profiler needs 2.22 kN to travel"),
-        (("drive_force: 50 N", "drive_force: 5 N"), "fail", "its drive force is 5 N"),
+        (("drive_force: 50 N", "drive_force: 5 N"), "fail", "its drive force is 5.00 N"),
         (("drive_force: 50 N, ", ""), "unknown", "The drive force of"),
         (("diameter: 8 mm", "diameter: 14 mm"), "warn", "wire has a diameter of 14.0 mm"),
         (
@@ -154,7 +154,7 @@ def test_drag_along_a_leaning_wire(tmp_path):
     tilt = np.radians(result.profilers[0].upper.tilt)
     past = 0.25 + 0.5 * np.sin(tilt)
     drag = 0.5 * 1025.0 * 0.6 * 0.45 * past**2
-    needed = [each.limit for each in profiler.judge(result) if "its drive gives" in each.message]
+    needed = [each.limit for each in profiler.judge(result) if "its drive force is" in each.message]
     assert needed == [pytest.approx(drag + 3.0 * np.cos(tilt), rel=1e-6)]
 
 
