@@ -57,7 +57,7 @@ def read_designs(
     command: str = "calm check",
     meanwhile: Callable[[], object] | None = None,
 ) -> tuple[list[DesignFile], list[Path]]:
-    """Every mooring in every environment, and which of the files are tows, which a command leaves.
+    """Read every mooring in every environment; also return the files that are tows.
 
     Parameters
     ----------

@@ -35,8 +35,8 @@ class DeckItem:
     tension : maximum tension in a piece [N]; None for a clamp
     serial : serial number as designed, or those of its items
     deployed_serial, remark : as deployed; the serial number defaults to that of the design
-    apart : whether connecting hardware has a row of its own, because it governs a check or has an
-        open finding
+    apart : whether connecting hardware is drawn in a row of its own, because it governs a check or
+        has an open finding
     """
 
     part: Piece | Clamp
@@ -94,7 +94,7 @@ class DeckItem:
     @property
     def is_joint(self) -> bool:
         """Whether the item is hardware that only connects pieces, without data of its own."""
-        return self.is_connector and not self._is_told_of and not self.apart
+        return self.is_connector and not self._is_told_of
 
     @property
     def is_connector(self) -> bool:
@@ -192,15 +192,22 @@ def hardware_text(joints: Iterable[DeckItem]) -> str:
     return ", ".join(f"{n} × {name}" if n > 1 else name for name, n in counts.items())
 
 
-def rows_on_paper(items: Sequence[DeckItem]) -> tuple[DeckRow, ...]:
-    """The rows in which items that follow one another are listed, in their order."""
+def rows_on_paper(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
+    """The rows in which items that follow one another are listed or drawn, in their order.
+
+    In a drawing, hardware that stands apart has a row of its own.
+    """
+
+    def is_joint(one: DeckItem) -> bool:
+        return one.is_joint and not (drawn and one.apart)
+
     rows: list[DeckRow] = []
-    for _, group in groupby(items, key=lambda one: one.is_joint or one.kind):
+    for _, group in groupby(items, key=lambda one: is_joint(one) or one.kind):
         run = tuple(group)
         last = rows[-1] if rows else None
         if last is None:
             rows.append(DeckRow(run))
-        elif run[0].is_joint:
+        elif is_joint(run[0]):
             rows[-1] = replace(last, after=(*last.after, *run))
         elif last.first.kind == run[0].kind and not last.ends:
             rows[-1] = DeckRow((*last.items, *run), last.floats, last.joints)
@@ -268,7 +275,7 @@ SHOWN_USE = 0.4999
 def deck_items_of(result: AnyResult, apart: Collection[str] = ()) -> tuple[DeckItem, ...]:
     """Down the line to the anchor, or each leg, the clamps of a piece after it, down that piece.
 
-    Connecting hardware with a label in `apart` has a row of its own.
+    Connecting hardware with a label in `apart` is drawn in a row of its own.
     """
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}

@@ -346,8 +346,8 @@ def _tide_doubts(levels: tuple[float, float]) -> list[str]:
     if (between := levels[1] - levels[0]) <= GREATEST_TIDE:
         return []
     return [
-        f"`depth_range` spans {between:g} m, and the largest tides 17 m: was it cm, or are these "
-        "not low and high water?"
+        f"`depth_range` spans {between:g} m, but the largest tides are 17 m: are these the depths "
+        "at low and at high water, and is the unit right?"
     ]
 
 

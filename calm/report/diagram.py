@@ -22,6 +22,7 @@ from calm.report.provenance import title_pairs
 from calm.report.sheet import ends_told, leg_title
 
 _HEADINGS = (
+    (("no.",), ""),
     (("cut,", "or place"), "length"), (("stretched",), "length"), (("depth",), "depth"),
     (("planned",), "planned_depth"),
     (("above", "seabed"), "height"), (("tension",), "tension"),
@@ -103,7 +104,8 @@ class _Diagram:
         parts = [part for leg in legs for part in leg]
         self.title, self.paper, self.fields = one_line(deck.file.name), paper, _fields(deck, paper)
         self.bottom = paper.size[1] - _MARGIN - sum(map(_height, self.fields))
-        headings = [(*words, QUANTITIES[name].display_unit) for words, name in _HEADINGS
+        headings = [(*words, QUANTITIES[name].display_unit if name else "")
+                    for words, name in _HEADINGS
                     if name != "planned_depth" or has_plans(deck)]  # fmt: skip
         rows = (row for part in parts for row in part.rows)
         self.column = column = schematic.column_of(rows, headings, paper.column_width)

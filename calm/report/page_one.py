@@ -6,6 +6,7 @@ from functools import cached_property
 from math import nan
 
 from calm.case.leg_result import LegResult
+from calm.case.result_tables import item_numbers
 from calm.checks.assess import RULES
 from calm.checks.assessment import Assessment
 from calm.checks.finding import Finding, State, governing_of_each_rule
@@ -60,6 +61,7 @@ TEXT_HEIGHT = {"a4": 746.0, "letter": 706.0}
 """Height of a page between its head and its foot [pt]."""
 _FIXED, _ROW = 250.0, 12.6
 _LINE = 100  # letters of the verdict
+_PLACE = 15  # letters of a label below a column of the load cases
 _TITLE_LINE, _TITLE_LETTERS = 12.0, 52  # height of a line of the description, and its letters
 _FIGURE_WIDTH, _WIDTH = 281.0, 510.0
 
@@ -229,7 +231,7 @@ def cases_table(signed: SignedMooring) -> Table:
     cases, note = shown_cases(signed.cases)
 
     def named(case: LoadCase) -> str:
-        return short(case.words, 40) if case.results else f"{case.words}: no equilibrium"
+        return short(case.words, 80) if case.results else f"{case.words}: no equilibrium"
 
     leads = []
     for figure in _figures():
@@ -246,14 +248,15 @@ def cases_table(signed: SignedMooring) -> Table:
         ruled=False,
         aside="governing values in bold, their components in the last row",
     )
-    where = (Cell(detail=_shorter(lead[1])) for _, lead in shown)
+    numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
+
+    def place(label: str) -> str:
+        item = numbers.get(label)
+        return label if len(label) <= _PLACE or item is None else f"item {item}"
+
+    where = (Cell(detail=short(place(lead[1]), _PLACE)) for _, lead in shown)
     row = Cell(), Cell(detail="where"), *where
     return replace(table, rows=(*table.rows, row), totals=1) if shown else table
-
-
-def _shorter(label: str) -> str:
-    """A label of at most 15 characters, with the end that tells equal pieces apart."""
-    return label if len(label) <= 15 else f"{label[:9].rstrip()}…{label[-5:].lstrip()}"
 
 
 def governing_rows(findings: Iterable[Finding]) -> list[Finding]:

@@ -6,6 +6,7 @@ from functools import partial
 from itertools import groupby
 from math import nan
 
+from calm.case.result_tables import run_of
 from calm.deck import Deck
 from calm.deck.deck_items import DeckItem, DeckRow, hardware_text, rows_on_paper
 from calm.drawing.schematic.shown_parts import ShownPart, TextRow, afloat, one_line, place_text
@@ -23,11 +24,11 @@ def parts_of_deck(
 ) -> tuple[ShownPart, ...]:
     """Return the listed parts of a line or leg, whose top is at the `surface` or submerged.
 
-    The values of each part are cut length or position on the wire, stretched length, depth, planned
-    depth if any part has one, height, tension and net buoyancy.
+    The values of each part are its number, cut length or position on the wire, stretched length,
+    depth, planned depth if any part has one, height, tension and net buoyancy.
     """
     weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
-    cells = partial(_figures, weights=weights, planned=has_plans(deck))
+    cells = partial(_figures, deck.numbers, weights=weights, planned=has_plans(deck))
     return parts_of(deck.file, deck.parts, listed, cells, surface=surface)
 
 
@@ -39,10 +40,10 @@ def parts_of(
     *,
     surface: bool,
 ) -> tuple[ShownPart, ...]:
-    """The parts listed, down a line or a leg, whose top is at the `surface` or below it.
+    """Return the parts of a line or a leg from its top, which may be at the `surface`.
 
-    Connectors that follow one another make one junction, except those that stand apart. The labels
-    of a part are those of all that it stands for.
+    Consecutive connectors form one junction, unless they are listed separately. A part has the
+    labels of all items that it represents.
 
     Parameters
     ----------
@@ -54,7 +55,7 @@ def parts_of(
     found: list[ShownPart] = []
     joints: list[DeckItem] = []
     cable: Symbol | None = None
-    for row in rows_on_paper(listed):
+    for row in rows_on_paper(listed, drawn=True):
         one = row.first
         if one.is_connector and not one.apart and not getattr(one.part, "clamps", ()):
             joints += (*row.items, *row.joints)
@@ -139,14 +140,15 @@ def _codes(one: DeckItem, codes: Mapping[str | None, str]) -> str:
 
 
 def _figures(
+    numbers: Mapping[str, str],
     items: Sequence[DeckItem],
     lengths: tuple[str, str],
     weights: Mapping[str, float | None],
     *,
     planned: bool,
 ) -> tuple[str, ...]:
-    """Lengths, depth, planned depth and height of the first item, maximum tension, and total net
-    buoyancy.
+    """Numbers, lengths, depth, planned depth and height of the first item, maximum tension, and
+    total net buoyancy.
     """
     plan = items[0].planned_depth
     tension = max((one.tension for one in items if one.tension is not None), default=None)
@@ -154,6 +156,7 @@ def _figures(
     known = [one for one in own if one is not None]
     buoyancy = -sum(known) if len(known) == len(own) else None
     return (
+        run_of([numbers[one.label] for one in items]),
         *lengths,
         _number_text("depth", items[0].depth),
         *(["" if plan is None else _number_text("planned_depth", plan)] if planned else []),

@@ -224,7 +224,7 @@ def test_pieces_have_one_number_in_every_document(signed):
                     shown.setdefault(row[1].text, set()).add(row[0].text)
     for row in table_of_line(deck.result).rows:
         shown.setdefault(row[1].text, set()).add(row[0].text)
-    for label in ("top float 150 m", "wire 2", "lower swivel", "releases pair", "CTD 700 m"):
+    for label in ("top float 150 m", "wire 2", "meter 900 m", "releases pair", "CTD 700 m"):
         first = {re.split("[–,]", one)[0] for one in shown[label]}
         assert first == {numbers[label]}, label
     inventory = table(handling_page(signed), "Inventory")
