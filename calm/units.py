@@ -100,7 +100,7 @@ _MASS_AND_FORCE = {"kg": "kgf", "g": "gf", "t": "tf", "lb": "lbf", "kg/m": "kgf/
 _MASS_AND_FORCE |= {"kg/km": "kgf/km", "lb/ft": "lbf/ft"}
 _TWINS = _MASS_AND_FORCE | {force: mass for mass, force in _MASS_AND_FORCE.items()}
 
-_FATHOM = ("is no length at sea; a fathom is `fathom`", "fathom")
+_FATHOM = ("is ambiguous; write `fathom` for a fathom", "fathom")
 _TON = ("may be of 907, 1000 or 1016 kg; a tonne is `t`, its force `tf`", None)
 _MILE = ("may be of 1609 or 1852 m; write `mi` or `nmi`", None)
 _MISTAKEN: Mapping[str, tuple[str, str | None]] = {

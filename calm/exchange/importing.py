@@ -89,9 +89,7 @@ def import_file(
     levels = 0 if design.water is None else len(design.water.current)
     for what, count in (("pieces", len(design.items)), ("levels of current", levels)):
         if count > model.MOST_PIECES:
-            raise refused(
-                path, f"has {count} {what}; more than {model.MOST_PIECES} are not imported"
-            )
+            raise refused(path, f"has {count} {what}; the maximum is {model.MOST_PIECES}")
     if environment is not None:
         design.environment = environment_lines(environment, output)
         if design.water is not None:

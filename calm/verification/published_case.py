@@ -21,7 +21,7 @@ from calm.solve import Settings, Solution, Towing, solve_mooring, solve_tow
 
 Solved = TypeVar("Solved")
 
-PRINTED = "Half a unit of the last printed digit, plus a tenth."
+PRINTED = "Half a unit of the last printed digit, plus 10 % of that."
 """The reason for the tolerance of a printed figure that CALM computes to more digits."""
 
 
