@@ -20,14 +20,14 @@ from calm.ranging.ranges import Sound, Survey
 BY_CHANCE = 0.01
 """Probability of rejecting a range from a survey without outliers."""
 FLOOR = 2.0
-"""Scatter that no range is better than [m]: the ship's antenna is some metres from its transducer,
-and both move while the sound travels."""
+"""Minimum scatter of ranges [m], because the ship's antenna is some metres from its transducer, and
+both move while the sound travels."""
 SPARE = 2
 """Minimum number of redundant ranges after rejection; with fewer, two ranges with equal errors
 would outvote a correct third one.
 """
 APART = 10.0
-"""Distance from which two places are two [m]."""
+"""Minimum distance between distinct positions [m]."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ class RangeModel:
         return self._below(fit.x)
 
     def tested(self, x: Floats, used: Booleans) -> Booleans:
-        """Reject the worst outlier, or restore a range that fits the others.
+        """Reject the worst outlier, or restore a rejected range with a small residual.
 
         A range is tested by its residual over its standard error, as estimated from the others.
         """
