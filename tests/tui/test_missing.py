@@ -116,9 +116,9 @@ def test_the_form_shows_the_class_estimate_of_a_figure():
     estimate = "estimate: {quantity: working_load, value: 20 kN, low: 1 N, source: its like}"
     text = UNKNOWN.replace("role: release,", f"role: release, {estimate},")
     (found,) = (one for one in missing_figures(judge(text), Draft(text)) if one.use == "releaser")
-    assert found.estimates == {"working_load": "estimated: at least 1 N, probably 20.00 kN"}
+    assert found.estimates == {"working_load": "estimated: at least 1.00 N, probably 20.00 kN"}
     takes = {each.key: each.takes for each in figures_sheet([found])._form_fields}
-    assert takes["releaser.working_load"] == "estimated: at least 1 N, probably 20.00 kN"
+    assert takes["releaser.working_load"] == "estimated: at least 1.00 N, probably 20.00 kN"
 
 
 def test_the_form_asks_for_what_the_block_asks_for():

@@ -50,10 +50,13 @@ def test_the_anchor_needs_what_the_worst_finding_says(anchor, needs, state):
 
 def test_the_reserve_is_that_of_the_worst_finding():
     lines = lines_of(BUOY.replace("buoyancy: 1000 N", "buoyancy: 550 N"))
-    head, below = the(lines, "212 N"), the(lines, "127 % of ≥ 0.300. 24 % of the float's buoyancy")
+    head, below = (
+        the(lines, "212 N"),
+        the(lines, "127 % of ≥ 0.300. Reserve buoyancy of the float is 24 %"),
+    )
     assert head.heading == "Reserve" and head.state is below.state is State.WARN
     assert head.text.endswith("61% of the float's buoyancy in use; 76% at worst (strumming)")
-    assert below.heading == "Reserve of buoyancy (strumming)"
+    assert below.heading == "Reserve buoyancy (strumming)"
 
 
 def test_the_knockdown_is_that_of_the_worst_finding():
