@@ -153,8 +153,9 @@ def _refuse_large(path: Path) -> None:
     """Reject a file that declares more values than may be read at once.
 
     The check precedes all reading. One-dimensional variables are read whole, others by their
-    chunks. A classic NetCDF file cannot declare more values than it holds. UnreadableError: names
-    the variable.
+    chunks. Classic NetCDF files are safe, as their size limits the number of values.
+
+    UnreadableError: names the variable.
     """
     declared: list[tuple[str, Any]] = []
     if path.is_dir():
@@ -187,7 +188,7 @@ def _too_large(name: object, count: int) -> str:
 
 
 def engine_of(path: Path) -> str:
-    """Return the xarray engine for a NetCDF file, from its first bytes; empty for other files."""
+    """Return the xarray engine for a NetCDF file by its first bytes, or an empty text."""
     with path.open("rb") as file:
         return _ENGINES.get(file.read(4), "")
 
@@ -215,7 +216,7 @@ def holdings(dataset: xr.Dataset) -> str:
 
 
 def groups_of(path: Path) -> list[str]:
-    """Return the names of the groups of a NetCDF 4 file; empty for other files."""
+    """Return the names of the groups of a NetCDF 4 file, or an empty list."""
     import h5netcdf
 
     if not path.is_file() or engine_of(path) != "h5netcdf":
