@@ -9,6 +9,7 @@ from calm.case.result_tables import ComponentRow, run_of
 from calm.checks.finding import Finding, State, grouped_by
 from calm.drawing.check_figures import PieceBar, load_chart
 from calm.drawing.line_picture import alike, together
+from calm.files import Clamp, Piece
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Block, Cell, Figure, Table, number, table_of, words
 from calm.report.load_cases import (
@@ -114,7 +115,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
 
 def _floats(row: ComponentRow) -> bool:
     """Whether a piece is a float, or a chain or cable with floats."""
-    parts = (row.part, *row.part.clamps)
+    parts: tuple[Piece | Clamp, ...] = (row.part, *row.part.clamps)
     return any(part.component.role == "float" for part in parts)
 
 
