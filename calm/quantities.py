@@ -97,7 +97,7 @@ class Quantity:
         """Format a value [`unit`] as by `say`, with number and unit apart."""
         largest = max(abs(one) for one in (value, *beside) if one is not None)
         if self.display_unit == "kN" and largest < 999.5 and "force" not in _shown:
-            return f"{value:z.0f}", "N"
+            return f"{value:z.{2 if largest < 9.95 else 0}f}", "N"
         return self.format(value), self.display_unit
 
     def figure(self, value: float) -> str:

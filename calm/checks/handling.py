@@ -1,4 +1,4 @@
-"""Deployment and recovery: back-up buoyancy, launch and rise."""
+"""Rules on deployment and recovery: back-up buoyancy, launch, ascent."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -31,13 +31,16 @@ FAST_RISE_SPEED = 3.0
 
 
 def is_hauled_in(handling: Handling) -> bool:
-    """Whether a line has a surface float and no release, and so is recovered by hauling."""
+    """Return whether a line is recovered by hauling, since it has a surface float and no
+    release.
+    """
     return handling.leg.file.release is None and reaches_the_surface(handling.leg)
 
 
 @rule("backup", once=True, case="B")
 def backup(handling: Handling) -> Iterator[Verdict]:
-    """Check the net buoyancy left to recover the release after a break or the loss of a float.
+    """Check the net buoyancy that remains to recover the release after a break or the loss of a
+    float.
 
     Breaks above the back-up floats are considered, and the loss of any one buoyant element. The net
     buoyancy should be a tenth of the weight it lifts, and raise it at `minimum_rise_speed`. A
@@ -94,14 +97,14 @@ def backup(handling: Handling) -> Iterator[Verdict]:
 
 @rule("launch-strength", once=True, case="L")
 def launch_strength(handling: Handling) -> Iterator[Verdict]:
-    """Tension of every piece as the line falls behind its anchor.
+    """Check the tension in every piece as the line falls behind its anchor.
 
     It may be `launch_working_factor` times the working load, and the breaking load over
     `launch_safety_factor`, whichever is less.
     """
     launch, file = handling.launch, handling.leg.file
     if isinstance(launch, NoEquilibrium):
-        yield _unsolved("descent", launch)
+        yield from _unsolved(handling, "descent", launch)
         return
     times, over = file.checks.launch_working_factor, file.checks.launch_safety_factor
     most = "" if launch.anchor_drag_known else " at most"
@@ -135,10 +138,10 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
 
 @rule("launch-speed", once=True, case="L")
 def launch_speed(handling: Handling) -> Iterator[Verdict]:
-    """Judge the speed of the anchor as it meets the seabed."""
+    """Check the touchdown speed of the anchor."""
     launch = handling.launch
     if isinstance(launch, NoEquilibrium):
-        yield _unsolved("descent", launch)
+        yield from _unsolved(handling, "descent", launch)
         return
     anchor, speed = handling.leg.file.pieces[-1], launch.fall_speed
     slow, fast = (QUANTITIES["speed"].format(one) for one in launch.fall_speed_band)
@@ -163,14 +166,16 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
 
 @rule("recovery", once=True, case="R")
 def recovery(handling: Handling) -> Iterator[Verdict]:
-    """Terminal speed of the line as it rises without its anchor, unless it is hauled in."""
+    """Check the terminal rise speed of the line without its anchor, unless the line is
+    hauled in.
+    """
     if is_hauled_in(handling):
         message = "A line without a release is hauled in with its anchor, so it has no ascent."
         yield verdict_on(None, State.NOT_JUDGED, message)
         return
     rise, limit = handling.recovery, handling.leg.file.checks.minimum_rise_speed
     if isinstance(rise, NoEquilibrium):
-        yield _unsolved("ascent", rise)
+        yield from _unsolved(handling, "ascent", rise)
         return
     lowest = handling.leg.file.pieces[rise.released]
     if rise.time_to_surface == 0.0:
@@ -231,6 +236,10 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
     return verdict_on(lowest, State.PASS, message, value=rise.rise_speed)
 
 
-def _unsolved(motion: str, failure: NoEquilibrium) -> Verdict:
-    message = f"The {motion} of the line has no solution ({failure.status}): {failure.message}"
-    return unknown(None, message, failure.advice)
+def _unsolved(handling: Handling, motion: str, failure: NoEquilibrium) -> Iterator[Verdict]:
+    """Report a motion that could not be solved; a line without equilibrium is left to the rule
+    `equilibrium`.
+    """
+    if handling.result is not None:
+        message = f"The {motion} of the line has no solution ({failure.status}): {failure.message}"
+        yield unknown(None, message, failure.advice)

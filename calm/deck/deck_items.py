@@ -285,8 +285,8 @@ def deck_items_of(result: AnyResult, apart: Collection[str] = ()) -> tuple[DeckI
     found: list[DeckItem] = []
     for row, clamps in rows_down(result):
         bottom = seabeds[own[row.index]]
-        parts: tuple[ComponentRow | ClampRow, ...] = (row, *clamps)
-        found += (_deck_item(row, one, items, serials, bottom) for one in parts)
+        rows: list[ComponentRow | ClampRow] = [row, *clamps]
+        found += (_deck_item(row, one, items, serials, bottom) for one in rows)
     return tuple(
         replace(one, apart=True) if one.is_connector and one.label in apart else one
         for one in found

@@ -224,7 +224,9 @@ class CurrentSmoother:
         self.spread = np.maximum(self._along(place, spread), LEAST_SPREAD)
         flags = np.unique(one.flag[np.isfinite(one.u)])
         usual = {f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()}
-        self._most_tide = common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
+        self._most_tide = (
+            common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
+        )
         self.scales = ErrorScales(usual, tide=self._most_tide)
         self.levels = np.where(np.isfinite(one.level_depth), one.level_depth, place)
         self.knot_depth = self.knots.at(self.levels)
@@ -646,7 +648,7 @@ class CurrentSmoother:
         law, _ = self.law(self.depth, sensors=False)
         wide = law.steady.copy()
         wide[at.current, at.current] *= WIDER**2
-        law = replace(law, steady=wide, first=law.first+wide-law.steady)
+        law = replace(law, steady=wide, first=law.first + wide - law.steady)
         flow = slice(0, at.current.stop)
         now, spread = np.empty((count, flow.stop)), np.empty((count, flow.stop, flow.stop))
         row = {int(t): i for i, t in enumerate(times)}

@@ -25,8 +25,8 @@ from calm.records.card import (
     ReadCard,
     VariableSummary,
     card_of_instruments,
+    description_of,
     joined_cards,
-    said_of,
     texts_in,
 )
 from calm.records.cf_files import UnreadableError, factor_of, first_present, known_values
@@ -101,7 +101,7 @@ class InstrumentSeries(Identity):
     pressure: float = float("nan")
     called: str = ""
 
-    def judged(self, quantity: str, variable: str, notes: Sequence[str] = ()) -> InstrumentSeries:
+    def checked(self, quantity: str, variable: str, notes: Sequence[str] = ()) -> InstrumentSeries:
         """Return the series without impossible values, with the doubts added to its note.
 
         Parameters
@@ -115,20 +115,20 @@ class InstrumentSeries(Identity):
         UnreadableError
             Most values are impossible for sea water, so the unit must be wrong.
         """
-        value, said = self.value, [*notes]
+        value, remarks = self.value, [*notes]
         if quantity in WATER:
             wrong, doubt, most = impossible_values(quantity, value)
             if most:
                 raise UnreadableError(f"`{variable}`: {doubt}")
-            said += [f"`{variable}`: {doubt}"] if doubt else []
+            remarks += [f"`{variable}`: {doubt}"] if doubt else []
             value = np.where(wrong, np.nan, value)
             known = value[np.isfinite(value)]
             if known.size >= _FEWEST and not known.any():
-                said.append(f"`{variable}`: all {known.size} values are 0, and are left out")
+                remarks.append(f"`{variable}`: all {known.size} values are 0, and are left out")
                 value = np.full_like(value, np.nan)
         doubts = series_doubts(value[:, np.newaxis, np.newaxis], self.time)
-        said += [f"`{variable}`: {doubt}" for doubt in doubts]
-        return replace(self, value=value, note="; ".join(filter(None, (self.note, *said))))
+        remarks += [f"`{variable}`: {doubt}" for doubt in doubts]
+        return replace(self, value=value, note="; ".join(filter(None, (self.note, *remarks))))
 
 
 def read_series(
@@ -320,7 +320,7 @@ class _SeriesFile:
         return [
             replace(
                 one, below=float(deep), card=card, pressure=pressure, called=one.label or called
-            ).judged(name, variable, notes)
+            ).checked(name, variable, notes)
             for one, deep in zip(found.series(value, who), below, strict=True)
         ]
 
@@ -545,8 +545,8 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
             bad = ~np.isin(given, sorted(flags - {INTERPOLATED})) & np.isfinite(values)
             removed[str(marks.name)] = int(bad.sum())
             dropped |= bad
-    said = clock, str(dataset[clock].attrs.get("units", ""))
-    return Readings(times[order], time, along, parts, dropped, said, removed)
+    clock_unit = clock, str(dataset[clock].attrs.get("units", ""))
+    return Readings(times[order], time, along, parts, dropped, clock_unit, removed)
 
 
 def card_of(
@@ -561,9 +561,11 @@ def card_of(
     """
     summaries = {}
     for (meaning, name), values in zip(taken.items(), found.values, strict=True):
-        told = dataset[name].attrs
-        unit = str(told.get("units", ""))
-        summaries[meaning] = VariableSummary.of(name, unit, values, said_of(told))
+        variable_attributes = dataset[name].attrs
+        unit = str(variable_attributes.get("units", ""))
+        summaries[meaning] = VariableSummary.of(
+            name, unit, values, description_of(variable_attributes)
+        )
     return ReadCard(
         source, texts_in(dataset.attrs), summaries, found.dropped.shape[1], found.time,
         found.clock, found.flags,
@@ -585,8 +587,8 @@ def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str
         tried = (cf_files.places_along(dataset, dim, seabed) for dim in (None, *single))
         place = next((float(one[0]) for one in tried if one is not None), _number(dataset.attrs))
         known = (_serials(dataset, dims) for dims in ((), *((dim,) for dim in single)))
-        told = next((dataset.attrs[name] for name in _SERIALS if name in dataset.attrs), "")
-        serial = next(filter(None, known), [str(told).strip()])[0]
+        serial_text = next((dataset.attrs[name] for name in _SERIALS if name in dataset.attrs), "")
+        serial = next(filter(None, known), [str(serial_text).strip()])[0]
         return [Identity(labels[0], serial, place, source)]
     count = dataset.sizes[along]
     labels = cf_files.labels_along(dataset, along) or ("",) * count

@@ -129,13 +129,13 @@ def _lines(path: Path) -> list[str]:
 
 def _rodb(path: Path) -> xr.Dataset:
     lines = _lines(path)
-    said: dict[str, str] = {}
+    header: dict[str, str] = {}
     first = 0
     while first < len(lines) and (not lines[first].strip() or "=" in lines[first]):
         if found := _PAIR.match(lines[first]):
-            said[found[1].lower()] = found[2]
+            header[found[1].lower()] = found[2]
         first += 1
-    names = said["columns"].upper().split(":")
+    names = header["columns"].upper().split(":")
     if not set(_DATE[:3]) <= set(names):
         raise refused(path, "its `Columns` have no YY, MM and DD", line=first)
     values = _numbers(path, lines, first, len(names))
@@ -145,14 +145,17 @@ def _rodb(path: Path) -> xr.Dataset:
     seconds = np.rint(of.get("HH", np.zeros(len(values))) * 3600.0)  # hours have five digits
     time = months.astype("M8[us]") + (day - 1) * np.timedelta64(1, "D")
     columns = {_RODB[name]: of[name] for name in names if name in _RODB}
-    latitude = said.get("latitude", "nan")
+    latitude = header.get("latitude", "nan")
     try:
-        nominal, degrees = float(said.get("instrdepth", "nan")), plain_degrees(latitude, "latitude")
+        nominal, degrees = (
+            float(header.get("instrdepth", "nan")),
+            plain_degrees(latitude, "latitude"),
+        )
     except ValueError:
         raise refused(path, "its `InstrDepth` or `Latitude` is no number") from None
     if nominal in _MISSING or nominal < 0.0:
         nominal = math.nan
-    serial = said.get("serialnumber", "")
+    serial = header.get("serialnumber", "")
     return _dataset(path, time + seconds.astype("m8[s]"), columns, nominal, degrees, serial)
 
 
@@ -165,8 +168,8 @@ def _cnv(path: Path) -> xr.Dataset:
         raise refused(path, "its head names no columns")
     values = _numbers(path, lines, first, len(names))
     columns: dict[tuple[str, str], Floats] = {}
-    for j, (name, told) in names.items():
-        unit = _CNV_UNIT.search(told)
+    for j, (name, title) in names.items():
+        unit = _CNV_UNIT.search(title)
         for pattern, what, units in _CNV:
             if re.fullmatch(pattern, name) and unit is not None and unit[1] in units:
                 columns.setdefault((what, units[unit[1]]), values[:, j])
@@ -198,14 +201,14 @@ def _rbr(path: Path) -> xr.Dataset:
     lines = _lines(path)
     first = sum(1 for line in lines if line.startswith("//") or not line.strip())
     head = next((line for line in lines[:first][::-1] if line.startswith("// timestamp")), "")
-    told = [re.fullmatch(r"\s*(\w+?)\((.*)\)\s*", name) for name in head.split(",")[1:]]
+    titles = [re.fullmatch(r"\s*(\w+?)\((.*)\)\s*", name) for name in head.split(",")[1:]]
     moments = [line.partition(",")[0].strip() for line in lines[first:]]
-    values = _numbers(path, [line.partition(",")[2] for line in lines], first, len(told))
+    values = _numbers(path, [line.partition(",")[2] for line in lines], first, len(titles))
     try:
         time = np.array(moments, "M8[us]")
     except ValueError:
         raise refused(path, "has a row without a time", line=first + 1) from None
-    of = {one[1]: (one[2], values[:, j]) for j, one in enumerate(told) if one}
+    of = {one[1]: (one[2], values[:, j]) for j, one in enumerate(titles) if one}
     if "sea_pressure" in of or "pressure" in of:
         of["pressure"] = of.get("sea_pressure") or ("dbar", of["pressure"][1] - AIR)
     columns = {

@@ -359,8 +359,8 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
     if not fraction:
         allowed = f"{limits.least:g} to {limits.greatest:g} {limits.unit}".rstrip()
         count, span = int(wrong.sum()), f"no {name} of sea water, {allowed}"
-    said = f"{count} of {known.size} values are {span}, their median {middle:.4g}{meant}"
-    return wrong, said, bool(2 * wrong.sum() > known.size)
+    sentence = f"{count} of {known.size} values are {span}, their median {middle:.4g}{meant}"
+    return wrong, sentence, bool(2 * wrong.sum() > known.size)
 
 
 def exchanged_pair(values: Floats) -> tuple[int, int] | None:

@@ -16,9 +16,8 @@ from calm.checks.finding import (
 )
 from calm.report.blocks import Block, Cell, Field, Prose, Span, number, table_of, words
 from calm.report.open_items import (
+    FIGURE_FIELDS,
     advice,
-    figure_text,
-    limit_text,
     percent_text,
     short,
     where_text,
@@ -216,9 +215,7 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
         [one for name in order for one in told[name]],
         words("", lambda one: Cell(state=one.state), 0.0),
         words("Rule", lambda one: RULES[one.rule].title, 1.0),
-        number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
-        number("Found", lambda one: figure_text(one)),
-        words("Limit", lambda one: limit_text(one) or "–", 0.0),
+        *FIGURE_FIELDS,
         words("Where, case", lambda one: short(where_text(one), 36), 1.1),
         number("Over\n100 %", lambda one: _over(groups[one.rule])
                if one is told[one.rule][0] else None),

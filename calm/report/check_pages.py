@@ -42,6 +42,7 @@ from calm.report.blocks import (
 )
 from calm.report.load_cases import LOAD, length_text, load_text
 from calm.report.open_items import (
+    FIGURE_FIELDS,
     advice,
     figure_text,
     limit_text,
@@ -96,10 +97,7 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         words("", lambda row: Cell(state=row[0].state), 0.0),
         words("Rule", lambda row: Cell(
             RULES[row[0].rule].title, f"({row[1]})" if row[1] > 1 else "", goes_on=True), 1.2),
-        number("Use %", lambda row: Cell(percent_text(row[0].utilisation), strong=True)),
-        number("Found", lambda row: figure_text(row[0])),
-        words("Limit", lambda row: limit_text(row[0]) or "–", 0.0),
-        words("Where, case", lambda row: where_text(row[0]), 0.9),
+        *blocks.of_first(*FIGURE_FIELDS, words("Where, case", where_text, 0.9)),
         words("Basis of the limit; remedy", basis, 2.2),
         note=f"These {len(rows)} rows summarise {len(findings)} findings ({counted}); the files of "
         "this report list them.",

@@ -4,7 +4,7 @@ A mooring without failures takes at most `MOST_LINES` lines of 80 characters. Se
 appear as a matrix of maximum utilisations.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import ceil
 from textwrap import wrap
@@ -34,7 +34,7 @@ from calm.report.open_items import (
     short,
     without_asides,
 )
-from calm.report.page_one import case_columns, shown_cases
+from calm.report.page_one import case_columns, governing_rows, shown_cases
 
 MOST_LINES = 40
 """Maximum number of lines of a mooring without failures."""
@@ -168,18 +168,12 @@ def _title(finding: Finding) -> str:
 
 def _rows(every: Sequence[Finding]) -> tuple[list[Finding], list[Finding]]:
     """Select the findings to show in rows, and return the governing ones of other rules."""
-    failed = governing_of_each_rule(_of_state(every, State.FAIL))
-    leads = _without_repeats(governing_of_each_rule(every))
-    used = [one for one in leads if one.utilisation is not None and one not in failed]
-    used.sort(key=lambda one: -(one.utilisation or 0.0))
+    failed = governing_of_each_rule(one for one in every if one.state is State.FAIL)
+    used = [one for one in governing_rows(every) if one not in failed]
     most = [one for one in used if (one.utilisation or 0.0) >= _HALF or _is_open(one)]
     most = most[: max(_MOST_ROWS, sum(map(_is_beyond, most)))] or used[:3]
     rest = [one for one in used if one not in most]
     return [*sorted(failed, key=lambda one: one.rank), *most], rest
-
-
-def _of_state(findings: Iterable[Finding], state: State) -> list[Finding]:
-    return [one for one in findings if one.state is state]
 
 
 def _is_open(finding: Finding) -> bool:
@@ -188,16 +182,6 @@ def _is_open(finding: Finding) -> bool:
 
 def _is_beyond(finding: Finding) -> bool:
     return (finding.utilisation or 0.0) > 1.0
-
-
-def _without_repeats(findings: Sequence[Finding]) -> list[Finding]:
-    """Omit the load of a release if its strength has the same values."""
-    told = {(one.component, one.value, one.limit) for one in findings if one.rule == "strength"}
-    return [
-        one
-        for one in findings
-        if one.rule != "release-load" or (one.component, one.value, one.limit) not in told
-    ]
 
 
 def _sign(state: State) -> str:

@@ -3,41 +3,17 @@
 import re
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Sequence
-from functools import partial
 from itertools import groupby
 from operator import attrgetter
 
-from calm.checks.assess import RULES
 from calm.checks.criterion import limit_value_text
-from calm.checks.finding import AS_GIVEN, Finding, State, grouped_by, worst_of
+from calm.checks.finding import Finding, State, grouped_by, worst_of
 from calm.checks.inventory import InventoryItem
 from calm.files.check_limits import LimitKey
 from calm.files.components import FLEXIBLE_KINDS
 from calm.quantities import QUANTITIES
 from calm.report import blocks
 from calm.report.blocks import Cell, Field, Table, number, quantity, table_of, words
-
-
-def figure_of(finding: Finding, name: str) -> str:
-    """Format the value, limit or margin of a finding with its unit; "" if unknown."""
-    value = getattr(finding, name)
-    if value is None:
-        return ""
-    text = QUANTITIES[RULES[finding.rule].quantity].say(value)
-    return text if name != "margin" or text.startswith("-") else f"+{text}"
-
-
-FIGURES = (
-    words("state", lambda one: Cell(one.state.value, state=one.state), 0.0),
-    *(number(name, partial(figure_of, name=name)) for name in ("value", "limit", "margin")),
-)
-"""Columns of findings."""
-
-
-def place_of(finding: Finding) -> str:
-    """Name the environment of a finding and its situation."""
-    changed = "" if finding.situation == AS_GIVEN else f", {finding.situation}"
-    return f"{finding.environment}{changed}"
 
 
 def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
@@ -140,9 +116,7 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
     """Tabulate the number and quantity of each component, with room for spares."""
     note = "Cut lengths apply to wire, rope and chain. Enter spares by hand."
     if any(item.dry_mass is None for item in items):
-        note += (
-            " ≥ marks a lower bound, as some masses in air are unknown: do not plan lifts by it."
-        )
+        note += " ≥ marks a lower bound without the unknown masses: do not plan lifts by it."
 
     def summed(name: str) -> Field:
         return quantity(name, lambda group: None)[0], lambda group: _sum(name, group)

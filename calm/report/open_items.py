@@ -22,14 +22,14 @@ from calm.checks.finding import (
     worst_of,
 )
 from calm.quantities import QUANTITIES
-from calm.report.blocks import OpenItem, Span
+from calm.report.blocks import Cell, OpenItem, Span, number, words
 from calm.report.check_tables import joined, named_components
 
 OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, State.NOT_JUDGED)
 """States that count as open, in the order of the list."""
 
-_DIFFERENCES = ("planned-depth", "as-deployed")
-"""Rules whose values are differences, which their messages explain."""
+_EXPLAINED = ("planned-depth", "as-deployed", "reserve", "freeboard")
+"""Rules whose messages explain their values: differences and shares."""
 
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
@@ -74,6 +74,14 @@ def percent_text(utilisation: float | None) -> str:
         return "–"
     percent = percent_used(utilisation)
     return ">999" if not isfinite(percent) or percent > 999.0 else f"{percent:.0f}"
+
+
+FIGURE_FIELDS = (
+    number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
+    number("Found", figure_text),
+    words("Limit", lambda one: limit_text(one) or "–", 0.0),
+)
+"""Columns of findings: utilisation, value and limit."""
 
 
 def where_text(finding: Finding) -> str:
@@ -181,7 +189,8 @@ def _head(group: Sequence[Finding], worst: Finding) -> str:
     labels = list(dict.fromkeys(one.component or "" for one in group))
     of = f", {short(named_components(_once(group)), 90)}" if labels != [""] else ""
     if worst.missing is not None:
-        return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} missing"
+        lack = "missing" if worst.missing.class_estimate is None else "estimate too low"
+        return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} {lack}"
     if worst.state is State.ESTIMATED:
         passes = "passes" if len(labels) == 1 else "pass"
         return f"{_capital(short(named_components(_once(group)), 90))}: {passes} by an estimate"
@@ -213,7 +222,7 @@ def _told(group: Sequence[Finding], worst: Finding) -> str:
             f"{one.quantity.replace('_', ' ')} is {one.bounds_text}" for one in worst.estimates
         )
         return f"{figures} Estimate: {'; '.join(titles)}. Obtain the manufacturer’s value."
-    if figures and worst.rule not in _DIFFERENCES:
+    if figures and worst.rule not in _EXPLAINED:
         return f"{figures} {worst.remedy or ''}"
     return f"{worst.message} {worst.remedy or ''}"
 

@@ -37,9 +37,8 @@ from calm.report.blocks import (
 )
 from calm.report.load_cases import LOAD, LoadCase, load_text, worst_of_each_environment
 from calm.report.open_items import (
+    FIGURE_FIELDS,
     draft,
-    figure_text,
-    limit_text,
     open_groups,
     percent_text,
     short,
@@ -303,9 +302,7 @@ def check_fields(longest: int) -> tuple[blocks.Field, ...]:
         words("", lambda one: Cell(state=one.state), 0.0),
         words("Check", lambda one: RULES[one.rule].title, 1.15),
         words("", lambda one: Cell(bar=min(one.utilisation, 9.99), state=one.state), 1.5),
-        number("Use %", lambda one: Cell(percent_text(one.utilisation), strong=True)),
-        number("Found", lambda one: figure_text(one)),
-        words("Limit", limit_text, 0.0),
+        *FIGURE_FIELDS,
         words("Where, case", lambda one: short(where_text(one), longest + 8), 1.3),
     )
 

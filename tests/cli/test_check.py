@@ -260,7 +260,7 @@ def test_moorings_among_tows_are_judged(calm, folder, write_mooring):
         (("m.yaml", "--report", "m.yaml"), "is not a folder; a folder is needed"),
         (("m.yaml", "--json", "none/x.json"), "there is no folder"),
         (("missing.yaml",), "missing.yaml"),
-        ((), "FILES"),
+        ((), "FILE"),
     ],
 )
 def test_bad_input_is_told_and_nothing_is_solved(calm, write_mooring, storm, broken, words, says):

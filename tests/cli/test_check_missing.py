@@ -37,14 +37,14 @@ sbe56-uwa: {kind: body, role: instrument, length: 0.2 m, buoyancy: -2 N, kn: 1 N
 
 
 @pytest.fixture
-def lacking(folder):
+def unknowns(folder):
     (folder / "own.yaml").write_text(CATALOGUE, encoding="utf-8")
     (folder / "m.yaml").write_text(f"{LINE}components:\n{OWN}", encoding="utf-8")
     return "m.yaml", "--catalog", "own.yaml"
 
 
-def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, lacking):
-    done = calm("check", *lacking, "--missing")
+def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, unknowns):
+    done = calm("check", *unknowns, "--missing")
     assert done.code == 1
     block = yaml.safe_load(done.out)
     assert block["sbe56-uwa"] == {"depth_rating": None}
@@ -95,14 +95,14 @@ components:
         assert all(f"{id}: {key.replace('_', ' ')}" in done.out for key in keys)
 
 
-def test_a_completed_block_in_the_file_settles_what_it_gives(calm, lacking, folder):
-    assert calm("check", *lacking, "--missing", "-o", "block.yaml").out == ""
+def test_a_completed_block_in_the_file_settles_what_it_gives(calm, unknowns, folder):
+    assert calm("check", *unknowns, "--missing", "-o", "block.yaml").out == ""
     block = (folder / "block.yaml").read_text(encoding="utf-8")
     given = re.sub(r"( +depth_rating):", r"\1: 500 m", block)
     # the file defines `link` itself
     pasted = re.sub(r"  link:.*?\n(?=  \S|\Z)", "", given, flags=re.DOTALL)
     (folder / "m.yaml").write_text(f"{LINE}components:\n{pasted}\n{OWN}", encoding="utf-8")
-    done = calm("check", *lacking, "--json", "-")
+    done = calm("check", *unknowns, "--json", "-")
     assert "hides" not in done.err
     found = json.loads(done.out)["findings"]
     asked = {f["component_id"] for f in found if f["rule"] == "missing"}
@@ -112,11 +112,11 @@ def test_a_completed_block_in_the_file_settles_what_it_gives(calm, lacking, fold
     assert rated["sbe56-uwa 2"] == pytest.approx(400.0)
 
 
-def test_a_key_without_a_value_stays_unknown(calm, lacking, folder):
+def test_a_key_without_a_value_stays_unknown(calm, unknowns, folder):
     own = OWN.replace("{kind: body,", "{breaking_load: , kind: body,")
     empty = f"{LINE}components:\n  sbe56-uwa: {{depth_rating: }}\n{own}"
     (folder / "m.yaml").write_text(empty, encoding="utf-8")
-    block = yaml.safe_load(calm("check", *lacking, "--missing").out)
+    block = yaml.safe_load(calm("check", *unknowns, "--missing").out)
     assert block["sbe56-uwa"] == {"depth_rating": None}
     assert block["link"] == {"working_load": None}
 
@@ -129,17 +129,17 @@ def test_a_key_without_a_value_stays_unknown(calm, lacking, folder):
         (("--missing", "-o", "m.yaml"), "m.yaml would overwrite the file that is read"),
     ],
 )
-def test_what_cannot_be_is_refused_before_anything_is_solved(calm, lacking, words, says):
-    done = calm("check", *lacking, *words)
+def test_what_cannot_be_is_refused_before_anything_is_solved(calm, unknowns, words, says):
+    done = calm("check", *unknowns, *words)
     assert done.code == 2
     assert says in done.err
 
 
-def test_without_equilibrium_no_figure_is_known_to_be_missing(calm, lacking, folder):
+def test_without_equilibrium_no_figure_is_known_to_be_missing(calm, unknowns, folder):
     text = (folder / "m.yaml").read_text(encoding="utf-8")
     sunk = text.replace("count: 2", "count: 4000")
     (folder / "m.yaml").write_text(sunk, encoding="utf-8")
-    done = calm("check", *lacking, "--missing", "-o", "block.yaml")
+    done = calm("check", *unknowns, "--missing", "-o", "block.yaml")
     assert done.code == 3
     assert "buoyancy" in done.err  # why there is none
     assert "block.yaml written" in done.err

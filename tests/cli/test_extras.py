@@ -125,7 +125,7 @@ def test_a_command_that_needs_an_extra_says_so_in_one_line():
         assert code == 2, (command, told)
         *_, last = told.splitlines()
         assert last.startswith("calm: this needs "), (command, told)
-        assert last.endswith(f": pip install 'calm-mooring[{extra}]'"), (command, told)
+        assert last.endswith(f": in CALM's checkout, pip install '.[{extra}]'"), (command, told)
 
 
 @pytest.mark.thorough
@@ -183,7 +183,7 @@ def test_the_extras_of_the_package_hold_the_libraries_that_are_named():
 @pytest.mark.parametrize(
     ("name", "advice"),
     [
-        ("xarray.core", "this needs xarray: pip install 'calm-mooring[records]'"),
+        ("xarray.core", "this needs xarray: in CALM's checkout, pip install '.[records]'"),
         ("scipy", "this needs scipy, which is not installed: pip install scipy"),
         ("calm.lost", None),
         (None, None),

@@ -125,10 +125,10 @@ def test_a_rope_of_unknown_stiffness_is_told(calm, buoy):
         (("--hs", "5 m", "--tp", "4 s"), "would break"),
         (("--hs", "40 m", "--tp", "25 s"), "no sea is higher than 30 m"),
         (("--hs", "3 m", "--tp", "60 s"), "longer than 30 s"),
-        ((*SEA, "--duration", "2 s"), "--duration: a minute at least"),
+        ((*SEA, "--duration", "2 s"), "--duration must be at least one minute"),
         ((*SEA, "--spectrum", "jonswop"), "did you mean `jonswap`?"),
         ((*SEA, "--spectrum", "jonswap", "--gamma", "0.2"), "--gamma must be from 1"),
-        ((*SEA, "--scatter", "none.csv"), "--scatter: gives heights"),
+        ((*SEA, "--scatter", "none.csv"), "--scatter contains heights"),
         (("--scatter", "none.csv"), "none.csv"),
     ],
 )
@@ -295,11 +295,11 @@ def test_a_report_has_the_life_and_its_pictures(calm, buoy, tmp_path):
         ("{significant_heigth: 2 m, peak_period: 4 s}", "significant_height"),
         ("{significant_height: 2 m, peak_period: 6 s, spectrum: jonswop}", "mean `jonswap`"),
         ("{significant_height: 2 m, peak_period: 6 s, gamma: 30}", "at most 10"),
-        ("{significant_height: 2 m, peak_period: 6 s, spectrum: ochi-hubble}", "no period"),
+        ("{significant_height: 2 m, peak_period: 6 s, spectrum: ochi-hubble}", "remove the period"),
         ("{spectrum: sea.csv, significant_height: 2 m}", "leave them out"),
         ("{scatter: none.csv}", "no such file"),
         ("{scatter: bad.csv}", "not numbers"),
-        ("{scatter: seas.csv, spectrum: ochi-hubble}", "periods of its own"),
+        ("{scatter: seas.csv, spectrum: ochi-hubble}", "defines its own periods"),
     ],
 )
 def test_seas_of_the_file_that_cannot_be(calm, buoy, tmp_path, waves, message):

@@ -52,15 +52,15 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     design = model.ImportedDesign("a list", path.stem, [], None, notes=[_NOTE])
     design.water = _water(sheets, design, path)
     problems: list[str] = []
-    said = list[model.Remark]()
+    remarks = list[model.Remark]()
     headings = None
-    if chosen := _headed(lists, hidden, columns, path, said):
+    if chosen := _headed(lists, hidden, columns, path, remarks):
         sheet, cells, headings = chosen
         problems += headings.problems
-        said += _unit_remarks(headings)
+        remarks += _unit_remarks(headings)
         weighed = {"buoyancy", "weight"} & headings.columns.keys()
         rows = rows_of(
-            cells, headings, problems, design.dropped, said,
+            cells, headings, problems, design.dropped, remarks,
             bare=lambda name: bool(library) and (not weighed or key_of(name) in library),
         )  # fmt: skip
         weights_as_buoyancy(rows, design.guessed)
@@ -78,11 +78,11 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     rows = _from_the_top(rows, path, design)
     if headings and "depth" in headings.columns and not _go_down(rows):
         heading = headings.columns["depth"].heading
-        said.append(model.Remark(f"column {heading}", "does not grow down the line: left out"))
+        remarks.append(model.Remark(f"column {heading}", "does not grow down the line: left out"))
         for row in rows:
             row.figures.pop("depth", None)
     design.items = _items(rows)
-    design.guessed += said
+    design.guessed += remarks
     if problems := [*problems, *(each for row in rows for each in row.problems)]:
         raise refused(path, *problems)
     design.in_kilograms = headings is None or any(
@@ -104,12 +104,12 @@ def _named(
 
 def _headed(
     sheets: Mapping[str, SheetRows], hidden: Mapping[str, str], columns: Mapping[str, str],
-    path: Path, said: list[model.Remark],
+    path: Path, remarks: list[model.Remark],
 ) -> tuple[str, SheetRows, ListHeadings] | None:  # fmt: skip
     """Return the name, the cells and the headings of the only sheet with headings, ignoring hidden
     sheets if another one is visible; None if there is none.
 
-    Remarks about hidden sheets and parts are added to `said`. InputError: there are several.
+    Remarks about hidden sheets and parts are added to `remarks`. InputError: there are several.
     """
     found = [
         (name, cells, headings)
@@ -125,9 +125,11 @@ def _headed(
     taken = shown[0][0]
     if others := [name for name, *_ in found if name != taken]:
         what = f"taken; hidden and not read: {', '.join(f'`{name}`' for name in others)}"
-        said.append(model.Remark(f"sheet `{taken}`", what))
+        remarks.append(model.Remark(f"sheet `{taken}`", what))
     if taken in hidden:
-        said.append(model.Remark(f"sheet `{taken}`", f"{hidden[taken]} hidden, read all the same"))
+        remarks.append(
+            model.Remark(f"sheet `{taken}`", f"{hidden[taken]} hidden, read all the same")
+        )
     return shown[0]
 
 

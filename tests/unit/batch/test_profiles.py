@@ -166,10 +166,10 @@ def test_arrays_of_any_layout_are_taken(subsurface: Design) -> None:
 @pytest.mark.parametrize(
     ("shapes", "message"),
     [
-        (((3, 5), (3, 4), (5,)), "one shape, profiles by levels; they have .3, 5., .3, 4."),
+        (((3, 5), (3, 4), (5,)), "same shape, profiles by levels; they have .3, 5., .3, 4."),
         (((), (), (5,)), "must have the same shape, profiles by levels"),
-        (((3, 5), (3, 5), (4,)), "depth must be"),
-        (((3, 5), (3, 5), (2, 5)), "depth must be"),
+        (((3, 5), (3, 5), (4,)), "depth must have the shape"),
+        (((3, 5), (3, 5), (2, 5)), "depth must have the shape"),
     ],
 )
 def test_shapes_that_do_not_fit_are_refused(

@@ -520,7 +520,7 @@ FLAWS = (
         "release-present",
         None,
         "unknown",
-        "it is unknown what frees the line from the anchor",
+        "the release of the line is unknown",
     ),
     Flaw(
         "a release with no other beside it",
@@ -643,7 +643,7 @@ FLAWS = (
         "clamp-grip",
         "CTD 900 m",
         "fail",
-        "it grips 1 N",
+        "it grips 1.00 N",
     ),
     Flaw(
         "a wire that winds up its float",

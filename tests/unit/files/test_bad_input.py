@@ -227,12 +227,7 @@ ONE_MISTAKE = {
     "tab": (changed("  depth:", "\tdepth:"), (3, 1, "a tab; YAML is indented with spaces")),
     "invalid YAML": (
         changed("[0, 0.80, 90]", "[0, 0.80, 90"),
-        (
-            8,
-            9,
-            "is not valid YAML: while parsing a flow sequence from line 7, expected ',' or ']', "
-            "but got '['",
-        ),
+        (7, 9, "the `[` that begins here is not closed"),
     ),
     "two documents": (
         GOOD + "---\nname: more\n",

@@ -126,7 +126,7 @@ def test_another_content_is_another_build(tmp_path, monkeypatch, runtime):
 def test_a_runtime_that_lacks_files_is_refused(tmp_path, runtime):
     (runtime / "pyodide/pydantic-core.whl").unlink()
     (runtime / "package/css/xterm.css").unlink()
-    with pytest.raises(UsageError, match=r"lacks xterm\.css, pydantic-core\.whl; it has to hold"):
+    with pytest.raises(UsageError, match=r"lacks xterm\.css, pydantic-core\.whl; it must contain"):
         write_page(tmp_path / "page", runtime)
     assert not (tmp_path / "page").exists()
     with pytest.raises(UsageError, match="there is no folder"):
