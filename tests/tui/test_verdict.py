@@ -63,9 +63,9 @@ def test_the_knockdown_is_that_of_the_worst_finding():
     text = without_checks("s1000")
     lines = lines_of(text + "checks: {maximum_knockdown: 35 m}\n")
     head = next(each for each in lines if each.heading == "Knockdown" and "top at" in each.text)
-    below = next(each for each in lines if "The top is knocked down" in each.text)
-    worst = re.search(r"by ([\d.]+ m)", below.text)[1]
-    assert re.match(r"\d+ % of ≤ 35.0 m\. The top", below.text)
+    below = next(each for each in lines if "Knockdown of the top is" in each.text)
+    worst = re.search(r"is ([\d.]+ m)", below.text)[1]
+    assert re.match(r"\d+ % of ≤ 35.0 m\. Knockdown", below.text)
     assert head.text.endswith(f"; {worst} at worst (strumming)") and head.state is below.state
 
 
