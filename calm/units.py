@@ -130,6 +130,15 @@ _LONGEST = 60
 _LARGEST = 1e30  # limit that keeps products of a few values finite
 
 
+_POINTS = (
+    *("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE"),
+    *("S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"),
+)
+_COMPASS = {name: 22.5 * number for number, name in enumerate(_POINTS)}
+_COMPASS |= {"NORTH": 0.0, "EAST": 90.0, "SOUTH": 180.0, "WEST": 270.0}
+"""Points of the compass [deg], which are suggested as angles."""
+
+
 class QuantityError(ValueError):
     """A text that is not a valid quantity of the required dimension.
 
@@ -342,7 +351,10 @@ def _split(text: str, wanted: Dimension) -> tuple[float, str]:
     if not number:
         if re.match(r"[+-]?\.?(nan|inf)", text, re.IGNORECASE):
             raise QuantityError("is not a finite number")
-        raise QuantityError(f"is not {_described(wanted)}")
+        bearing = _COMPASS.get(text.upper()) if wanted.unit == "deg" else None
+        raise QuantityError(
+            f"is not {_described(wanted)}", None if bearing is None else f"{bearing:g} deg"
+        )
     return float(number[0]), text[number.end() :].strip()
 
 
