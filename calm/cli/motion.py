@@ -133,7 +133,7 @@ def motion(
     if onto is not None and onto.is_dir():
         check_folder(output)
         if output.resolve() == onto.resolve():
-            raise UsageError(f"{output} is an input; it is kept")
+            raise UsageError(f"{output} is an input and is not overwritten")
     else:
         check_output(output, *inputs)
     if onto is not None:

@@ -55,8 +55,11 @@ A factor for the quality flag multiplies both.
 """
 FLAGGED: Mapping[int, float] = {0: 1.0, 1: 1.0, 2: 1.5, 3: 2.0, 4: 4.0, 8: 3.0}
 """Default factors on the meter error, by quality flag."""
-FLAG_RANGE, FEWEST = (0.3, 15.0), 20
-"""Limits of the estimated factor on the meter error, and the least number of readings."""
+FLAG_RANGE, FEWEST = (0.6, 15.0), 20
+"""Limits of the estimated factor on the meter error, and the least number of readings.
+
+The current at a meter differs from that on the line around it, however good the meter is.
+"""
 STUDENT = 4.0
 """Degrees of freedom of Student's law for readings."""
 ALIKE_HOURS = 1.0
@@ -66,8 +69,12 @@ LEAST_SPREAD = 0.02
 CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
 """Initial correlation time [h] and correlation depth [m] of the current."""
 HOURS = (4.0, 16.0)
-"""Limits of the estimated correlation time [h]."""
+"""Limits of the estimated correlation time of the current [h]; a longer time would damp tides."""
 WIDER = 2.0
+"""Factor on the prior deviation of the currents from which the drag is estimated.
+
+Smoothing by the prior of the depths would damp the strongest currents, and raise the drag.
+"""
 METERS_ALIKE = 0.02
 """Error common to all meters of a record, as a share of the speed."""
 
@@ -77,8 +84,8 @@ line, and the local error of a point as a share of its own knockdown.
 """
 SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
 """Prior and limits of the error share of a stretch, and its correlation time [h]."""
-TIDE_HOURS = 6.0
-"""Correlation time of tide and air pressure [h]."""
+TIDE_HOURS = 2.4
+"""Correlation time of the tide [h]: the autocorrelation of a semidiurnal tide falls to 1/e."""
 STEP = 0.02
 """Typical hourly step of the datum and offsets [m].
 
@@ -224,7 +231,9 @@ class CurrentSmoother:
         self.spread = np.maximum(self._along(place, spread), LEAST_SPREAD)
         flags = np.unique(one.flag[np.isfinite(one.u)])
         usual = {f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()}
-        self._most_tide = common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
+        self._most_tide = (
+            common_unknowns.TIDE if one.tide is None else common_unknowns.RESIDUAL_TIDE
+        )
         self.scales = ErrorScales(usual, tide=self._most_tide)
         self.levels = np.where(np.isfinite(one.level_depth), one.level_depth, place)
         self.knot_depth = self.knots.at(self.levels)
@@ -241,7 +250,6 @@ class CurrentSmoother:
         self.common_covariance = np.diag([*known, *self.begin])
         step = np.diff(self.hours, prepend=self.hours[:1])
         self.usual = STEP**2 * step[:, None] * np.ones(1 + sensors)
-        self.stepped = self.usual.copy()
         self._forwards: dict[tuple[float, ...], Forward] = {}
         self.bend = np.zeros((len(one.time), len(self.still)))
         self._slopes_at = np.full((len(one.time), 2 * count), np.inf)
@@ -417,8 +425,17 @@ class CurrentSmoother:
 
     # --- iterations
 
-    def solve(self) -> None:
-        """Iterate until the depths converge."""
+    def solve(self, slips: Sequence[tuple[int, int, float]] = ()) -> None:
+        """Iterate until the depths converge.
+
+        Parameters
+        ----------
+        slips : sensor, time and size [m] of steps to begin with; of two or three sensors, the
+            iterations may otherwise end with an offset of one and a step of another
+        """
+        self.stepped = self.usual.copy()
+        for sensor, time, size in slips:
+            self.stepped[time, 1 + sensor] = 0.5 * (self.stepped[time, 1 + sensor] + size**2)
         before = np.full((len(self.measured.time), len(self.still)), np.inf)
         for turn in range(TURNS):
             there = self.linear()
@@ -646,7 +663,7 @@ class CurrentSmoother:
         law, _ = self.law(self.depth, sensors=False)
         wide = law.steady.copy()
         wide[at.current, at.current] *= WIDER**2
-        law = replace(law, steady=wide, first=law.first+wide-law.steady)
+        law = replace(law, steady=wide, first=law.first + wide - law.steady)
         flow = slice(0, at.current.stop)
         now, spread = np.empty((count, flow.stop)), np.empty((count, flow.stop, flow.stop))
         row = {int(t): i for i, t in enumerate(times)}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from calm.case import Design
 from calm.errors import UsageError, unknown
 from calm.motion.correction import Task, estimate_in_memory
+from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import Forward, instruments_of, labels_of
 from calm.motion.matching import without
 from calm.motion.measured_currents import CurrentSmoother
@@ -183,7 +184,18 @@ def prepare(
     if used.u.shape[1]:
         smoother = CurrentSmoother(mooring, used, names)
         smoother.solve()
-        return Task(mooring, used, smoother.common(), smoother)
+        task = Task(mooring, used, smoother.common(), smoother)
+        found = diagnosed(task)
+        slips = [one for one in found if one.kind == "slip" and one.certain]
+        if slips:
+            begin = np.searchsorted(used.time, [one.since for one in slips]).tolist()
+            sensors = [used.label.index(one.label) for one in slips]
+            smoother.solve(
+                [(j, t, one.value) for j, t, one in zip(sensors, begin, slips, strict=True)]
+            )
+            task = Task(mooring, used, smoother.common(), smoother)
+            found = diagnosed(task)
+        return replace(task, faults=found)
     used = with_knots(used, mooring)
     return Task(mooring, used, learn_currents(mooring, used, names, tell, prior))
 

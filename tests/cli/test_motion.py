@@ -399,7 +399,7 @@ def test_a_folder_in_is_a_folder_out(calm, given, truth, folder):
         ).to_netcdf(folder / "in" / f"{name}.nc", engine="h5netcdf")
     words = (*COMMAND, "--pressures", "p.csv", "--onto", "in")
     done = calm(*words, "-o", "in")
-    assert done.code == 2 and "in is an input; it is kept" in done.err
+    assert done.code == 2 and "in is an input and is not overwritten" in done.err
     done = calm(*words, "-o", "out")
     assert done.code == 0, done.err
     assert [one.name for one in (folder / "out").iterdir()] == ["a.nc"]
