@@ -233,7 +233,10 @@ class Task:
                 smoother.way(times),
             )
             surface = smoother.surface[times]
-        likely = forward.solve(way.level, way.u, way.v)
+        # inferred currents may exceed the limit of measured ones, which is for errors in files
+        limit = self.mooring.file.environment.maximum_speed
+        share = np.minimum(1.0, (1.0 - 1e-9) * limit / np.maximum(np.hypot(way.u, way.v), 1e-9))
+        likely = forward.solve(way.level, share * way.u, share * way.v)
         clamps = likely.clamp_depth.shape[1]
         shift = depth - points(likely)
         down = depth - surface[:, None] - forward.still
