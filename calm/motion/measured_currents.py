@@ -622,7 +622,7 @@ class CurrentSmoother:
         after = np.clip(np.searchsorted(known, self.hours), 0, len(known) - 1)
         before = np.maximum(after - 1, 0)
         near = np.minimum(np.abs(known[after] - self.hours), np.abs(known[before] - self.hours))
-        return np.asarray(near > self.scales.hours)
+        return np.asarray(near > CURRENT_HOURS)
 
     @property
     def current_factor(self) -> Floats:
