@@ -16,7 +16,7 @@ from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import Forward, instruments_of, labels_of
 from calm.motion.matching import without
 from calm.motion.measured_currents import CurrentSmoother
-from calm.motion.measurements import CurrentMeasurements, MooringMeasurements, level_names
+from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import (
     ALL,
     BAND,
@@ -157,7 +157,6 @@ def prepare(
     names: Sequence[str],
     hidden: Sequence[str],
     tell: Callable[[str], None] = lambda _: None,
-    prior: Sequence[CurrentMeasurements] = (),
 ) -> Task:
     """Estimate the common unknowns of the record from the sensors in use.
 
@@ -167,7 +166,7 @@ def prepare(
     measured : measurements, including the sensors that are hidden
     names : names of the factors to estimate
     hidden : labels of sensors that are not used
-    tell, prior : see `calm.motion.unknown_currents.learn_currents`, for records without currents
+    tell : receives progress messages
 
     Raises
     ------
@@ -197,7 +196,7 @@ def prepare(
             found = diagnosed(task)
         return replace(task, faults=found)
     used = with_knots(used, mooring)
-    return Task(mooring, used, learn_currents(mooring, used, names, tell, prior))
+    return Task(mooring, used, learn_currents(mooring, used, names, tell))
 
 
 def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
@@ -313,13 +312,12 @@ def cross_validated(
     hidden: Sequence[str],
     tell: Callable[[str], None],
     workers: int | None = None,
-    prior: Sequence[CurrentMeasurements] = (),
 ) -> list[HeldOut]:
     """Hide each used sensor in turn, besides the hidden sensors, and judge the estimate.
 
     Parameters
     ----------
-    mooring, measured, names, hidden, prior : see `prepare`
+    mooring, measured, names, hidden : see `prepare`
     tell : receives progress messages
     workers : number of threads
 
@@ -332,7 +330,7 @@ def cross_validated(
     held = []
     for label in several(measured, hidden):
         tell(f"estimating without {label}")
-        task = prepare(mooring, measured, names, [*hidden, label], prior=prior)
+        task = prepare(mooring, measured, names, [*hidden, label])
         point = int(measured.point[measured.label.index(label)])
         depth, spread = estimate_in_memory(task, [point], workers)
         held.append(judge_hidden(measured, task.measured, label, depth[:, 0], spread[:, 0], still))
